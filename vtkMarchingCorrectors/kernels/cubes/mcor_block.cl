@@ -49,19 +49,17 @@ __kernel void mcor_block_find_inactive(
   int seen = 1 << states[i];
   for (int d = 0; d < 27; ++d)
   {
-    const int other = mcor_find_block(
-      MCOR_BLOCK_ARGS, cube.w, cube.x + d % 3 - 1, cube.y + d / 3 % 3 - 1, cube.z + d / 9 - 1);
+    const int other = mcor_find_block(MCOR_BLOCK_ARGS, cube + mcor_around(d));
     seen |= other < 0 ? 0 : 1 << states[other];
   }
   const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
   inactive[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
 }
 
-/* Whether child c (bits x, y, z) of a cube is on the lattice. */
-bool mcor_block_has_child(__global const mcor_rung* rungs, int4 cube, int c)
+/* Returns part c (bits x, y, z) of a cube. */
+int4 mcor_block_part(int4 cube, int c)
 {
-  return mcor_has_block(
-    rungs, cube.w - 1, 2 * cube.x + (c & 1), 2 * cube.y + (c >> 1 & 1), 2 * cube.z + (c >> 2));
+  return (int4)(2 * cube.x, 2 * cube.y, 2 * cube.z, cube.w - 1) + mcor_up(c);
 }
 
 /* One work-item = one cube. Counts the cubes into which it is divided: none if it is inactive. */
@@ -73,7 +71,7 @@ __kernel void mcor_block_count(const int count, __global const mcor_rung* rungs,
   int children = 0;
   for (int c = 0; c < 8 && !inactive[i]; ++c)
   {
-    children += mcor_block_has_child(rungs, cube, c);
+    children += mcor_has_block(rungs, mcor_block_part(cube, c));
   }
   counts[i] = children;
 }
@@ -87,10 +85,10 @@ __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   int to = scanned[i];
   for (int c = 0; c < 8 && to < scanned[i + 1]; ++c)
   {
-    if (mcor_block_has_child(rungs, cube, c))
+    const int4 part = mcor_block_part(cube, c);
+    if (mcor_has_block(rungs, part))
     {
-      child_keys[to++] = mcor_block_key(
-        rungs, cube.w - 1, 2 * cube.x + (c & 1), 2 * cube.y + (c >> 1 & 1), 2 * cube.z + (c >> 2));
+      child_keys[to++] = mcor_block_key(rungs, part);
     }
   }
 }
@@ -100,8 +98,6 @@ __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {
   MCOR_ITEM(slot, slot < brick_count && known[slot]);
-  const int4 brick = bricks[slot];
-  mcor_request_brick(
-    brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z));
+  mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, bricks[slot]));
 }
 #endif

@@ -97,20 +97,19 @@ mcor_bound mcor_bound_start(void)
 /* Adds the tile's particles for the query's box. */
 void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
 {
-  const real e[3] = { query->half_size[0] * MCOR_BOUND_LARGER,
-    query->half_size[1] * MCOR_BOUND_LARGER, query->half_size[2] * MCOR_BOUND_LARGER };
+  const mcor_span box = query->box;
+  const real e[3] = { box.half_size[0] * MCOR_BOUND_LARGER, box.half_size[1] * MCOR_BOUND_LARGER,
+    box.half_size[2] * MCOR_BOUND_LARGER };
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv x = MCOR_TILE(tile, x, i) - query->center[0];
-    const realv y = MCOR_TILE(tile, y, i) - query->center[1];
-    const realv z = MCOR_TILE(tile, z, i) - query->center[2];
+    const realv x = MCOR_TILE(tile, x, i) - box.center[0];
+    const realv y = MCOR_TILE(tile, y, i) - box.center[1];
+    const realv z = MCOR_TILE(tile, z, i) - box.center[2];
     const realv weight = MCOR_TILE(tile, weight, i);
-#if MCOR_FIELD == 0
-    const realv c = weight * (MCOR_TILE(tile, value, i) - iso);
-#elif MCOR_FIELD == 1
-    const realv c = weight * MCOR_TILE(tile, value, i);
-#else
+#if MCOR_FIELD == 2
     const realv c = weight;
+#else
+    const realv c = weight * MCOR_FIELD_TERM(MCOR_TILE(tile, value, i), iso);
 #endif
     realv least, greatest;
     mcor_bound_weights(x, y, z, e, MCOR_TILE(tile, inv_h, i), &least, &greatest);

@@ -30,18 +30,6 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
-/* Returns a brick's cells that are beside these through crossed faces. */
-ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
-{
-  ulong cells = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    cells |= mcor_from_next(axis, used & lower[axis], 0);
-    cells |= mcor_from_last(axis, used & upper[axis], 0);
-  }
-  return cells;
-}
-
 /* Returns the cells that are valid at all corners and have corners on both sides. */
 ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
@@ -79,18 +67,6 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
  * is not used; the ones of these that are pinched. Only two cells around a pinched edge are
  * used, opposite to each other. Their triangles form two fans, so the edge has two vertices, the
  * second one for the cell below in the first other axis. */
-
-/* Writes the masks of a brick's edges along an axis. The arguments hold the edges with a used
- * cell in each quadrant around them. Returns the number of vertices. */
-int mcor_cell_edges(const ulong* q, int axis, __global ulong* to)
-{
-  const ulong crossed = q[0] | q[1] | q[2] | q[3];
-  const ulong pinched = crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
-  to[axis] = crossed;
-  to[3 + axis] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
-  to[6 + axis] = pinched;
-  return (int)(popcount(crossed) + popcount(pinched));
-}
 
 /* Nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125

@@ -39,6 +39,7 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   const fixv lane = mcor_lane_index();
   const real ex = (real)0.5 * step[0], ey = (real)0.5 * step[1],
              ez = (real)0.5 * step[2] * (MCOR_LANES / 4 - 1);
+  const mcor_span box = { { at[0] + ex, at[1] + ey, at[2] + ez }, { ex, ey, ez } };
   const realv px = at[0] + step[0] * MCOR_CONVERT_REALV(lane & 1);
   const realv py = at[1] + step[1] * MCOR_CONVERT_REALV(lane >> 1 & 1);
   const realv pz = at[2] + step[2] * MCOR_CONVERT_REALV(lane >> 2);
@@ -46,9 +47,7 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
        begin += MCOR_LANES)
   {
-    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
-      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), at[0] + ex, at[1] + ey, at[2] + ez,
-      ex, ey, ez, MCOR_INSIDE_SHARE);
+    const fixv near = mcor_tile_near(tile, begin, &box, MCOR_INSIDE_SHARE);
     int list[MCOR_LANES];
     const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
     for (int k = 0; k < count; ++k)

@@ -91,18 +91,6 @@ mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global 
   return leaf;
 }
 
-/* Returns the cells that may have finer nodes. */
-ulong mcor_leaf_hanging_cells(uint hanging)
-{
-  ulong cells = 0;
-  for (int at = 0; at < 27 && hanging; ++at)
-  {
-    const int x = at % 3, y = at / 3 % 3, z = at / 9;
-    cells |= hanging >> at & 1 ? mcor_on_sides(x, y, z) : 0;
-  }
-  return cells;
-}
-
 /* Returns where a coordinate of 0 to 8 lies in the leaf: on its first side, within, on its last
  * side. */
 int mcor_leaf_zone(int u)
@@ -225,7 +213,12 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
 {
   MCOR_ITEM(i, i < count);
   const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
-  const ulong hanging = mcor_leaf_hanging_cells(mcor_leaf_hanging(finer[i]));
+  const uint nodes = mcor_leaf_hanging(finer[i]);
+  ulong hanging = 0; /* cells that may have finer nodes */
+  for (int at = 0; at < 27 && nodes; ++at)
+  {
+    hanging |= nodes >> at & 1 ? mcor_on_sides(at % 3, at / 3 % 3, at / 9) : 0;
+  }
   plain[slot] = ~hanging;
   leaf_of[slot] = i;
   if (!mixed[i])

@@ -39,29 +39,22 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   MCOR_ITEM(item, item < block_count * MCOR_BLOCK_ROWS && mcor_row_of(leaves, item) != 0);
   const int m = item * 8;
   const uint own = mcor_row_of(leaves, item);
-  const int4 brick = mcor_brick_of_number(rungs, block_keys, m), block = brick >> 3;
-  const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, block.x, block.y, block.z);
-  uint rows[9], up[4];
-  for (int d = 0; d < 9; ++d)
-  {
-    const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1, row = (z & 7) * 64 + (y & 7) * 8;
-    const bool within = y >> 3 == block.y && z >> 3 == block.z;
-    const int3 at =
-      within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, block.x, y >> 3, z >> 3);
-    rows[d] = mcor_row_bits(at, row, split);
-    if (d > 3 && d != 6)
-    {
-      up[d - (d < 6 ? 4 : 5)] = rows[d] | mcor_row_bits(at, row, leaves);
-    }
-  }
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
+  const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick);
   uint finer = 0, all = ~0u; /* bits x: finer bricks around; bricks up from it */
   for (int d = 0; d < 9; ++d)
   {
-    finer |= rows[d] | rows[d] >> 1 | rows[d] >> 2;
-  }
-  for (int d = 0; d < (plane ? 2 : 4); ++d)
-  {
-    all &= up[d] >> 1 & up[d] >> 2;
+    const int4 other = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
+    const int row = mcor_place_in_block(other);
+    const bool within = other.y >> 3 == brick.y >> 3 && other.z >> 3 == brick.z >> 3;
+    const int3 at = within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, other);
+    const uint bits = mcor_row_bits(at, row, split);
+    finer |= bits | bits >> 1 | bits >> 2;
+    if (d == 4 || d == 5 || (d > 6 && !plane)) /* y and z are 0 or 1 up */
+    {
+      const uint up = bits | mcor_row_bits(at, row, leaves);
+      all &= up >> 1 & up >> 2;
+    }
   }
   atomic_or(beside + (m >> 5), (own & (finer | ~all)) << (m & 31));
 }
@@ -111,8 +104,8 @@ __kernel void mcor_leaf_choose(
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);
     for (int d = 1; d < (plane ? 4 : 8) && !is_beside && sides != MCOR_EXAMINE; ++d)
     {
-      sides |= mcor_leaf_sides(MCOR_KNOWN_ARGS,
-        mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, d & 1, d >> 1 & 1, d >> 2), d);
+      sides |= mcor_leaf_sides(
+        MCOR_KNOWN_ARGS, mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, mcor_up(d)), d);
     }
     /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and
      * PoCL 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
@@ -136,8 +129,7 @@ __kernel void mcor_leaf_list(MCOR_BLOCK_PARAMS, __global const uint* chosen,
     uint found = 0;
     for (int d = 0; d < 27; ++d)
     {
-      const int other =
-        mcor_number_beside(MCOR_BLOCK_ARGS, m, leaf, d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+      const int other = mcor_number_beside(MCOR_BLOCK_ARGS, m, leaf, mcor_around(d));
       found |= (uint)(other >= 0 && mcor_has_brick(split, other)) << d;
     }
     cells[to] = leaf;

@@ -39,7 +39,7 @@ ulong mcor_leaf_wanted(uint finer, int plane)
 int4 mcor_leaf_wanted_brick(int4 leaf, int b)
 {
   const int f = b - 8;
-  return b < 8 ? leaf + (int4)(b & 1, b >> 1 & 1, b >> 2, 0)
+  return b < 8 ? leaf + mcor_up(b)
                : (int4)(2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9, leaf.w - 1);
 }
 
@@ -50,8 +50,8 @@ __kernel void mcor_leaf_request(MCOR_BLOCK_PARAMS, const int count, const int pl
   MCOR_ITEM(i, i < count);
   for (ulong rest = mcor_leaf_wanted(finer[i], plane); rest; rest &= rest - 1)
   {
-    const int4 b = mcor_leaf_wanted_brick(cells[i], mcor_ctz(rest));
-    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, b.w, b.x, b.y, b.z));
+    const int4 brick = mcor_leaf_wanted_brick(cells[i], mcor_ctz(rest));
+    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick));
   }
 }
 
@@ -63,9 +63,8 @@ __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int pla
   const ulong wanted = mcor_leaf_wanted(finer[i], plane);
   for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
   {
-    const int4 brick = mcor_leaf_wanted_brick(cells[i], b);
     tables[i * (long)MCOR_LEAF_SLOTS + b] =
-      wanted >> b & 1 ? mcor_find_brick(MCOR_BRICK_ARGS, brick.w, brick.x, brick.y, brick.z) : -1;
+      wanted >> b & 1 ? mcor_find_brick(MCOR_BRICK_ARGS, mcor_leaf_wanted_brick(cells[i], b)) : -1;
   }
 }
 
@@ -76,8 +75,7 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   __global uchar* proofs, __global ulong* above, __global ulong* valid)
 {
   MCOR_ITEM(slot, slot < slot_count);
-  const int4 b = bricks[slot];
-  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, b.w, b.x, b.y, b.z);
+  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, bricks[slot]);
   const int state = mcor_has_brick(leaves, m) ? states[m] & MCOR_EXAMINE : MCOR_UNTRIED;
   proofs[slot] = (uchar)state;
   if (MCOR_IS_CERTAIN(state) && !known[slot])

@@ -88,9 +88,10 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   {
     ulong q[4];
     mcor_cell_around(lower, a, q);
-    if (plane)
+    if (plane) /* a square counts on both the upper and the lower side of the plane */
     {
-      mcor_plane_around(a, q);
+      q[0] = q[2] = a == 2 ? 0 : q[0] & MCOR_PLANE_MASK;
+      q[1] = q[3] = a == 2 ? 0 : q[1] & MCOR_PLANE_MASK;
     }
     const ulong changes = m[0] ^ mcor_from_next(a, m[0], m[1 << a]);
     for (int k = 0; k < 4; ++k)
@@ -99,7 +100,12 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
       q[k] =
         (q[k] & changes) | (leaf_count > 0 ? (ulong)quadrants[at + 1] << 32 | quadrants[at] : 0);
     }
-    vertices += mcor_cell_edges(q, a, to);
+    const ulong crossed = q[0] | q[1] | q[2] | q[3];
+    const ulong pinched = (q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]);
+    to[a] = crossed;
+    to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
+    to[6 + a] = pinched;
+    vertices += (int)(popcount(crossed) + popcount(pinched));
   }
   vertex_count[slot] = vertices;
   int tunnels = 0, made = 0;
@@ -107,7 +113,8 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   for (ulong rest = plain_used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    made += plane ? mcor_plane_count(m, cell)
+    const int square = mcor_march_case(m, cell) & 15;
+    made += plane ? 1 + (square == 6 || square == 9)
                   : mcor_cell_cut(m, MCOR_CUT_ARGS, slot, cell, &tunnels)->triangles;
   }
   triangle_count[slot] += made;
@@ -134,7 +141,8 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
   const int4 at = 2 *
     (brick * MCOR_BRICK +
       (int4)((n & 3) + (axis == 0), (n >> 2 & 3) + (axis == 1), (n >> 4) + (axis == 2), 0));
-  const int other = mcor_find_brick(MCOR_BRICK_ARGS, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2);
+  const int other =
+    mcor_find_brick(MCOR_BRICK_ARGS, (int4)(at.x >> 2, at.y >> 2, at.z >> 2, brick.w - 1));
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
 }
 
@@ -201,8 +209,7 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
   const ulong others =
     ~owned & mcor_cells_within(all_x0, all_y0, all_z0, all_x1, all_y1, all_z1, bricks[slot]);
-  const ulong key =
-    mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
+  const ulong key = mcor_brick_key(rungs, bricks[slot]) << 6;
   const ulong joined =
     plane && resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
   long to = triangle_base[slot];

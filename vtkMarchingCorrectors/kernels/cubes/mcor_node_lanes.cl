@@ -4,14 +4,7 @@
 /* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: with 16
  * lanes 2 x 2 x 4, with 8 2 x 2 x 2. The interface is that of mcor_node.cl. */
 
-#define MCOR_GROUP_XY 2
 #define MCOR_GROUP_Z (MCOR_LANES / 4)
-
-/* Returns the first node of group g. */
-int4 mcor_group_node(int g)
-{
-  return (int4)(2 * (g & 1), 2 * (g >> 1 & 1), MCOR_GROUP_Z * (g >> 2), 0);
-}
 
 int mcor_group_of(int n)
 {
@@ -21,24 +14,6 @@ int mcor_group_of(int n)
 int mcor_lane_of(int n)
 {
   return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
-}
-
-/* Lists the places in the tile of the particles that reach a group. (x, y, z): its first node. */
-int mcor_node_list(
-  const mcor_tile* tile, const real edge[3], real x, real y, real z, real share, int* list)
-{
-  const real exy = (real)0.5 * (MCOR_GROUP_XY - 1), ex = exy * edge[0], ey = exy * edge[1],
-             ez = (real)0.5 * (MCOR_GROUP_Z - 1) * edge[2];
-  int count = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i),
-      MCOR_TILE(tile, z, i), MCOR_TILE(tile, inv_h, i), x + ex, y + ey, z + ez, ex, ey, ez, share);
-    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
-    MCOR_PACK_INDEX(mask, i, list + count);
-    count += MCOR_MASK_COUNT(mask);
-  }
-  return count;
 }
 
 /* Nodes of a group, from its query's origin; weights there are made in two steps, see
@@ -51,9 +26,9 @@ typedef struct
   realv at;
 } mcor_group_nodes;
 
-mcor_group_nodes mcor_group_place(const real edge[3], real x, real y, real z)
+mcor_group_nodes mcor_group_place(const real edge[3], const real first[3])
 {
-  const real ex = edge[0], ey = edge[1], ez = edge[2];
+  const real x = first[0], y = first[1], z = first[2], ex = edge[0], ey = edge[1], ez = edge[2];
 #if MCOR_LANES == 8
   const mcor_group_nodes nodes = { (realv)(x, x + ex, y, y + ey, z, z + ez, z, z) };
 #else
@@ -87,11 +62,12 @@ typedef struct
   realv x, y, z;
 } mcor_group_nodes;
 
-mcor_group_nodes mcor_group_place(const real edge[3], real x, real y, real z)
+mcor_group_nodes mcor_group_place(const real edge[3], const real first[3])
 {
   const fixv lane = mcor_lane_index();
-  const mcor_group_nodes nodes = { x + MCOR_CONVERT_REALV(lane & 1) * edge[0],
-    y + MCOR_CONVERT_REALV(lane >> 1 & 1) * edge[1], z + MCOR_CONVERT_REALV(lane >> 2) * edge[2] };
+  const mcor_group_nodes nodes = { first[0] + MCOR_CONVERT_REALV(lane & 1) * edge[0],
+    first[1] + MCOR_CONVERT_REALV(lane >> 1 & 1) * edge[1],
+    first[2] + MCOR_CONVERT_REALV(lane >> 2) * edge[2] };
   return nodes;
 }
 
@@ -103,14 +79,17 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to a group whose first node is (x, y, z) from the query's origin. term:
+/* Adds the tile's particles to a group whose first node is `first` from the query's origin. term:
  * their weights times values. */
-void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], real x, real y,
-  real z, real share, mcor_node_sums* sums)
+void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], const real first[3],
+  real share, mcor_node_sums* sums)
 {
-  const mcor_group_nodes nodes = mcor_group_place(edge, x, y, z);
+  const mcor_group_nodes nodes = mcor_group_place(edge, first);
+  const real ex = (real)0.5 * edge[0], ey = (real)0.5 * edge[1],
+             ez = (real)0.5 * (MCOR_GROUP_Z - 1) * edge[2];
+  const mcor_span box = { { first[0] + ex, first[1] + ey, first[2] + ez }, { ex, ey, ez } };
   int list[MCOR_TILE_SIZE + 16];
-  const int count = mcor_node_list(tile, edge, x, y, z, share, list);
+  const int count = mcor_tile_list(tile, &box, share, list);
   realv s = sums->s, w = sums->w, t = sums->t;
   for (int begin = 0; begin < count; begin += MCOR_STEP)
   {
@@ -163,10 +142,13 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
 #endif
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
-      const int4 node = mcor_group_node(g);
-      const real* edge = grid->edge;
-      mcor_node_add(tile, term, edge, first[0] + (real)node.x * edge[0],
-        first[1] + (real)node.y * edge[1], first[2] + (real)node.z * edge[2], share, sums + g);
+      const int node[3] = { 2 * (g & 1), 2 * (g >> 1 & 1), MCOR_GROUP_Z * (g >> 2) };
+      real at[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        at[a] = first[a] + (real)node[a] * grid->edge[a];
+      }
+      mcor_node_add(tile, term, grid->edge, at, share, sums + g);
     }
   }
 }

@@ -9,7 +9,7 @@
  * bricks' numbers. Returns whether the cell is new. */
 bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
-  const int number = mcor_brick_number(MCOR_BLOCK_ARGS, 0, x >> 2, y >> 2, z >> 2);
+  const int number = mcor_brick_number(MCOR_BLOCK_ARGS, (int4)(x >> 2, y >> 2, z >> 2, 0));
   return number >= 0 &&
     mcor_add_cells(reached, number, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
 }
@@ -25,7 +25,7 @@ __kernel void mcor_pair_request(
   for (int d = 0; d < 8; ++d)
   {
     const int m = mcor_cells_reach(reached[own], d)
-      ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
+      ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_up(d))
       : -1;
     if (m >= 0 && mcor_request_brick(brick_bits, m))
     {
@@ -93,16 +93,6 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
  * that rounding does not decide for particles on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Returns the greatest rounding error of the square of a distance within the smoothing length 1
- * / inv_h. Positions count from the query's origin. */
-real mcor_pair_slack(const mcor_query* query, real inv_h)
-{
-  const real* half_size = query->half_size;
-  const real extent = 2 * fmax(half_size[0], fmax(half_size[1], half_size[2])) + query->radius;
-  const real off = 16 * MCOR_UNIT_ROUNDOFF * extent;
-  return off * (2 / inv_h + 3 * off);
-}
-
 /* Returns which of particles i, i + 1, ... of the tile may make a pair with particle j. */
 fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int i, int j, real iso, real h_scale)
@@ -111,7 +101,11 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
   const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
-  const real slack = mcor_pair_slack(query, inv_h);
+  /* Positions count from the query's origin. slack: the greatest rounding error of the square of a
+   * distance within the smoothing length 1 / inv_h. */
+  const real* e = query->box.half_size;
+  const real extent = 2 * fmax(e[0], fmax(e[1], e[2])) + query->radius;
+  const real off = 16 * MCOR_UNIT_ROUNDOFF * extent, slack = off * (2 / inv_h + 3 * off);
   const fixv above = grid->value[j] >= iso ? (fixv)MCOR_TRUE : (fixv)0;
   const realv dx = MCOR_TILE(tile, x, i) - x, dy = MCOR_TILE(tile, y, i) - y,
               dz = MCOR_TILE(tile, z, i) - z, other = MCOR_TILE(tile, inv_h, i) * scale;
@@ -120,24 +114,14 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
     MCOR_TILE(tile, weight, i) != 0 && (above || (r2 + slack) * other * other >= (real)1);
 }
 
-/* Whether particle k, on the other side of the iso value, is closer to particle j than j's
- * smoothing length. If each is closer than the other's length, the pair is left to the particle
- * above. Differences are exact, so it does not matter which particles were looked at together. */
-bool mcor_pair_is_chosen(const mcor_grid* grid, int j, int k, real iso, real h_scale)
-{
-  const real x = (real)(grid->px[k] - grid->px[j]) * grid->unit;
-  const real y = (real)(grid->py[k] - grid->py[j]) * grid->unit;
-  const real z = (real)(grid->pz[k] - grid->pz[j]) * grid->unit;
-  const real scale = h_scale / MCOR_PAIR_REACH;
-  const real own = grid->inv_h[j] * scale, other = grid->inv_h[k] * scale;
-  const real r2 = x * x + y * y + z * z;
-  return r2 * own * own < 1 && (grid->value[j] >= iso || r2 * other * other >= 1);
-}
-
-/* Marks the cells between particle j and the particles of the tile that pair with it. */
+/* Marks the cells between particle j and the particles k of the tile that pair with it: on the other
+ * side of the iso value, and closer than j's smoothing length. If each is closer than the other's
+ * length, the pair is left to the particle above. Differences are exact, so it does not matter which
+ * particles were looked at together. */
 void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int j, real iso, real h_scale, MCOR_MARK_PARAMS)
 {
+  const real scale = h_scale / MCOR_PAIR_REACH, own = grid->inv_h[j] * scale;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
     int lanes[MCOR_LANES];
@@ -146,7 +130,11 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
     for (int c = 0; c < count; ++c)
     {
       const int k = MCOR_INDEX(tile, i + lanes[c]);
-      if (mcor_pair_is_chosen(grid, j, k, iso, h_scale))
+      const real x = (real)(grid->px[k] - grid->px[j]) * grid->unit;
+      const real y = (real)(grid->py[k] - grid->py[j]) * grid->unit;
+      const real z = (real)(grid->pz[k] - grid->pz[j]) * grid->unit;
+      const real r2 = x * x + y * y + z * z, other = grid->inv_h[k] * scale;
+      if (r2 * own * own < 1 && (grid->value[j] >= iso || r2 * other * other >= 1))
       {
         mcor_pair_seed_pair(grid, MCOR_MARK_ARGS, j, k);
       }
@@ -164,22 +152,6 @@ int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mco
   return count;
 }
 
-/* Returns the greatest inv_h of the tile's particles. */
-real mcor_pair_finest(const mcor_tile* tile)
-{
-  realv most = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    most = fmax(most, MCOR_TILE(tile, inv_h, i));
-  }
-  real finest = 0;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    finest = fmax(finest, MCOR_GET(most, lane));
-  }
-  return finest;
-}
-
 /* Marks cells for particles [begin, end), to which the query was fitted. */
 void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begin, int end,
   real iso, real h_scale, MCOR_MARK_PARAMS)
@@ -189,7 +161,16 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
   {
     const int seen = mcor_tile_sides(&tile, 0, iso);
-    const real finest = mcor_pair_finest(&tile);
+    realv most = 0; /* inv_h */
+    real finest = 0;
+    for (int i = 0; i < tile.count; i += MCOR_LANES)
+    {
+      most = fmax(most, MCOR_TILE(&tile, inv_h, i));
+    }
+    for (int lane = 0; lane < MCOR_LANES; ++lane)
+    {
+      finest = fmax(finest, MCOR_GET(most, lane));
+    }
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
       /* A particle below whose length is no longer than any other leaves all its pairs to the

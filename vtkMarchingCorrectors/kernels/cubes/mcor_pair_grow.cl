@@ -12,7 +12,7 @@ bool mcor_pair_lacks(
   {
     lacks = lacks ||
       (mcor_cells_reach(cells, d) && neighbours[slot * 14L + d - 1] < 0 &&
-        mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2) >= 0);
+        mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_up(d)) >= 0);
   }
   return lacks;
 }
@@ -28,7 +28,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
 {
   MCOR_ITEM(i, i < brick_count);
   const int4 brick = bricks[i];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
   const ulong before = grown[own];
   /* Others add cells meanwhile; the next round sees the ones missed here. */
   const ulong first = atomic_or(reached + 2L * own, 0), rest = atomic_or(reached + 2L * own + 1, 0);
@@ -49,7 +49,12 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   for (ulong last = 0; cells != last;)
   {
     last = cells;
-    cells |= domain[i] & mcor_cells_beside(cells & used, lower, upper);
+    for (int a = 0; a < 3; ++a)
+    {
+      cells |= domain[i] &
+        (mcor_from_next(a, last & used & lower[a], 0) |
+          mcor_from_last(a, last & used & upper[a], 0));
+    }
   }
   mcor_add_cells(reached, own, cells);
   if (!mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
@@ -59,12 +64,11 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   const ulong fresh = cells & ~before & used;
   for (int face = 0; face < 6 && fresh; ++face)
   {
-    const int axis = face >> 1, side = face & 1, by = side ? 1 : -1, shift = 3 << 2 * axis;
+    const int axis = face >> 1, side = face & 1, shift = 3 << 2 * axis;
+    const int4 step = (int4)(axis == 0, axis == 1, axis == 2, 0) * (side ? 1 : -1);
     const ulong low = mcor_lowest(axis);
     const ulong at = fresh & (side ? upper[axis] & low << shift : lower[axis] & low);
-    const int other = at ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, axis == 0 ? by : 0,
-                             axis == 1 ? by : 0, axis == 2 ? by : 0)
-                         : -1;
+    const int other = at ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, step) : -1;
     if (other >= 0 && mcor_add_cells(reached, other, side ? at >> shift : at << shift))
     {
       atomic_or(flags, 1);
@@ -116,8 +120,7 @@ __kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks,
   __global ulong* seeds)
 {
   MCOR_ITEM(i, i < brick_count);
-  const int4 brick = bricks[i];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, bricks[i]);
   cells[i] = reached[own];
   seeds[i] = marked[own];
 }

@@ -213,8 +213,8 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
     for (uint rest = tile.count > 0 ? own : 0; rest; rest &= rest - 1)
     {
       const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
-      const int proof = mcor_seed_proof(&grid, brick + (int4)(b & 1, b >> 1 & 1, b >> 2, 0),
-        has_leaves && mcor_has_brick(beside, m), &tile, iso);
+      const int proof = mcor_seed_proof(
+        &grid, brick + mcor_up(b), has_leaves && mcor_has_brick(beside, m), &tile, iso);
       inside |= (uint)(proof != MCOR_EXAMINE) << b;
       open |= (uint)((proof & MCOR_OPEN_SIDES) != 0) << b;
     }
@@ -307,7 +307,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
     const int slot = mcor_slot_of_number(brick_bits, brick_base, m);
     if (slot >= 0 && !known[slot])
     {
-      const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
+      const int4 brick = region + mcor_up(b);
       __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
       known[slot] = mcor_seed_brick(&grid, brick, has_leaves && mcor_has_brick(beside, m), &wide,
         &limits, states + m, value, weight);
@@ -323,12 +323,13 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
 #endif
 
 #if MCOR_OF_LATTICE
-/* Returns a block and the blocks left and right of it; -1 for one that does not exist. */
-int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
+/* Returns the block of a brick and the blocks left and right of it; -1 for one that does not
+ * exist. */
+int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int4 brick)
 {
-  return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, level, x - 1, y, z),
-    mcor_find_block(MCOR_BLOCK_ARGS, level, x, y, z),
-    mcor_find_block(MCOR_BLOCK_ARGS, level, x + 1, y, z));
+  const int4 block = mcor_block_of_brick(brick), step = (int4)(1, 0, 0, 0);
+  return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, block - step),
+    mcor_find_block(MCOR_BLOCK_ARGS, block), mcor_find_block(MCOR_BLOCK_ARGS, block + step));
 }
 
 /* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row are certainly above, and which
@@ -361,15 +362,14 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
   uint beside = 0;
   if (seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW))
   {
-    const int4 brick = mcor_brick_of_number(rungs, block_keys, m), own = brick >> 3;
-    const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, own.x, own.y, own.z);
+    const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
+    const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick);
     for (int d = 0; d < 9; ++d)
     {
-      const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1;
-      const bool within = y >> 3 == own.y && z >> 3 == own.z;
-      beside |= mcor_seed_row(
-        within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, own.x, y >> 3, z >> 3),
-        (z & 7) * 64 + (y & 7) * 8, states);
+      const int4 row_there = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
+      const bool within = row_there.y >> 3 == brick.y >> 3 && row_there.z >> 3 == brick.z >> 3;
+      beside |= mcor_seed_row(within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, row_there),
+        mcor_place_in_block(row_there), states);
     }
   }
   for (int x = 0; x < 8; ++x)
@@ -392,18 +392,13 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
 {
   MCOR_ITEM(slot, slot < brick_count && fresh[slot] != 0);
   const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
   for (int d = 0; d < 27; ++d)
   {
-    const int x = d % 3, y = d / 3 % 3, z = d / 9;
-    const int m = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, x - 1, y - 1, z - 1);
+    const int m = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_around(d));
     const int state = m < 0 ? MCOR_VOID : states[m];
-    if (state != MCOR_ABOVE && state != MCOR_BELOW)
-    {
-      continue;
-    }
-    if ((mcor_on_sides(x, y, z) & valid[slot] &
-          (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
+    const ulong others = state == MCOR_ABOVE ? ~above[slot] : state == MCOR_BELOW ? above[slot] : 0;
+    if ((mcor_on_sides(d % 3, d / 3 % 3, d / 9) & valid[slot] & others) &&
       mcor_request_brick(brick_bits, m))
     {
       atomic_or(grown, 1);

@@ -46,7 +46,8 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
     const ulong layer =
       plane ? 0xffffUL : ~0UL; /* squares are ambiguous; other faces of a plane are not */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
-    const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
+    const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
+    const ulong ambiguous = reached & (m[0] ^ m[du]) & (m[0] ^ m[dv]) & ~(m[0] ^ m[du | dv]);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
     count += (int)popcount(ambiguous);
   }
@@ -145,14 +146,6 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* The trilinear interpolant of corner values f, and its saddles in the cell. */
-typedef struct
-{
-  real x, y, z, xy, yz, xz, xyz; /* its coefficients */
-  int saddle_count;
-  real4 saddle[2];
-} mcor_trilinear;
-
 /* A root of (xyz t + q)^2 = p^2, the one of xyz t + q = p. The other root gives it where this
  * subtraction cancels; their product is n / (a xyz). */
 real mcor_topology_root(real p, real q, real xyz, real n, real a)
@@ -167,36 +160,33 @@ real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, re
   return yz * (x * yz - y * xz - z * xy) + y * z * xyz;
 }
 
-/* Where all three derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, they say
- * Q R = -a, P R = -b, P Q = -c. */
-void mcor_topology_find_saddles(const real* f, mcor_trilinear* t)
+/* Finds the saddles in the cell of the trilinear interpolant of corner values f, where all three
+ * derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, they say Q R = -a, P R = -b,
+ * P Q = -c. Returns their number. */
+int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
-  t->x = f[1] - f[0];
-  t->y = f[2] - f[0];
-  t->z = f[4] - f[0];
-  t->xy = f[3] - f[2] - t->x;
-  t->yz = f[6] - f[4] - t->y;
-  t->xz = f[5] - f[4] - t->x;
-  t->xyz = ((f[7] - f[6]) - (f[5] - f[4])) - ((f[3] - f[2]) - (f[1] - f[0]));
-  t->saddle_count = 0;
-  const real a = t->x * t->xyz - t->xy * t->xz, b = t->y * t->xyz - t->xy * t->yz,
-             c = t->z * t->xyz - t->yz * t->xz;
+  const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];
+  const real xy = f[3] - f[2] - x, yz = f[6] - f[4] - y, xz = f[5] - f[4] - x;
+  const real xyz = ((f[7] - f[6]) - (f[5] - f[4])) - ((f[3] - f[2]) - (f[1] - f[0]));
+  const real a = x * xyz - xy * xz, b = y * xyz - xy * yz, c = z * xyz - yz * xz;
   const bool some = a * b * c < 0;
   const real p = some ? sqrt(-b * c / a) : 0, q = some ? sqrt(-a * c / b) : 0,
              r = some ? sqrt(-a * b / c) : 0;
-  const real nx = mcor_topology_product(t->x, t->y, t->z, t->yz, t->xz, t->xy, t->xyz);
-  const real ny = mcor_topology_product(t->y, t->z, t->x, t->xz, t->xy, t->yz, t->xyz);
-  const real nz = mcor_topology_product(t->z, t->x, t->y, t->xy, t->yz, t->xz, t->xyz);
+  const real nx = mcor_topology_product(x, y, z, yz, xz, xy, xyz);
+  const real ny = mcor_topology_product(y, z, x, xz, xy, yz, xyz);
+  const real nz = mcor_topology_product(z, x, y, xy, yz, xz, xyz);
+  int count = 0;
   for (int sign = -1; some && sign <= 1; sign += 2)
   {
-    const real x = mcor_topology_root(sign * p, t->yz, t->xyz, nx, a);
-    const real y = mcor_topology_root(c > 0 ? -sign * q : sign * q, t->xz, t->xyz, ny, b);
-    const real z = mcor_topology_root(b > 0 ? -sign * r : sign * r, t->xy, t->xyz, nz, c);
-    if (x > 0 && y > 0 && z > 0)
+    const real u = mcor_topology_root(sign * p, yz, xyz, nx, a);
+    const real v = mcor_topology_root(c > 0 ? -sign * q : sign * q, xz, xyz, ny, b);
+    const real w = mcor_topology_root(b > 0 ? -sign * r : sign * r, xy, xyz, nz, c);
+    if (u > 0 && v > 0 && w > 0)
     {
-      t->saddle[t->saddle_count++] = (real4)(x, y, z, 0);
+      saddle[count++] = (real4)(u, v, w, 0);
     }
   }
+  return count;
 }
 
 /* Mean of the points where linear interpolation along the cell's edges is 0: between two loops. */
@@ -241,13 +231,13 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
     {
       f[c] /= largest;
     }
-    mcor_trilinear t;
-    mcor_topology_find_saddles(f, &t);
+    real4 saddle[2];
+    const int saddles = mcor_topology_find_saddles(f, saddle);
     const real4 middle = mcor_topology_middle(f);
     for (int i = 0; i < 2; ++i)
     {
       sample_node[to] = mcor_topology_node(bricks, slot, cell);
-      sample_offset[to++] = t.saddle_count > 0 ? t.saddle[min(i, t.saddle_count - 1)] : middle;
+      sample_offset[to++] = saddles > 0 ? saddle[min(i, saddles - 1)] : middle;
     }
   }
 }

@@ -4,14 +4,6 @@
 /* The way a cell is cut: by its case, and by the field's decisions on its faces and on tunnels
  * in it. */
 
-/* Returns the ambiguous faces across an axis, by their lowest node. corners: see
- * mcor_cell_corners. */
-ulong mcor_ambiguous_faces(const ulong* corners, int axis)
-{
-  const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
-  return (corners[0] ^ corners[du]) & (corners[0] ^ corners[dv]) & ~(corners[0] ^ corners[du | dv]);
-}
-
 /* Returns the Marching Cubes case of a cell: bit c is set if corner c is above. */
 int mcor_march_case(const ulong* corners, int cell)
 {

@@ -12,28 +12,31 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Returns the key of a block of a level. */
-ulong mcor_block_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
+/* Blocks and bricks are positions among those of their level, and the level (w). */
+
+/* Returns the key of a block. */
+ulong mcor_block_key(__global const mcor_rung* rungs, int4 block)
 {
-  __global const mcor_rung* rung = rungs + level;
-  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
+  __global const mcor_rung* rung = rungs + block.w;
+  return rung->base + ((ulong)block.z * rung->n[1] + block.y) * rung->n[0] + block.x;
 }
 
 /* Whether the block is on the lattice. */
-bool mcor_has_block(__global const mcor_rung* rungs, int level, int x, int y, int z)
+bool mcor_has_block(__global const mcor_rung* rungs, int4 block)
 {
-  __global const mcor_rung* rung = rungs + level;
-  return x >= 0 && y >= 0 && z >= 0 && x < rung->n[0] && y < rung->n[1] && z < rung->n[2];
+  __global const mcor_rung* rung = rungs + block.w;
+  return block.x >= 0 && block.y >= 0 && block.z >= 0 && block.x < rung->n[0] &&
+    block.y < rung->n[1] && block.z < rung->n[2];
 }
 
-/* Returns the index of a block of a level, or -1. */
-int mcor_find_block(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
+/* Returns the index of a block, or -1. */
+int mcor_find_block(MCOR_BLOCK_PARAMS, int4 block)
 {
-  if (!mcor_has_block(rungs, level, x, y, z))
+  if (!mcor_has_block(rungs, block))
   {
     return -1;
   }
-  const ulong key = mcor_block_key(rungs, level, x, y, z);
+  const ulong key = mcor_block_key(rungs, block);
   const ulong bucket = key >> block_shift;
   const int low = mcor_find_key(block_keys, block_buckets[bucket], block_buckets[bucket + 1], key);
   return low < block_count && block_keys[low] == key ? low : -1;
@@ -41,22 +44,31 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 
 #define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
-/* Returns the number of a brick, counted through the MCOR_BLOCK_BRICKS of each block, or -1 if
- * its block does not exist. */
-int mcor_brick_number(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
+/* Returns the block of a brick, and the brick's number among its MCOR_BLOCK_BRICKS. */
+int4 mcor_block_of_brick(int4 brick)
 {
-  const int block = mcor_find_block(MCOR_BLOCK_ARGS, level, x >> 3, y >> 3, z >> 3);
-  return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
+  return (int4)(brick.x >> 3, brick.y >> 3, brick.z >> 3, brick.w);
+}
+int mcor_place_in_block(int4 brick)
+{
+  return (brick.z & 7) * 64 + (brick.y & 7) * 8 + (brick.x & 7);
 }
 
-/* Returns the number of a brick beside the one with number `own`; mostly they share a block. x,
- * y, z: -1 to 1. */
-MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
+/* Returns the number of a brick, counted through the MCOR_BLOCK_BRICKS of each block, or -1 if
+ * its block does not exist. */
+int mcor_brick_number(MCOR_BLOCK_PARAMS, int4 brick)
 {
-  const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
-  return (bx | by | bz) >> 3 == 0
-    ? own + x + 8 * y + 64 * z
-    : mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x + x, brick.y + y, brick.z + z);
+  const int block = mcor_find_block(MCOR_BLOCK_ARGS, mcor_block_of_brick(brick));
+  return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + mcor_place_in_block(brick);
+}
+
+/* Returns the number of a brick a step, of -1 to 1 along each axis, from the one with number `own`;
+ * mostly they share a block. */
+MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int4 step)
+{
+  const int4 to = (brick & 7) + step;
+  return (to.x | to.y | to.z) >> 3 == 0 ? own + step.x + 8 * step.y + 64 * step.z
+                                        : mcor_brick_number(MCOR_BLOCK_ARGS, brick + step);
 }
 
 /* Whether the bit of the brick with number m is set. */
@@ -77,10 +89,9 @@ int mcor_slot_of_number(__global const uint* brick_bits, __global const int* bri
 }
 
 /* Returns the slot of a brick, or -1. */
-MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, int z)
+MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int4 brick)
 {
-  return mcor_slot_of_number(
-    brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, level, x, y, z));
+  return mcor_slot_of_number(brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, brick));
 }
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
@@ -91,7 +102,7 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, in
   const int has_leaves, __global const uint *leaves, __global const uint *beside
 #define MCOR_TREE_ARGS has_leaves, leaves, beside
 
-/* Returns the position of a block, in blocks of its level, and the level. */
+/* Returns the block with a key. */
 int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
 {
   int level = 0;
@@ -104,26 +115,20 @@ int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
   return (int4)((int)(number % nx), (int)(number / nx % ny), (int)(number / nx / ny), level);
 }
 
-/* Returns coordinates and level of brick `local_brick` of the block with a key. */
-int4 mcor_brick_in_block(__global const mcor_rung* rungs, ulong key, int local_brick)
-{
-  const int4 block = mcor_block_of_key(rungs, key);
-  return (int4)(block.x * 8 + (local_brick & 7), block.y * 8 + (local_brick >> 3 & 7),
-    block.z * 8 + (local_brick >> 6), block.w);
-}
-
-/* Returns coordinates and level of the brick with number m. */
+/* Returns the brick with number m. */
 MCOR_ONE_COPY int4 mcor_brick_of_number(
   __global const mcor_rung* rungs, __global const ulong* block_keys, int m)
 {
-  return mcor_brick_in_block(rungs, block_keys[m / MCOR_BLOCK_BRICKS], m % MCOR_BLOCK_BRICKS);
+  const int4 block = mcor_block_of_key(rungs, block_keys[m / MCOR_BLOCK_BRICKS]);
+  return (int4)(8 * block.x, 8 * block.y, 8 * block.z, block.w) +
+    (int4)(m & 7, m >> 3 & 7, m >> 6 & 7, 0);
 }
 
-/* Returns the key of a brick of a level. Sorted keys are in the order of slots. */
-ulong mcor_brick_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
+/* Returns the key of a brick. Sorted keys are in the order of slots. */
+ulong mcor_brick_key(__global const mcor_rung* rungs, int4 brick)
 {
-  return mcor_block_key(rungs, level, x >> 3, y >> 3, z >> 3) * MCOR_BLOCK_BRICKS +
-    (ulong)((x & 7) | (y & 7) << 3 | (z & 7) << 6);
+  return mcor_block_key(rungs, mcor_block_of_brick(brick)) * MCOR_BLOCK_BRICKS +
+    (ulong)mcor_place_in_block(brick);
 }
 
 /* Requests the brick with number m. Returns true if nothing had requested it before. The brick
@@ -175,11 +180,11 @@ __kernel void mcor_brick_neighbours(
 {
   MCOR_ITEM(slot, slot < brick_count);
   const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
   for (int d = 1; d < 8; ++d)
   {
-    const int other = mcor_slot_of_number(brick_bits, brick_base,
-      mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2));
+    const int other = mcor_slot_of_number(
+      brick_bits, brick_base, mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_up(d)));
     if (other >= 0)
     {
       neighbours[slot * 14L + d - 1] = other;
@@ -212,8 +217,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global ulong* valid, __global uint* node_value, __global uint* node_weight)
 {
   MCOR_ITEM(old, old < old_count);
-  const int4 brick = old_bricks[old];
-  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.w, brick.x, brick.y, brick.z);
+  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, old_bricks[old]);
   if (slot < 0)
   {
     return;

@@ -29,9 +29,11 @@
  * several accesses. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
+#define MCOR_STORE(v, i, p) ((p)[i] = (v))
 #define MCOR_LOAD_FIX(i, p) ((p)[i])
 #else
 #define MCOR_LOAD(i, p) MCOR_CAT(vload, MCOR_LANES)(0, (p) + (i))
+#define MCOR_STORE(v, i, p) MCOR_CAT(vstore, MCOR_LANES)(v, 0, (p) + (i))
 #if MCOR_FOR_CPU
 typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 #define MCOR_LOAD_FIX(i, p) (*(__global const mcor_loose_fixv*)((p) + (i)))
@@ -112,7 +114,7 @@ mcor_mask mcor_mask_of(fixv keep, int lanes)
 {
   mcor_mask mask;
   mask.lanes = lanes;
-  MCOR_CAT(vstore, MCOR_LANES)(keep & 1, 0, mask.keep);
+  MCOR_STORE(keep & 1, 0, mask.keep);
   return mask;
 }
 

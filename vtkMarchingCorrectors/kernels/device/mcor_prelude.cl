@@ -159,6 +159,17 @@ ulong mcor_from_last(int axis, ulong m, ulong last)
   return (m & ~(low << 3 * step)) << step | (last >> 3 * step & low);
 }
 
+/* Returns the step to neighbour d of the 7 up from a cell or brick (bits x, y, z; 0 is itself), and
+ * to d of the 27 around it. */
+int4 mcor_up(int d)
+{
+  return (int4)(d & 1, d >> 1 & 1, d >> 2, 0);
+}
+int4 mcor_around(int d)
+{
+  return (int4)(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1, 0);
+}
+
 /* Returns the index of the lowest bit set. */
 int mcor_ctz(ulong m)
 {

@@ -114,20 +114,13 @@ void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 
 /* One work-item = one group of points. iso: relative to A0 for the Shepard mean. Writes their
  * curvatures, two numbers each; per cube. */
-__kernel void mcor_curvature_points(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
+__kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* offset,
   const real iso, const int plane, __global real* curvature)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
+  MCOR_GROUP_ITEM(0);
   mcor_bent f = { 0, { 0, 0, 0 }, { 0, 0, 0, 0, 0, 0 } }, w = f, sum;
   realv at[3], u[3], mean, gauss;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_points_relative(&grid, &query, &points, at);
-  mcor_tile_init(&reach.tile);
   for (bool first = true; mcor_reach_next(&grid, &query, &points, iso, &reach, first); first = false)
   {
     for (int i = 0; i < MCOR_REACH_COUNT(&reach); ++i)

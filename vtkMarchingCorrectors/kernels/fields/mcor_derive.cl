@@ -77,33 +77,23 @@ fixv mcor_derive_own(
     own[lane] =
       points->index[lane] < 0 ? 0 : MCOR_CAT(as_, MCOR_FIX_NAME)(array[order[points->index[lane]]]);
   }
-#if MCOR_LANES == 1
-  return own[0];
-#else
-  return MCOR_CAT(vload, MCOR_LANES)(0, own);
-#endif
+  return MCOR_LOAD(0, own);
 }
 
 /* One work-item = one group of particles, numbered in `order` from `first` on. Reads arrays of
  * fixed-point numbers, `stride` long each, from number `first_array` on. Writes the sums of up
  * to MCOR_ARRAY_STEP of them. */
-__kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
+__kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first, __global const int* order, const int first_array, const int array_count,
   const int stride, __global const real* arrays, __global real* moments, __global real* slopes)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
+  MCOR_GROUP_ITEM(0);
   const int count = min(array_count - first_array, MCOR_ARRAY_STEP);
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
   mcor_derive_sums sums;
   mcor_values values;
   realv at[3];
   fixv own[MCOR_ARRAY_STEP];
   __global const real* array[MCOR_ARRAY_STEP];
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
@@ -116,7 +106,6 @@ __kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
       sums.moments[a][0] = sums.moments[a][1] = sums.moments[a][2] = 0;
     }
   }
-  mcor_tile_init(&reach.tile);
   for (bool begin = true; mcor_reach_next(&grid, &query, &points, 0, &reach, begin); begin = false)
   {
     mcor_values_load(&reach, array, &values);

@@ -107,22 +107,16 @@ void mcor_probe_add(const mcor_reach* reach, const mcor_points* points, const re
 /* One work-item = one group of points. Reads arrays from number `first_array` on. Writes the
  * gradients, per cube, of the weight sums and of the sums of weight times array, of up to
  * MCOR_ARRAY_STEP arrays. */
-__kernel void mcor_probe_gradients(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
+__kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first_array, __global real* weight_gradient, const int attribute_count,
   const int stride, __global const real* attributes, __global real* gradients)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
+  MCOR_GROUP_ITEM(0);
   const int count = min(attribute_count - first_array, MCOR_ARRAY_STEP);
   __global const real* arrays[MCOR_ARRAY_STEP];
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
   mcor_values values;
   mcor_probe_slopes slopes;
   realv at[3];
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
@@ -131,7 +125,6 @@ __kernel void mcor_probe_gradients(MCOR_GRID_PARAMS, const int group_count,
     slopes.sums[c][0] = slopes.sums[c][1] = slopes.sums[c][2] = 0;
   }
   slopes.weight[0] = slopes.weight[1] = slopes.weight[2] = 0;
-  mcor_tile_init(&reach.tile);
   for (bool first = true; mcor_reach_next(&grid, &query, &points, 0, &reach, first); first = false)
   {
     mcor_values_load(&reach, arrays, &values);

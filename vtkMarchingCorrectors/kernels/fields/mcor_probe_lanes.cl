@@ -20,30 +20,30 @@ bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mc
   real rest = 0;
   for (int a = 0; a < 3; ++a)
   {
-    real most = points->half_size[a][0];
+    real most = points->part[0].half_size[a];
     for (int part = 1; part < MCOR_PARTS; ++part)
     {
-      most = fmax(most, points->half_size[a][part]);
+      most = fmax(most, points->part[part].half_size[a]);
     }
-    rest += query->half_size[a] - most;
+    rest += query->box.half_size[a] - most;
   }
   return rest < MCOR_TILE_SHARE * grid->levels[0].support;
 }
 
-/* Fits groups from `begin` on, before `end`, into one cluster. Returns how many fit, one at
- * least, and the box around their points, in cubes from the first one's node. */
+/* Fits groups from `begin` on, before `end`, into one cluster, and a query to the box around their
+ * points, whose origin is a node in the middle. Returns how many fit, one at least. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
-  __global const int4* node, __global const real4* offset, real4* least, real4* most)
+  __global const int4* node, __global const real4* offset, mcor_query* query)
 {
   const real4 edge = (real4)(grid->edge[0], grid->edge[1], grid->edge[2], 0);
   const int4 base = node[groups[begin]];
   int4 low = base, high = base;
+  real4 least = offset[groups[begin]] * edge, most = least; /* in cubes from the first node */
   int g = begin;
-  *least = *most = offset[groups[begin]] * edge;
   for (; g < end; ++g)
   {
     int4 group_low = low, group_high = high;
-    real4 group_least = *least, group_most = *most;
+    real4 group_least = least, group_most = most;
     for (int i = groups[g]; i < groups[g + 1]; ++i)
     {
       const real4 at =
@@ -59,33 +59,26 @@ int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int be
     }
     low = group_low;
     high = group_high;
-    *least = group_least;
-    *most = group_most;
+    least = group_least;
+    most = group_most;
   }
-  return g - begin;
-}
-
-/* Fits a query to the box of a cluster whose first node is `base`. Its origin is a node in the
- * middle. */
-void mcor_cluster_place(
-  const mcor_grid* grid, int4 base, const real4 least, const real4 most, mcor_query* query)
-{
+  const int at[3] = { base.x, base.y, base.z };
   fix origin[3];
-  const fix first[3] = { (fix)base.x * grid->step[0], (fix)base.y * grid->step[1],
-    (fix)base.z * grid->step[2] };
   query->radius = -1;
   for (int a = 0; a < 3; ++a)
   {
-    const real low = MCOR_GET(least, a), high = MCOR_GET(most, a);
-    origin[a] = first[a] + (fix)floor((real)0.5 * (low + high) / grid->edge[a]) * grid->step[a];
-    query->low[a] = first[a] + (fix)floor(low * grid->units) - 1;
-    query->high[a] = first[a] + (fix)ceil(high * grid->units) + 1;
+    const fix first = (fix)at[a] * grid->step[a];
+    const real from = MCOR_GET(least, a), to = MCOR_GET(most, a);
+    origin[a] = first + (fix)floor((real)0.5 * (from + to) / grid->edge[a]) * grid->step[a];
+    query->low[a] = first + (fix)floor(from * grid->units) - 1;
+    query->high[a] = first + (fix)ceil(to * grid->units) + 1;
   }
   mcor_query_place(grid, query, origin);
+  return g - begin;
 }
 
-/* Finds middle and half size of the range of the lanes. */
-real2 mcor_lane_range(realv v)
+/* Makes a box's range along an axis that of the lanes. */
+void mcor_lane_range(realv v, int axis, mcor_span* box)
 {
 #if MCOR_LANES == 16
   const mcor_real8 low8 = fmin(v.lo, v.hi), high8 = fmax(v.lo, v.hi);
@@ -95,26 +88,8 @@ real2 mcor_lane_range(realv v)
   const real4 low4 = fmin(low8.lo, low8.hi), high4 = fmax(high8.lo, high8.hi);
   const real2 low2 = fmin(low4.lo, low4.hi), high2 = fmax(high4.lo, high4.hi);
   const real low = fmin(low2.x, low2.y), high = fmax(high2.x, high2.y);
-  return (real)0.5 * (real2)(low + high, high - low);
-}
-
-/* Lists the places in the tile of the particles that reach a group of points. at: made by
- * mcor_points_relative. Returns their number. */
-int mcor_cluster_list(
-  const mcor_tile* tile, const mcor_points* points, const realv at[3], int* list)
-{
-  const real2 x = mcor_lane_range(at[0] + points->ox), y = mcor_lane_range(at[1] + points->oy),
-              z = mcor_lane_range(at[2] + points->oz);
-  int count = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i),
-      MCOR_TILE(tile, z, i), MCOR_TILE(tile, inv_h, i), x.x, y.x, z.x, x.y, y.y, z.y, 1);
-    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
-    MCOR_PACK_INDEX(mask, i, list + count);
-    count += MCOR_MASK_COUNT(mask);
-  }
-  return count;
+  box->center[axis] = (real)0.5 * (low + high);
+  box->half_size[axis] = (real)0.5 * (high - low);
 }
 
 /* Values of the arrays at the particles of a tile. */
@@ -182,8 +157,12 @@ void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor
   const mcor_points* points = cluster->points + g;
   realv at[3], weight[MCOR_TILE_SIZE], *sums = cluster->sums[g], *weight_sum = cluster->weight + g;
   int list[MCOR_TILE_SIZE + 16];
+  mcor_span box;
   mcor_points_relative(grid, query, points, at);
-  const int count = mcor_cluster_list(tile, points, at, list);
+  mcor_lane_range(at[0] + points->ox, 0, &box);
+  mcor_lane_range(at[1] + points->oy, 1, &box);
+  mcor_lane_range(at[2] + points->oz, 2, &box);
+  const int count = mcor_tile_list(tile, &box, 1, list);
   const int step = arrays < MCOR_ATTRIBUTE_STEP ? min(arrays, 1) : MCOR_ATTRIBUTE_STEP;
 #define MCOR_CLUSTER_BEGIN(step)                                                                   \
   mcor_cluster_begin(                                                                              \
@@ -232,19 +211,17 @@ void mcor_cluster_sums(const mcor_grid* grid, mcor_query* query, mcor_tile* tile
 
 /* One work-item = MCOR_CLUSTER groups of points. Writes their weight sums, and the sums of weight
  * times array over the particles. */
-__kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
-  __global const int4* node, __global const real4* offset, __global real* weight_sum,
-  MCOR_ATTRIBUTE_PARAMS)
+__kernel void mcor_probe_sums(
+  MCOR_GROUP_PARAMS, __global const real4* offset, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;
   const int end = min((int)(get_global_id(0) + 1) * MCOR_CLUSTER, group_count);
   mcor_cluster cluster;
-  mcor_query query;
+  mcor_query query, wide; /* of a group, of a cluster */
   mcor_reach reach;
   for (int begin = get_global_id(0) * MCOR_CLUSTER; begin < end; begin += cluster.count)
   {
-    real4 least, most;
-    cluster.count = mcor_cluster_bound(&grid, groups, begin, end, node, offset, &least, &most);
+    cluster.count = mcor_cluster_bound(&grid, groups, begin, end, node, offset, &wide);
     mcor_group_load(
       &grid, groups[begin], groups[begin + 1], node, offset, 0, cluster.points, &query);
     if (!mcor_reach_is_tile(&grid, &query, cluster.points))
@@ -259,8 +236,7 @@ __kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global 
       mcor_group_points(
         &grid, groups[begin + g], groups[begin + g + 1], node, offset, cluster.points + g);
     }
-    mcor_cluster_place(&grid, node[groups[begin]], least, most, &query);
-    mcor_cluster_sums(&grid, &query, &reach.tile, &cluster, MCOR_ATTRIBUTE_ARGS);
+    mcor_cluster_sums(&grid, &wide, &reach.tile, &cluster, MCOR_ATTRIBUTE_ARGS);
     for (int g = 0; g < cluster.count; ++g)
     {
       mcor_probe_put(

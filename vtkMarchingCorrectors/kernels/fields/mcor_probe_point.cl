@@ -5,16 +5,9 @@
 
 /* One work-item = one group, which is one point. Writes its weight sum, and the sums of weight
  * times array over the particles. */
-__kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
-  __global const int4* node, __global const real4* offset, __global real* weight_sum,
-  MCOR_ATTRIBUTE_PARAMS)
+__kernel void mcor_probe_sums(
+  MCOR_GROUP_PARAMS, __global const real4* offset, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
-  mcor_tile_init(&reach.tile);
+  MCOR_GROUP_ITEM(0);
   mcor_probe_alone(&grid, &query, &points, &reach, weight_sum, MCOR_ATTRIBUTE_ARGS);
 }

@@ -170,12 +170,9 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
   __global real* factor, __global real* least, __global int* wanted)
 {
+  MCOR_ITEM(item, (long)item * MCOR_LANES < particle_count);
   const mcor_grid grid = MCOR_GRID;
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
+  const int begin = item * MCOR_LANES;
   const realv inv_h = MCOR_LOAD(begin, p_inv_h);
   const mcor_widen_at at = {
     { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
@@ -205,25 +202,15 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   }
 }
 
-/* An array of a work-item's own, with an element for each lane. */
-#if MCOR_LANES == 1
-#define MCOR_WIDEN_LANES(array) (array)[0]
-#else
-#define MCOR_WIDEN_LANES(array) MCOR_CAT(vload, MCOR_LANES)(0, array)
-#endif
-
 /* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their
  * factors, and to `outside` whether the iso value is above their sums with the widest one. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, __global const real* least, __global const real* sizes, const int listed,
   __global const int* list, __global real* factor, __global int* outside)
 {
+  MCOR_ITEM(item, (long)item * MCOR_LANES < listed);
   const mcor_grid grid = MCOR_GRID;
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= listed)
-  {
-    return;
-  }
+  const int begin = item * MCOR_LANES;
   const int count = min(MCOR_LANES, listed - begin);
   fix x[3][MCOR_LANES];
   real of_h[MCOR_LANES], share[MCOR_LANES], sum[MCOR_LANES];
@@ -237,12 +224,12 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
     share[lane] = factor[i];
     sum[lane] = least[i];
   }
-  const realv inv_h = MCOR_WIDEN_LANES(of_h);
+  const realv inv_h = MCOR_LOAD(0, of_h);
   const mcor_widen_at at = {
-    { MCOR_WIDEN_LANES(x[0]), MCOR_WIDEN_LANES(x[1]), MCOR_WIDEN_LANES(x[2]) }, inv_h,
+    { MCOR_LOAD(0, x[0]), MCOR_LOAD(0, x[1]), MCOR_LOAD(0, x[2]) }, inv_h,
     grid.unit * inv_h, count, plane
   };
-  realv needed = MCOR_WIDEN_LANES(sum), with_widest = 0;
+  realv needed = MCOR_LOAD(0, sum), with_widest = 0;
   mcor_widen_sum(
     &grid, sizes, &at, 1, &widest, MCOR_SUPPORT * widest, &with_widest, NULL);
   const realv sided = fmax((iso + margin - needed) / margin, (realv)0);
@@ -272,7 +259,7 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
       upper = level[l];
     }
   }
-  s = MCOR_FMA(s - 1, MCOR_WIDEN_LANES(share), (realv)1);
+  s = MCOR_FMA(s - 1, MCOR_LOAD(0, share), (realv)1);
   for (int lane = 0; lane < count; ++lane)
   {
     factor[list[begin + lane]] = MCOR_GET(s, lane);
@@ -305,12 +292,9 @@ bool mcor_widen_is_plain(
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global const real* factor,
   __global real* limited)
 {
+  MCOR_ITEM(item, (long)item * MCOR_LANES < particle_count);
   const mcor_grid grid = MCOR_GRID;
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
+  const int begin = item * MCOR_LANES;
   const int end = min(begin + MCOR_LANES, particle_count);
   const realv own = MCOR_LOAD(begin, factor);
   const fixv x[3] = { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py),
@@ -350,11 +334,7 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global con
   }
   const realv mean = weights > (realv)0 ? widest - lacks / weights : own;
   const realv result = fmax(fmin(own, mean), (realv)1);
-#if MCOR_LANES == 1
-  limited[begin] = result;
-#else
-  MCOR_CAT(vstore, MCOR_LANES)(result, 0, limited + begin);
-#endif
+  MCOR_STORE(result, begin, limited);
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
@@ -364,12 +344,9 @@ __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real wid
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)
 {
+  MCOR_ITEM(item, (long)item * MCOR_LANES < particle_count);
   const mcor_grid grid = MCOR_GRID;
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
+  const int begin = item * MCOR_LANES;
   const int count = min(MCOR_LANES, particle_count - begin);
   const realv s = MCOR_LOAD(begin, factor), inv_h = MCOR_LOAD(begin, p_inv_h), one = 1;
   fixv open = s > one && s < (realv)widest;

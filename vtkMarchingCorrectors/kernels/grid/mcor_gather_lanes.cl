@@ -43,21 +43,40 @@ void mcor_tile_init(mcor_tile* tile)
   tile->complete = false;
 }
 
-/* Whether particles at (x, y, z) are within `share` of their support from a box of half size
- * (hx, hy, hz) around (cx, cy, cz). The margin covers rounding: a particle kept in vain adds
- * exactly 0. */
-fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, real cz, real hx,
-  real hy, real hz, realv share)
+/* Whether particles at (x, y, z) are within `share` of their support from a box. The margin covers
+ * rounding: a particle kept in vain adds exactly 0. */
+fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box, realv share)
 {
-  const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
-  const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
-  const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
+  const realv dx = fmax(fabs(x - box->center[0]) - box->half_size[0], (realv)0);
+  const realv dy = fmax(fabs(y - box->center[1]) - box->half_size[1], (realv)0);
+  const realv dz = fmax(fabs(z - box->center[2]) - box->half_size[2], (realv)0);
 #if MCOR_TENSOR
   return fmax(dx, fmax(dy, dz)) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
 #else
   return mcor_square(dx, dy, dz) * inv_h * inv_h <
     share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
 #endif
+}
+
+/* Returns which of particles i, i + 1, ... of a tile are that near. */
+fixv mcor_tile_near(const mcor_tile* tile, int i, const mcor_span* box, realv share)
+{
+  return mcor_near_box(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
+    MCOR_TILE(tile, inv_h, i), box, share);
+}
+
+/* Lists the places in the tile of the particles that are that near. Returns their number. */
+int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int* list)
+{
+  int count = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const mcor_mask mask =
+      MCOR_MASK(mcor_tile_near(tile, i, box, share), min(MCOR_LANES, tile->count - i));
+    MCOR_PACK_INDEX(mask, i, list + count);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  return count;
 }
 
 /* Appends the particles of a mask to the tile, but not to its list. */
@@ -77,37 +96,6 @@ void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_
 #endif
 }
 
-/* Tests the remaining particles of the query's row, and appends those that reach its box to the
- * tile while there is room. Returns the new count. */
-int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
-{
-  const real unit = grid->unit;
-  const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
-  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
-  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
-  /* Particles count within their own support, or within the query's radius. */
-  const bool own = query->radius < 0;
-  const realv reach = own ? -query->radius : (real)1;
-  const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
-  int j = query->begin;
-  for (; j < query->end && count <= MCOR_TILE_SIZE - MCOR_LANES; j += MCOR_LANES)
-  {
-    const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - ox) * unit;
-    const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
-    const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
-    const realv inv_h = MCOR_LOAD(j, grid->inv_h) * grid->view_edge;
-    const fixv near =
-      mcor_tile_near(x, y, z, own ? inv_h : inv_radius, cx, cy, cz, hx, hy, hz, reach);
-    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));
-    MCOR_PACK_INDEX(mask, j, tile->list + count);
-    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_LOAD(j, grid->weight), MCOR_LOAD(j, grid->value),
-      MCOR_LOAD(j, grid->trim_weight), count, tile);
-    count += MCOR_MASK_COUNT(mask);
-  }
-  query->begin = min(j, query->end);
-  return count;
-}
-
 /* Fills the lanes beyond the end, which loads of MCOR_LANES particles see, with particles
  * without weight. */
 void mcor_tile_pad(mcor_tile* tile)
@@ -116,12 +104,20 @@ void mcor_tile_pad(mcor_tile* tile)
     tile->MCOR_TRIM_WEIGHT };
   for (int a = 0; a < 7; ++a)
   {
-    MCOR_CAT(vstore, MCOR_LANES)((realv)0, 0, arrays[a] + tile->count);
+    MCOR_STORE((realv)0, tile->count, arrays[a]);
   }
 }
 
+/* Fills a tile, while there is room, with the next particles that reach the query's box. */
 void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
 {
+  const real unit = grid->unit;
+  const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
+  const mcor_span box = query->box;
+  /* Particles count within their own support, or within the query's radius. */
+  const bool own = query->radius < 0;
+  const realv reach = own ? -query->radius : (real)1;
+  const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
   int count = 0;
   tile->delivered = false;
   while (count <= MCOR_TILE_SIZE - MCOR_LANES)
@@ -131,7 +127,21 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
       tile->delivered = true;
       break;
     }
-    count = mcor_tile_append(grid, query, count, tile);
+    int j = query->begin;
+    for (; j < query->end && count <= MCOR_TILE_SIZE - MCOR_LANES; j += MCOR_LANES)
+    {
+      const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - ox) * unit;
+      const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
+      const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
+      const realv inv_h = MCOR_LOAD(j, grid->inv_h) * grid->view_edge;
+      const fixv near = mcor_near_box(x, y, z, own ? inv_h : inv_radius, &box, reach);
+      const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));
+      MCOR_PACK_INDEX(mask, j, tile->list + count);
+      mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_LOAD(j, grid->weight), MCOR_LOAD(j, grid->value),
+        MCOR_LOAD(j, grid->trim_weight), count, tile);
+      count += MCOR_MASK_COUNT(mask);
+    }
+    query->begin = min(j, query->end);
   }
   tile->count = count;
   mcor_tile_pad(tile);
@@ -161,16 +171,15 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
  * that encloses this one's. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
-  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
-  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  const mcor_span box = query->box;
+  const real share = -query->radius;
   int count = 0;
   for (int i = 0; i < wide->count; i += MCOR_LANES)
   {
-    const realv x = MCOR_TILE(wide, x, i), y = MCOR_TILE(wide, y, i), z = MCOR_TILE(wide, z, i),
-                inv_h = MCOR_TILE(wide, inv_h, i);
-    const fixv near = mcor_tile_near(x, y, z, inv_h, cx, cy, cz, hx, hy, hz, -query->radius);
-    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, wide->count - i));
-    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_TILE(wide, weight, i), MCOR_TILE(wide, value, i),
+    const mcor_mask mask =
+      MCOR_MASK(mcor_tile_near(wide, i, &box, share), min(MCOR_LANES, wide->count - i));
+    mcor_tile_pack(&mask, MCOR_TILE(wide, x, i), MCOR_TILE(wide, y, i), MCOR_TILE(wide, z, i),
+      MCOR_TILE(wide, inv_h, i), MCOR_TILE(wide, weight, i), MCOR_TILE(wide, value, i),
       MCOR_TILE(wide, MCOR_TRIM_WEIGHT, i), count, tile);
     count += MCOR_MASK_COUNT(mask);
   }
@@ -235,17 +244,13 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   masks->longest = 0;
   for (int part = 0; part < MCOR_PARTS; ++part)
   {
-    const real cx = points->center[0][part], cy = points->center[1][part],
-               cz = points->center[2][part];
-    const real hx = points->half_size[0][part], hy = points->half_size[1][part],
-               hz = points->half_size[2][part];
+    const mcor_span box = points->part[part];
     int count = 0;
     for (int j = 0; j < masks->chunks; ++j)
     {
       const int i = j * MCOR_LANES;
-      const fixv near = mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y),
-        MCOR_LOAD(i, tile->z), MCOR_LOAD(i, tile->inv_h), cx, cy, cz, hx, hy, hz, 1);
-      const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
+      const mcor_mask mask =
+        MCOR_MASK(mcor_tile_near(tile, i, &box, 1), min(MCOR_LANES, tile->count - i));
       masks->mask[part][j] = mask;
       count += MCOR_MASK_COUNT(mask);
     }
@@ -269,7 +274,7 @@ void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
     }
     for (const real* end = packed[part] + masks->longest; next < end; next += MCOR_LANES)
     {
-      MCOR_CAT(vstore, MCOR_LANES)((realv)0, 0, next);
+      MCOR_STORE((realv)0, 0, next);
     }
   }
   for (int i = 0; i < masks->longest; i += MCOR_LANES, to += MCOR_PARTS * MCOR_LANES)
@@ -302,8 +307,8 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   MCOR_ALIGNED real term[MCOR_TILE_SIZE + MCOR_LANES];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    MCOR_CAT(vstore, MCOR_LANES)
-    (MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), 0, term + i);
+    MCOR_STORE(
+      MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), i, term);
   }
   mcor_reach_pack(&reach->masks, term, reach->term);
 #endif
@@ -359,40 +364,14 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes. They
- * are summed together, because a sum alone would wait for its last addition. weight: w_i in each
- * lane. */
+/* Adds sum w_i A_i over the particles of a reach for the first `step` attributes, a constant, of
+ * which `count` are there. One loop does all sums, because each sum alone would wait for its last
+ * addition. weight: w_i in each lane; made, and added to *weight_sum, if `make`, a constant. */
 #define MCOR_ATTRIBUTE_STEP 4
-void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes, const int stride,
-  int count, const realv* weight, realv sums[MCOR_ATTRIBUTE_STEP])
-{
-  real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
-  for (int c = 0; c < count; ++c)
-  {
-    mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
-  }
-  const real *v1 = values[count > 1], *v2 = values[count > 2 ? 2 : 0],
-             *v3 = values[count > 3 ? 3 : 0];
-  realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
-  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
-  {
-    s0 = MCOR_FMA(weight[i], MCOR_VALUE(values[0], i), s0);
-    s1 = MCOR_FMA(weight[i], MCOR_VALUE(v1, i), s1);
-    s2 = MCOR_FMA(weight[i], MCOR_VALUE(v2, i), s2);
-    s3 = MCOR_FMA(weight[i], MCOR_VALUE(v3, i), s3);
-  }
-  sums[0] = s0;
-  sums[1] = s1;
-  sums[2] = s2;
-  sums[3] = s3;
-}
-
-/* Does mcor_attribute_add for the first `step` arrays, a constant; also makes the weights and
- * adds them. One loop does all sums, because each sum alone would wait for its last addition. */
-__attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
+__attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,
-  int count, const int stride, __global const real* attributes, realv* weight, realv* weight_sum,
-  realv sums[MCOR_ATTRIBUTE_STEP])
+  const bool make, int count, const int stride, __global const real* attributes, realv* weight,
+  realv* weight_sum, realv* sums)
 {
   real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
   const real* from[MCOR_ATTRIBUTE_STEP];
@@ -409,12 +388,15 @@ __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
   mcor_points_relative(grid, query, points, at);
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    mcor_points_from(
-      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
-    const mcor_length length = mcor_length_of(d);
-    const realv k = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
-    weight[i] = MCOR_REACH(reach, weight, i) * k;
-    w += weight[i];
+    if (make)
+    {
+      mcor_points_from(
+        at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+      const mcor_length length = mcor_length_of(d);
+      const realv k = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+      weight[i] = MCOR_REACH(reach, weight, i) * k;
+      w += weight[i];
+    }
     for (int c = 0; c < step; ++c)
     {
       s[c] = MCOR_FMA(weight[i], MCOR_VALUE(from[c], i), s[c]);
@@ -427,9 +409,9 @@ __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
   }
 }
 
-#define MCOR_ATTRIBUTE_BEGIN(step)                                                                 \
-  mcor_attribute_begin(                                                                            \
-    grid, query, points, reach, step, count, stride, attributes, weight, &w, sums)
+#define MCOR_ATTRIBUTE_ADD(step, make, c)                                                          \
+  mcor_attribute_add(grid, query, points, reach, step, make, min(count - c, MCOR_ATTRIBUTE_STEP),  \
+    stride, attributes + c * (long)stride, weight, &w, sums + c)
 
 void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
@@ -447,14 +429,13 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
     }
     if (!known)
     {
-      count == 0     ? MCOR_ATTRIBUTE_BEGIN(0)
-        : count == 1 ? MCOR_ATTRIBUTE_BEGIN(1)
-                     : MCOR_ATTRIBUTE_BEGIN(MCOR_ATTRIBUTE_STEP);
+      count == 0     ? MCOR_ATTRIBUTE_ADD(0, true, 0)
+        : count == 1 ? MCOR_ATTRIBUTE_ADD(1, true, 0)
+                     : MCOR_ATTRIBUTE_ADD(MCOR_ATTRIBUTE_STEP, true, 0);
     }
     for (int c = known ? 0 : MCOR_ATTRIBUTE_STEP; c < count; c += MCOR_ATTRIBUTE_STEP)
     {
-      mcor_attribute_add(reach, attributes + c * (long)stride, stride,
-        min(count - c, MCOR_ATTRIBUTE_STEP), weight, sums + c);
+      MCOR_ATTRIBUTE_ADD(MCOR_ATTRIBUTE_STEP, false, c);
     }
   }
   *weight_sum = w;

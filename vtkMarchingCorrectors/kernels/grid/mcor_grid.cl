@@ -41,24 +41,12 @@ __kernel void mcor_grid_count(const int count, __global const ulong* keys, __glo
  * in all of this differ in their scalar at most, see mcor_grid_order_value. */
 bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
-  if (x[i] != x[j])
-  {
-    return x[i] < x[j];
-  }
-  if (y[i] != y[j])
-  {
-    return y[i] < y[j];
-  }
-  if (z[i] != z[j])
-  {
-    return z[i] < z[j];
-  }
-  if (inv_h[i] != inv_h[j])
-  {
-    return inv_h[i] < inv_h[j];
-  }
-  const real a = fabs(size[i]), b = fabs(size[j]);
-  return a != b ? a < b : size[i] > size[j];
+  return x[i] != x[j]                ? x[i] < x[j]
+    : y[i] != y[j]                   ? y[i] < y[j]
+    : z[i] != z[j]                   ? z[i] < z[j]
+    : inv_h[i] != inv_h[j]           ? inv_h[i] < inv_h[j]
+    : fabs(size[i]) != fabs(size[j]) ? fabs(size[i]) < fabs(size[j])
+                                     : size[i] > size[j];
 }
 
 /* Most elements of an insertion sort. */
@@ -408,12 +396,9 @@ realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int plane,
   const real one_sided, __global const real* mass, __global real* density)
 {
+  MCOR_ITEM(item, (long)item * MCOR_LANES < particle_count);
   const mcor_grid grid = MCOR_GRID;
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
+  const int begin = item * MCOR_LANES;
   const int end = min(begin + MCOR_LANES, particle_count);
   const fixv x[3] = { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py),
     MCOR_LOAD_FIX(begin, pz) };
@@ -446,37 +431,21 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int 
 #else
   const realv result = sums.mass * mcor_density_factor(&sums, one_sided);
 #endif
-#if MCOR_LANES == 1
-  density[begin] = result;
-#else
-  MCOR_CAT(vstore, MCOR_LANES)(result, 0, density + begin);
-#endif
+  MCOR_STORE(result, begin, density);
 }
 
 /* Least density, as a factor of what a particle itself adds to it. Below it, a computed volume
  * would be huge, or negative, which kernels with negative lobes can cause. */
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
-/* Box in which the field is evaluated, in cubes. */
-#define MCOR_EVALUATED_PARAMS                                                                      \
-  const real low_x, const real low_y, const real low_z, const real high_x, const real high_y,      \
-    const real high_z
-
-/* Whether a particle, with `support` around x, reaches that box, or nearly so. */
-bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
-{
-  const real far = support * (real)1.001f + (real)0.01f;
-  return x[0] + far > low_x && x[0] - far < high_x && x[1] + far > low_y && x[1] - far < high_y &&
-    x[2] + far > low_z && x[2] - far < high_z;
-}
-
 /* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled
  * h)^3: V = m / (sum m W), so norm and unscaled h^3 cancel. Writes to `without` the first
- * particle whose density is too low. A particle outside of the box may lack neighbours; it is
- * not reported, because it reaches nothing. */
+ * particle whose density is too low. A particle whose support does not even nearly reach the box
+ * in which the field is evaluated, in cubes, may lack neighbours; it is not reported. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const real* density, const real unit, __global const fix* px, __global const fix* py,
-  __global const fix* pz, __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
+  __global const fix* pz, __global const real* inv_h, const real low_x, const real low_y,
+  const real low_z, const real high_x, const real high_y, const real high_z, __global real* weight,
   __global real* trim_weight, __global int* without)
 {
   MCOR_ITEM(i, i < count);
@@ -484,8 +453,10 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
   real sum = density[i];
   if (!(sum > mass * MCOR_LEAST_DENSITY))
   {
-    const real x[3] = { (real)px[i] * unit, (real)py[i] * unit, (real)pz[i] * unit };
-    if (mcor_grid_reaches(x, MCOR_SUPPORT / inv_h[i], low_x, low_y, low_z, high_x, high_y, high_z))
+    const real x = (real)px[i] * unit, y = (real)py[i] * unit, z = (real)pz[i] * unit;
+    const real far = MCOR_SUPPORT / inv_h[i] * (real)1.001f + (real)0.01f;
+    if (x + far > low_x && x - far < high_x && y + far > low_y && y - far < high_y &&
+      z + far > low_z && z - far < high_z)
     {
       atomic_min(without, order[i]);
     }

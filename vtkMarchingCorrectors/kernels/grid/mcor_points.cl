@@ -23,15 +23,9 @@ typedef struct
   int index[MCOR_LANES]; /* number of each lane's point; -1 if a lane repeats another one */
   fixv x, y, z;
   realv ox, oy, oz;
-  /* The box of each part, in cubes from the query's origin. */
-  real center[3][MCOR_PARTS], half_size[3][MCOR_PARTS];
+  mcor_span part[MCOR_PARTS]; /* the box of each part */
 } mcor_points;
 #endif
-
-bool mcor_same_brick(int4 a, int4 b)
-{
-  return a.x >> 2 == b.x >> 2 && a.y >> 2 == b.y >> 2 && a.z >> 2 == b.z >> 2;
-}
 
 /* State of a walk through successive points. A part holds up to MCOR_PART points of one brick. */
 typedef struct
@@ -52,7 +46,9 @@ bool mcor_group_fits(int4 extent)
 bool mcor_group_add(mcor_grouping* grouping, int4 before, int4 node)
 {
   const int4 low = min(grouping->low, node), high = max(grouping->high, node);
-  const bool new_part = grouping->size == MCOR_PART || !mcor_same_brick(before, node);
+  const int4 brick = node >> 2, brick_before = before >> 2;
+  const bool new_part = grouping->size == MCOR_PART || brick.x != brick_before.x ||
+    brick.y != brick_before.y || brick.z != brick_before.z;
   if (grouping->part + new_part >= MCOR_PARTS || !mcor_group_fits(high - low))
   {
     return false;
@@ -91,10 +87,12 @@ __kernel void mcor_group_count(
 }
 
 #else
-/* Gives the points of a group to lanes. from: the point to load in each lane. */
-void mcor_points_place(
-  __global const int4* node, int begin, int end, mcor_points* points, int from[MCOR_LANES])
+/* Gives the points of a group to lanes, and loads their nodes. from: the point to load in each
+ * lane. */
+void mcor_points_load(const mcor_grid* grid, __global const int4* node, int begin, int end,
+  mcor_points* points, int from[MCOR_LANES])
 {
+  fix n[3][MCOR_LANES];
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     points->index[lane] = -1;
@@ -112,16 +110,6 @@ void mcor_points_place(
     from[lane] = points->index[lane] >= 0 ? points->index[lane]
       : part_first >= 0                   ? part_first
                                           : begin;
-  }
-}
-
-/* Loads the nodes of a group's points. */
-void mcor_points_load(
-  const mcor_grid* grid, __global const int4* node, const int from[MCOR_LANES], mcor_points* points)
-{
-  fix n[3][MCOR_LANES];
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
     const int4 p = node[from[lane]];
     n[0][lane] = (fix)p.x * grid->step[0];
     n[1][lane] = (fix)p.y * grid->step[1];
@@ -162,8 +150,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
         last = fmax(last, MCOR_GET(end, lane));
       }
 #endif
-      points->center[a][part] = (real)0.5 * (first + last);
-      points->half_size[a][part] = (real)0.5 * (last - first);
+      points->part[part].center[a] = (real)0.5 * (first + last);
+      points->part[part].half_size[a] = (real)0.5 * (last - first);
       least = fmin(least, first);
       most = fmax(most, last);
     }
@@ -174,7 +162,7 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
     query->high[a] = some + (fix)ceil(most * grid->units) + 1;
     for (int part = 0; part < MCOR_PARTS; ++part)
     {
-      points->center[a][part] -= middle;
+      points->part[part].center[a] -= middle;
     }
   }
   mcor_query_place(grid, query, origin);
@@ -195,8 +183,7 @@ void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const
   __global const real4* offset, mcor_points* points)
 {
   int from[MCOR_LANES];
-  mcor_points_place(node, begin, end, points, from);
-  mcor_points_load(grid, node, from, points);
+  mcor_points_load(grid, node, begin, end, points, from);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real4 o = offset[from[lane]];
@@ -215,6 +202,18 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   const realv high[3] = { points->ox + margin, points->oy + margin, points->oz + margin };
   mcor_points_bound(grid, low, high, points, query);
 }
+
+/* Parameters and first lines of kernels of which one work-item = one group of points. */
+#define MCOR_GROUP_PARAMS                                                                          \
+  MCOR_GRID_PARAMS, const int group_count, __global const int *groups, __global const int4 *node
+#define MCOR_GROUP_ITEM(margin)                                                                    \
+  MCOR_ITEM(group, group < group_count);                                                           \
+  const mcor_grid grid = MCOR_GRID;                                                                \
+  mcor_points points;                                                                              \
+  mcor_query query;                                                                                \
+  mcor_reach reach;                                                                                \
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, margin, &points, &query); \
+  mcor_tile_init(&reach.tile)
 
 /* Finds the points' nodes from the query's origin, as the particles of a tile count from it. */
 void mcor_points_relative(

@@ -59,12 +59,18 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
   return grid->cell_begins[mcor_find_key(grid->cell_keys, low, grid->buckets[bucket + 1], key)];
 }
 
+/* A box, in cubes from a query's origin. */
+typedef struct
+{
+  real center[3], half_size[3];
+} mcor_span;
+
 /* All particles that may reach the box [low, high], row by row of search cells. */
 typedef struct
 {
   fix low[3], high[3];
-  fix origin[3];                /* positions in a tile count from here */
-  real center[3], half_size[3]; /* the box, in cubes from the origin */
+  fix origin[3]; /* positions in a tile count from here */
+  mcor_span box; /* the same box */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
   /* The current level, in fixed-point units: its cells; where the first one begins; how far
    * rounding may have moved that; reach; squared distance of row z. */
@@ -93,43 +99,36 @@ fix mcor_query_beyond(fix x, fix reach)
   return min(x, most - reach) + reach;
 }
 
-/* Sets the part of a query that depends on the level. Returns false if the level has no cell in
- * reach. */
-bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
-{
-  __global const mcor_level* level = grid->levels + query->level;
-  const float support = query->radius >= 0
-    ? query->radius
-    : -query->radius * (level->support / (float)grid->view_edge);
-  const float far = ceil(support * (float)grid->units) + 1;
-  const fix reach = mcor_query_reach(far);
-  query->reach2 = far * far;
-  bool some = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    query->cell_size[a] = 1 / level->inv_cell[a];
-    query->first_cell[a] = (float)level->side[a] - (float)level->period[a];
-    query->slack[a] = 1 + 1e-6f * (float)level->period[a];
-    query->first[a] = max(mcor_cell_of(level, a, query->low[a] - reach), 0);
-    query->last[a] =
-      min(mcor_cell_of(level, a, mcor_query_beyond(query->high[a], reach)), level->cells[a] - 1);
-    some = some && query->first[a] <= query->last[a];
-  }
-  query->y = query->last[1]; /* as if the row before the first one had just ended */
-  query->z = query->first[2] - 1;
-  query->has_many_rows =
-    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) >
-    MCOR_MANY_ROWS(grid);
-  return some;
-}
-
-/* Moves to the first level from `level` on that has cells in reach. */
-bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int level)
+/* Moves to the first level from number `next` on that has cells in reach. */
+bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int next)
 {
   query->begin = query->end = 0;
-  for (query->level = level; query->level < grid->level_count; ++query->level)
+  for (query->level = next; query->level < grid->level_count; ++query->level)
   {
-    if (mcor_query_level(grid, query))
+    __global const mcor_level* level = grid->levels + query->level;
+    const float support = query->radius >= 0
+      ? query->radius
+      : -query->radius * (level->support / (float)grid->view_edge);
+    const float far = ceil(support * (float)grid->units) + 1;
+    const fix reach = mcor_query_reach(far);
+    bool some = true;
+    query->reach2 = far * far;
+    for (int a = 0; a < 3; ++a)
+    {
+      query->cell_size[a] = 1 / level->inv_cell[a];
+      query->first_cell[a] = (float)level->side[a] - (float)level->period[a];
+      query->slack[a] = 1 + 1e-6f * (float)level->period[a];
+      query->first[a] = max(mcor_cell_of(level, a, query->low[a] - reach), 0);
+      query->last[a] =
+        min(mcor_cell_of(level, a, mcor_query_beyond(query->high[a], reach)), level->cells[a] - 1);
+      some = some && query->first[a] <= query->last[a];
+    }
+    query->y = query->last[1]; /* as if the row before the first one had just ended */
+    query->z = query->first[2] - 1;
+    query->has_many_rows =
+      (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) >
+      MCOR_MANY_ROWS(grid);
+    if (some)
     {
       return true;
     }
@@ -143,8 +142,8 @@ void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin
   for (int a = 0; a < 3; ++a)
   {
     query->origin[a] = origin[a];
-    query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
-    query->center[a] = (real)(query->low[a] - origin[a]) * grid->unit + query->half_size[a];
+    query->box.half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
+    query->box.center[a] = (real)(query->low[a] - origin[a]) * grid->unit + query->box.half_size[a];
   }
 }
 

@@ -28,35 +28,6 @@ __kernel void mcor_plane_squares(const int count, __global ulong* cells)
   cells[i] &= MCOR_PLANE_MASK;
 }
 
-/* Returns the corners of a square that are above: bits 0..3 (0, 0), (1, 0), (0, 1), (1, 1). m:
- * masks of its brick's cells. */
-int mcor_plane_case(const ulong* corners, int cell)
-{
-  int above = 0;
-  for (int c = 0; c < 4; ++c)
-  {
-    above |= (int)(corners[c] >> cell & 1) << c;
-  }
-  return above;
-}
-
-/* Returns the number of lines in a square that has some. */
-int mcor_plane_count(const ulong* corners, int cell)
-{
-  const int above = mcor_plane_case(corners, cell);
-  return above == 6 || above == 9 ? 2 : 1;
-}
-
-/* Makes masks of the squares beside edges along an axis, as mcor_cell_around does for cells. A
- * square counts on both the upper and the lower side of the plane. */
-void mcor_plane_around(int axis, ulong* q)
-{
-  q[0] &= axis == 2 ? 0 : MCOR_PLANE_MASK;
-  q[1] &= axis == 2 ? 0 : MCOR_PLANE_MASK;
-  q[2] = q[0];
-  q[3] = q[1];
-}
-
 /* The nodes around a square, in the order that keeps the square on the left. Bits as in
  * mcor_adaptive_cell.h. */
 typedef struct
@@ -140,7 +111,7 @@ MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mco
   mcor_adaptive_nodes_of nodes = { 0, 0, true };
   if (is_plain)
   {
-    nodes.above = mcor_leaf_corner_nodes(mcor_plane_case(corners, cell));
+    nodes.above = mcor_leaf_corner_nodes(mcor_march_case(corners, cell) & 15);
   }
   else
   {

@@ -42,17 +42,10 @@ MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query
 
 #if MCOR_OF_FIELD
 /* One work-item = one group of points. Writes the means there. */
-__kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
-  MCOR_ATTRIBUTE_PARAMS)
+__kernel void mcor_attribute_means(
+  MCOR_GROUP_PARAMS, __global const real4* offset, MCOR_ATTRIBUTE_PARAMS)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
-  mcor_tile_init(&reach.tile);
+  MCOR_GROUP_ITEM(0);
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
@@ -89,15 +82,10 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
  * particles that reach the points; if smoothing lengths differ, particles that do not reach them
  * may be nearer. With a very low iso value of the weight, no particle may reach a point; one
  * then reaches an end of its lattice edge. */
-__kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
+__kernel void mcor_attribute_nearest(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  MCOR_GROUP_ITEM(0);
   realv least = MAXFLOAT;
   fixv index = -1;
   mcor_attribute_nearer(&grid, &query, &points, &least, &index);

@@ -13,12 +13,6 @@
  * in its symmetric part: about the identity where particles surround x, singular where they do
  * not. */
 
-/* The eigenvalue and, if asked for, its gradient; per cube. */
-typedef struct
-{
-  realv value, gx, gy, gz;
-} mcor_boundary_at;
-
 /* A symmetric matrix. */
 typedef struct
 {
@@ -120,12 +114,14 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
     (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
 }
 
-/* Makes M at all points, over the particles of the trimming weight. */
-void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
-  const mcor_points* points, mcor_symmetric* m)
+/* Finds the eigenvalue at all points and, if asked for, its gradient, which is e . (dM/dx_k) e, with e its unit
+ * eigenvector. The gradient is useless where the two smallest coincide. plane: in two dimensions, uses the
+ * matrix of x and y. */
+void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  const mcor_points* points, bool plane, bool want_gradient, mcor_quantity* boundary)
 {
-  realv at[3], u[3], along[3], slope;
-  m->xx = m->yy = m->zz = m->xy = m->yz = m->zx = 0;
+  mcor_symmetric m = { 0, 0, 0, 0, 0, 0 };
+  realv at[3], e[3], u[3], g[3], d[3], slope, sum[3] = { 0, 0, 0 };
   mcor_points_relative(grid, query, points, at);
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
@@ -134,33 +130,21 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
       mcor_points_from(
         at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
       const mcor_length length = mcor_length_of(u);
-      mcor_weight_gradient(u, &length, MCOR_EACH(tile, inv_h, i), &slope, along);
+      mcor_weight_gradient(u, &length, MCOR_EACH(tile, inv_h, i), &slope, g);
       const realv v = MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i) * slope, half_v = (real)0.5 * v;
-      m->xx = MCOR_FMA(-v, u[0] * along[0], m->xx);
-      m->yy = MCOR_FMA(-v, u[1] * along[1], m->yy);
-      m->zz = MCOR_FMA(-v, u[2] * along[2], m->zz);
-      m->xy = MCOR_FMA(-half_v, MCOR_FMA(u[0], along[1], u[1] * along[0]), m->xy);
-      m->yz = MCOR_FMA(-half_v, MCOR_FMA(u[1], along[2], u[2] * along[1]), m->yz);
-      m->zx = MCOR_FMA(-half_v, MCOR_FMA(u[2], along[0], u[0] * along[2]), m->zx);
+      m.xx = MCOR_FMA(-v, u[0] * g[0], m.xx);
+      m.yy = MCOR_FMA(-v, u[1] * g[1], m.yy);
+      m.zz = MCOR_FMA(-v, u[2] * g[2], m.zz);
+      m.xy = MCOR_FMA(-half_v, MCOR_FMA(u[0], g[1], u[1] * g[0]), m.xy);
+      m.yz = MCOR_FMA(-half_v, MCOR_FMA(u[1], g[2], u[2] * g[1]), m.yz);
+      m.zx = MCOR_FMA(-half_v, MCOR_FMA(u[2], g[0], u[0] * g[2]), m.zx);
     }
   }
-}
-
-/* Evaluates at all points. The gradient of an eigenvalue is e . (dM/dx_k) e, with e its unit
- * eigenvector; it is useless where the two smallest coincide. plane: in two dimensions, uses the
- * matrix of x and y. */
-void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
-  const mcor_points* points, bool plane, bool want_gradient, mcor_boundary_at* boundary)
-{
-  mcor_symmetric m;
-  realv at[3], e[3], u[3], g[3], d[3], sum[3] = { 0, 0, 0 };
-  mcor_boundary_matrix(grid, query, tile, points, &m);
   if (plane) /* excludes the third axis: the smallest is one of the two of the plane */
   {
     m.zz = (real)4 * (fabs(m.xx) + fabs(m.yy) + (real)1);
   }
   boundary->value = mcor_eigen_smallest(&m, e);
-  mcor_points_relative(grid, query, points, at);
   for (bool first = true; want_gradient && mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
@@ -176,25 +160,19 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
       }
     }
   }
-  boundary->gx = sum[0];
-  boundary->gy = sum[1];
-  boundary->gz = sum[2];
+  for (int a = 0; a < 3; ++a)
+  {
+    boundary->gradient[a] = sum[a];
+  }
 }
 
 /* One work-item = one group of points. Writes their boundary eigenvalues. */
-__kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, __global const real4* offset,
-  const int plane, __global real* eigenvalue)
+__kernel void mcor_boundary_points(
+  MCOR_GROUP_PARAMS, __global const real4* offset, const int plane, __global real* eigenvalue)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_tile tile;
-  mcor_boundary_at boundary;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
-  mcor_tile_init(&tile);
-  mcor_evaluate_boundary(&grid, &query, &tile, &points, plane, false, &boundary);
+  MCOR_GROUP_ITEM(0);
+  mcor_quantity boundary;
+  mcor_evaluate_boundary(&grid, &query, &reach.tile, &points, plane, false, &boundary);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     if (points.index[lane] >= 0)

@@ -4,18 +4,11 @@
 /* The field at points that no edge has: of caps, and where it decides on the topology. */
 
 /* One work-item = one group of points. Writes value, gradient, weight and attributes there. */
-__kernel void mcor_field_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
-  __global const int4* node, const real iso, __global real4* offset, __global real* value,
-  __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
+__kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real4* offset,
+  __global real* value, __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
+  MCOR_GROUP_ITEM(0);
   mcor_field_at at;
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
-  mcor_tile_init(&reach.tile);
   mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
   if (attribute_count > 0)
   {

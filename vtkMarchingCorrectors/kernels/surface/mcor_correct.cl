@@ -53,15 +53,11 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* p
 {
   offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
     MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
-  value[v] = MCOR_GET(at->value, lane);
-#if MCOR_SOLIDS
-  const real fluid = MCOR_GET(at->fluid, lane);
-#else
-  const real fluid = 0;
-#endif
+  value[v] = MCOR_GET(at->field.value, lane);
   gradient[v] =
-    (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), fluid);
-  weight[v] = MCOR_GET(at->weight, lane);
+    (real4)(MCOR_GET(at->field.gradient[0], lane), MCOR_GET(at->field.gradient[1], lane),
+      MCOR_GET(at->field.gradient[2], lane), MCOR_SOLIDS ? MCOR_GET(at->fluid.value, lane) : 0);
+  weight[v] = MCOR_GET(at->weight.value, lane);
 }
 
 /* Required accuracy along the edge. With a small gradient, a small residual alone may be far
@@ -96,8 +92,7 @@ MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* gr
   mcor_points* points)
 {
   int from[MCOR_LANES];
-  mcor_points_place(vertex_edge, groups[group], groups[group + 1], points, from);
-  mcor_points_load(grid, vertex_edge, from, points);
+  mcor_points_load(grid, vertex_edge, groups[group], groups[group + 1], points, from);
   edges->lines = false;
   edges->x = edges->y = edges->z = edges->slope = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
@@ -122,6 +117,13 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
   mcor_points_bound(grid, from, to, points, query);
 }
 
+/* Returns the slope of the field along the edges. */
+realv mcor_edges_slope(const mcor_edges* e, const mcor_field_at* at)
+{
+  const realv* g = at->field.gradient;
+  return g[0] * e->ax + g[1] * e->ay + g[2] * e->az;
+}
+
 /* Evaluates at the starts of lines, and makes them along the gradient, towards the iso value. */
 void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int group,
   __global const int4* node, __global const real4* offset, real iso, mcor_edges* lines,
@@ -131,13 +133,14 @@ void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int grou
     grid, groups[group], groups[group + 1], node, offset, MCOR_LINE_SLACK, points, query);
   mcor_tile_init(&reach->tile);
   mcor_evaluate(grid, query, reach, points, iso, at);
-  const realv most = fmax(fmax(fabs(at->gx), fabs(at->gy)), fabs(at->gz));
+  const realv* g = at->field.gradient;
+  const realv most = fmax(fmax(fabs(g[0]), fabs(g[1])), fabs(g[2]));
   const realv inv = (realv)1 / (most > 0 ? most : (realv)1);
-  const realv x = at->gx * inv, y = at->gy * inv, z = at->gz * inv;
+  const realv x = g[0] * inv, y = g[1] * inv, z = g[2] * inv;
   const realv length = mcor_rsqrt(mcor_square(x, y, z));
-  const realv scale = at->value < 0 ? length : -length;
+  const realv scale = at->field.value < 0 ? length : -length;
   lines->lines = true;
-  lines->v0 = at->value;
+  lines->v0 = at->field.value;
   lines->v1 = 0;
   lines->ax = x * scale;
   lines->ay = y * scale;
@@ -145,23 +148,7 @@ void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int grou
   lines->x = points->ox;
   lines->y = points->oy;
   lines->z = points->oz;
-  lines->slope = at->gx * lines->ax + at->gy * lines->ay + at->gz * lines->az;
-}
-
-/* Returns a quantity with the sign of field minus iso value: the sum of the terms against the
- * iso value. It differs in sign only at a mean's pole, where a kernel with negative lobes lets
- * the weight pass 0. Between nodes of a positive weight, it is this quantity that passes 0. */
-realv mcor_correct_side(const mcor_field_at* at)
-{
-#if MCOR_FIELD == 0 && MCOR_TENSOR
-#if MCOR_SOLIDS
-  return at->fluid < 0 ? -at->value : at->value;
-#else
-  return at->weight < 0 ? -at->value : at->value;
-#endif
-#else
-  return at->value;
-#endif
+  lines->slope = mcor_edges_slope(lines, at);
 }
 
 /* Returns how close to the iso value a vertex must be, where a small residual alone may be far
@@ -198,23 +185,26 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     points->oz = e->z + *t * e->az;
     mcor_evaluate(grid, query, reach, points, iso, at);
     *evaluations += active ? (fixv)1 : (fixv)0;
-    const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
-    const realv error = fabs(at->value);
+    const realv slope = mcor_edges_slope(e, at), value = at->field.value, error = fabs(value);
     active = active && high - low > MCOR_EDGE_RESOLUTION &&
       (error > (real)0.5 * tolerance || error > mcor_correct_near(slope, iso));
     if (i >= limit || !MCOR_ANY(active))
     {
       return;
     }
-    const realv side = mcor_correct_side(at);
+    /* The sum of the terms against the iso value. It differs in sign only at a mean's pole, where a
+     * kernel with negative lobes lets the weight pass 0. Between nodes of a positive weight, it is
+     * this quantity that passes 0. */
+    const realv side =
+      MCOR_FIELD == 0 && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
     low = before ? *t : low;
     high = before ? high : *t;
     realv next = i == 0 && !e->lines
-      ? mcor_correct_first(e->v0, e->v1, *t, at->value, slope)
-      : mcor_correct_next(*t, at->value, slope, last_t - *t, last_value, last_slope);
+      ? mcor_correct_first(e->v0, e->v1, *t, value, slope)
+      : mcor_correct_next(*t, value, slope, last_t - *t, last_value, last_slope);
     last_t = *t;
-    last_value = at->value;
+    last_value = value;
     last_slope = slope;
     /* Newton may creep if the field has a kink or no slope: from the 6th step on, every other
      * step halves the bracket. */
@@ -268,8 +258,8 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     &grid, &edges, t, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count);
   if (lines)
   {
-    const realv slope = at.gx * edges.ax + at.gy * edges.ay + at.gz * edges.az;
-    missed = fabs(at.value) > fmax(mcor_correct_near(slope, iso), (realv)tolerance);
+    const realv near = mcor_correct_near(mcor_edges_slope(&edges, &at), iso);
+    missed = fabs(at.field.value) > fmax(near, (realv)tolerance);
     missed = limit > 0 ? missed : (fixv)0;
     count += 1;
   }

@@ -3,24 +3,33 @@
 
 /* Field and gradient at MCOR_LANES points at a time. */
 
-/* Field minus iso value, its gradient, and the trimming weight with its gradient; per cube. */
+/* A quantity at points, and its gradient; per cube. */
 typedef struct
 {
-  realv value, gx, gy, gz;
-  realv weight, wx, wy, wz;
-#if MCOR_SOLIDS
-  realv fluid, fx, fy, fz; /* the fluid's part of the weight */
-#endif
+  realv value, gradient[3];
+} mcor_quantity;
+
+/* Field minus iso value, the trimming weight, and the fluid's part of it. */
+typedef struct
+{
+  mcor_quantity field, weight, fluid;
 } mcor_field_at;
+
+/* Adds m times a kernel's value k, and its gradient slope * along. */
+void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor_quantity* sum)
+{
+  const realv ms = m * slope;
+  sum->value = MCOR_FMA(m, k, sum->value);
+  sum->gradient[0] = MCOR_FMA(ms, along[0], sum->gradient[0]);
+  sum->gradient[1] = MCOR_FMA(ms, along[1], sum->gradient[1]);
+  sum->gradient[2] = MCOR_FMA(ms, along[2], sum->gradient[2]);
+}
 
 /* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, real iso, mcor_field_at* at)
 {
-  realv s = 0, sx = 0, sy = 0, sz = 0, w = 0, wx = 0, wy = 0, wz = 0;
-#if MCOR_SOLIDS
-  realv t = 0, tx = 0, ty = 0, tz = 0;
-#endif
+  mcor_quantity s = { 0, { 0, 0, 0 } }, w = s, t = s;
   realv at_node[3], d[3], along[3], slope;
   mcor_points_relative(grid, query, points, at_node);
   for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
@@ -42,25 +51,13 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
           MCOR_REACH(reach, z, i), d);
         const realv k =
           mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
-        const realv m = MCOR_REACH(reach, weight, i), ms = m * slope;
         MCOR_REACH_KEEP(reach, i, k);
 #if MCOR_FIELD != 2
-        const realv c = MCOR_REACH_TERM(reach, i, iso), cs = c * slope;
-        s = MCOR_FMA(c, k, s);
-        sx = MCOR_FMA(cs, along[0], sx);
-        sy = MCOR_FMA(cs, along[1], sy);
-        sz = MCOR_FMA(cs, along[2], sz);
+        mcor_quantity_add(MCOR_REACH_TERM(reach, i, iso), k, slope, along, &s);
 #endif
-        w = MCOR_FMA(m, k, w);
-        wx = MCOR_FMA(ms, along[0], wx);
-        wy = MCOR_FMA(ms, along[1], wy);
-        wz = MCOR_FMA(ms, along[2], wz);
+        mcor_quantity_add(MCOR_REACH(reach, weight, i), k, slope, along, &w);
 #if MCOR_SOLIDS
-        const realv mt = MCOR_REACH(reach, MCOR_TRIM_WEIGHT, i), ts = mt * slope;
-        t = MCOR_FMA(mt, k, t);
-        tx = MCOR_FMA(ts, along[0], tx);
-        ty = MCOR_FMA(ts, along[1], ty);
-        tz = MCOR_FMA(ts, along[2], tz);
+        mcor_quantity_add(MCOR_REACH(reach, MCOR_TRIM_WEIGHT, i), k, slope, along, &t);
 #endif
       }
     }
@@ -68,36 +65,17 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
 #if MCOR_FIELD == 0
   /* A void between fluid particles, kept valid by solids, has no value. A huge one makes the
    * iteration look for the void's border. */
-  const fixv none = fabs(w) < (real)1e-12f;
-  const realv inv_w = (real)1 / (none ? (realv)1 : w);
-  at->value = none ? (realv)1e30f : s * inv_w;
-  at->gx = (sx - at->value * wx) * inv_w;
-  at->gy = (sy - at->value * wy) * inv_w;
-  at->gz = (sz - at->value * wz) * inv_w;
-#elif MCOR_FIELD == 1
-  at->value = s - iso;
-  at->gx = sx;
-  at->gy = sy;
-  at->gz = sz;
+  const fixv none = fabs(w.value) < (real)1e-12f;
+  const realv inv_w = (real)1 / (none ? (realv)1 : w.value);
+  at->field.value = none ? (realv)1e30f : s.value * inv_w;
+  for (int a = 0; a < 3; ++a)
+  {
+    at->field.gradient[a] = (s.gradient[a] - at->field.value * w.gradient[a]) * inv_w;
+  }
 #else
-  at->value = w - iso;
-  at->gx = wx;
-  at->gy = wy;
-  at->gz = wz;
+  at->field = MCOR_FIELD == 1 ? s : w;
+  at->field.value -= iso;
 #endif
-#if MCOR_SOLIDS
-  at->weight = t;
-  at->wx = tx;
-  at->wy = ty;
-  at->wz = tz;
+  at->weight = MCOR_SOLIDS ? t : w;
   at->fluid = w;
-  at->fx = wx;
-  at->fy = wy;
-  at->fz = wz;
-#else
-  at->weight = w;
-  at->wx = wx;
-  at->wy = wy;
-  at->wz = wz;
-#endif
 }

@@ -92,95 +92,61 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 
 /* Limits of trimming: the threshold of the weight or the boundary eigenvalue; the share of the
  * weight that the fluid needs, if above 0; and the fluid's own weight at points on an edge with
- * an end that lacks fluid. */
+ * an end that lacks fluid. Most steps, and the greatest |field - iso|, of a cut vertex. */
 typedef struct
 {
-  real threshold, fluid_share;
+  real iso, tolerance, threshold, fluid_share;
+  int steps;
   bool by_eigenvalue, plane;
   fixv lacking;
   realv inside[3]; /* the edge's end inside, from the linear cut */
 } mcor_trim_limits;
 
-/* Returns the fluid's own weight at all points. */
-realv mcor_fluid_of(const mcor_field_at* at)
+/* Replaces a quantity by another one in some lanes. */
+void mcor_quantity_choose(fixv lanes, const mcor_quantity* other, mcor_quantity* q)
 {
-#if MCOR_SOLIDS
-  return at->fluid;
-#else
-  return at->weight;
-#endif
+  q->value = lanes ? other->value : q->value;
+  for (int a = 0; a < 3; ++a)
+  {
+    q->gradient[a] = lanes ? other->gradient[a] : q->gradient[a];
+  }
 }
 
-/* Whether the fluid's own weight is too low for a mean. It may be, though the weight equals the
- * threshold. */
-fixv mcor_lacks_fluid(const mcor_field_at* at)
-{
-  return mcor_fluid_of(at) < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
-}
-
-#if MCOR_FIELD == 0
-void mcor_trim_bound_fluid(const mcor_field_at* at, fixv lacking, mcor_boundary_at* bound)
-{
-  const realv least = mcor_fluid_of(at) - MCOR_LEAST_FLUID;
-  const fixv nearer = lacking && least < bound->value;
-  bound->value = nearer ? least : bound->value;
-#if MCOR_SOLIDS
-  bound->gx = nearer ? at->fx : bound->gx;
-  bound->gy = nearer ? at->fy : bound->gy;
-  bound->gz = nearer ? at->fz : bound->gz;
-#else
-  bound->gx = nearer ? at->wx : bound->gx;
-  bound->gy = nearer ? at->wy : bound->gy;
-  bound->gz = nearer ? at->wz : bound->gz;
-#endif
-}
-#endif
-
-#if MCOR_SOLIDS
-/* Replaces the limit by that of the fluid's share if this is nearer, or is the only one. */
-void mcor_trim_bound_share(const mcor_field_at* at, real fluid_share, mcor_boundary_at* bound)
-{
-  const realv share = at->fluid - fluid_share * at->weight;
-  const fixv nearer = MCOR_FIELD == 2 ? (fixv)MCOR_TRUE : share < bound->value;
-  bound->value = nearer ? share : bound->value;
-  bound->gx = nearer ? at->fx - fluid_share * at->wx : bound->gx;
-  bound->gy = nearer ? at->fy - fluid_share * at->wy : bound->gy;
-  bound->gz = nearer ? at->fz - fluid_share * at->wz : bound->gz;
-}
-#endif
-
-/* Finds how far all points, where the field was evaluated, are inside of the limits. */
+/* Finds how far all points, where the field was evaluated, are inside of the nearest limit. A free
+ * surface has no other than the fluid's share. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
-  mcor_boundary_at* bound)
+  mcor_quantity* bound)
 {
+  *bound = at->weight;
   if (limits->by_eigenvalue)
   {
     mcor_evaluate_boundary(grid, query, &reach->tile, points, limits->plane, true, bound);
   }
-  else
-  {
-    bound->value = at->weight;
-    bound->gx = at->wx;
-    bound->gy = at->wy;
-    bound->gz = at->wz;
-  }
   bound->value -= limits->threshold;
-#if MCOR_SOLIDS
-  if (limits->fluid_share > 0)
+  mcor_quantity fluid = at->fluid, share = fluid;
+  if (MCOR_SOLIDS && limits->fluid_share > 0)
   {
-    mcor_trim_bound_share(at, limits->fluid_share, bound);
+    share.value -= limits->fluid_share * at->weight.value;
+    for (int a = 0; a < 3; ++a)
+    {
+      share.gradient[a] -= limits->fluid_share * at->weight.gradient[a];
+    }
+    mcor_quantity_choose(
+      MCOR_FIELD == 2 ? (fixv)MCOR_TRUE : share.value < bound->value, &share, bound);
   }
-#endif
-#if MCOR_FIELD == 0
-  mcor_trim_bound_fluid(at, limits->lacking, bound);
-#endif
+  fluid.value -= MCOR_LEAST_FLUID;
+  if (MCOR_FIELD == 0)
+  {
+    mcor_quantity_choose(limits->lacking && fluid.value < bound->value, &fluid, bound);
+  }
 }
 
-/* Divides a value and its gradient by the gradient's length, whatever the unit. Returns the
- * lanes without a gradient. */
-fixv mcor_trim_normalize(realv* value, realv gradient[3])
+/* Divides a quantity by the length of its gradient, whatever the unit. Returns the lanes without a
+ * gradient. */
+fixv mcor_trim_normalize(mcor_quantity* q)
 {
+  realv* gradient = q->gradient;
   const realv most = fmax(fabs(gradient[0]), fmax(fabs(gradient[1]), fabs(gradient[2])));
   const fixv none = most < (MCOR_DOUBLE ? (real)1e-300 : (real)1e-36f);
   const realv inv_most = (real)1 / (none ? (realv)1 : most);
@@ -195,94 +161,95 @@ fixv mcor_trim_normalize(realv* value, realv gradient[3])
   {
     gradient[a] *= inv;
   }
-  *value *= inv_most * inv;
+  q->value *= inv_most * inv;
   return none;
 }
 
 /* Finds Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J
  * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes
  * without a step, because the gradients are parallel. */
-fixv mcor_trim_step(
-  const mcor_field_at* at, const mcor_boundary_at* bound, realv* dx, realv* dy, realv* dz)
+fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 {
-  realv f = at->value, w = bound->value;
-  realv gf[3] = { at->gx, at->gy, at->gz }, gw[3] = { bound->gx, bound->gy, bound->gz };
-  const fixv flat = mcor_trim_normalize(&f, gf) || mcor_trim_normalize(&w, gw);
+  const fixv flat = mcor_trim_normalize(&f) || mcor_trim_normalize(&w);
+  const realv *gf = f.gradient, *gw = w.gradient;
   const realv fw = gf[0] * gw[0] + gf[1] * gw[1] + gf[2] * gw[2];
   const realv det = (real)1 - fw * fw;
   const fixv tangent = flat || det <= (real)1e-6f;
   const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
-  const realv lf = (fw * w - f) * inv_det, lw = (fw * f - w) * inv_det;
-  const realv x = lf * gf[0] + lw * gw[0];
-  const realv y = lf * gf[1] + lw * gw[1];
-  const realv z = lf * gf[2] + lw * gw[2];
-  const realv damp =
-    fmin(MCOR_TRIM_STEP * mcor_rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
-  *dx = damp * x;
-  *dy = damp * y;
-  *dz = damp * z;
+  const realv lf = (fw * w.value - f.value) * inv_det, lw = (fw * f.value - w.value) * inv_det;
+  for (int a = 0; a < 3; ++a)
+  {
+    d[a] = lf * gf[a] + lw * gw[a];
+  }
+  const realv length2 = fmax(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], (realv)1e-30f);
+  const realv damp = fmin(MCOR_TRIM_STEP * mcor_rsqrt(length2), (realv)1);
+  for (int a = 0; a < 3; ++a)
+  {
+    d[a] *= damp;
+  }
   return tangent;
 }
 
 /* Moves points of linear cuts without a mean towards the edge's end inside until there is one.
  * Returns which points. */
-fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
-  const mcor_trim_limits* limits, fixv linear, mcor_points* points, mcor_reach* reach,
-  mcor_field_at* at)
+fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
+  fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
+  const realv* inside = limits->inside;
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
-  const realv most =
-    fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
+  const realv most = fmax(fabs(inside[0]), fmax(fabs(inside[1]), fabs(inside[2])));
   const realv scale = MCOR_TRIM_REACH / fmax(most, (realv)MCOR_TRIM_REACH);
   real share = 1;
   fixv moved = 0;
   for (int i = 0; i < MCOR_TRIM_RETREATS; ++i)
   {
-    const fixv move = linear && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
+    const fixv move = linear && at->fluid.value <= MCOR_LEAST_FLUID;
     if (!MCOR_ANY(move))
     {
       break;
     }
     share *= (real)0.5;
-    points->ox = move ? x0 + (1 - share) * scale * limits->inside[0] : points->ox;
-    points->oy = move ? y0 + (1 - share) * scale * limits->inside[1] : points->oy;
-    points->oz = move ? z0 + (1 - share) * scale * limits->inside[2] : points->oz;
+    points->ox = move ? x0 + (1 - share) * scale * inside[0] : points->ox;
+    points->oy = move ? y0 + (1 - share) * scale * inside[1] : points->oy;
+    points->oz = move ? z0 + (1 - share) * scale * inside[2] : points->oz;
     moved = moved || move;
-    mcor_evaluate(grid, query, reach, points, iso, at);
+    mcor_evaluate(grid, query, reach, points, limits->iso, at);
   }
   return moved;
 }
 
 /* Moves the sought points of a group to where field = iso and weight = threshold. Returns the
  * points for which that fails near `start`; they may be anywhere. */
-fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  mcor_trim_limits* limits, int steps, const realv start[3], fixv sought, mcor_points* points,
-  mcor_reach* reach, mcor_field_at* at)
+fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
+  const realv start[3], fixv sought, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
-  mcor_boundary_at bound;
+  mcor_quantity bound;
   fixv done = !sought, failed = 0;
   for (int i = 0;; ++i)
   {
-    mcor_evaluate(grid, query, reach, points, iso, at);
+    mcor_evaluate(grid, query, reach, points, limits->iso, at);
     mcor_trim_bound(grid, query, reach, points, at, limits, &bound);
-    const fixv met = fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
-    const fixv lacks = MCOR_FIELD == 0 && met && mcor_lacks_fluid(at);
+    const fixv met =
+      fabs(at->field.value) <= limits->tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
+    /* The fluid's own weight may be too low for a mean, though the weight equals the threshold. */
+    const fixv lacks =
+      MCOR_FIELD == 0 && met && at->fluid.value < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
     limits->lacking = limits->lacking || lacks;
     done = done || (met && !lacks);
-    if (i == steps || !MCOR_ANY(!(done || failed)))
+    if (i == limits->steps || !MCOR_ANY(!(done || failed)))
     {
       return !done;
     }
-    realv dx, dy, dz;
-    const fixv tangent = mcor_trim_step(at, &bound, &dx, &dy, &dz);
-    const fixv far = fabs(points->ox + dx - start[0]) > MCOR_TRIM_REACH ||
-      fabs(points->oy + dy - start[1]) > MCOR_TRIM_REACH ||
-      fabs(points->oz + dz - start[2]) > MCOR_TRIM_REACH;
+    realv d[3];
+    const fixv tangent = mcor_trim_step(at->field, bound, d);
+    const fixv far = fabs(points->ox + d[0] - start[0]) > MCOR_TRIM_REACH ||
+      fabs(points->oy + d[1] - start[1]) > MCOR_TRIM_REACH ||
+      fabs(points->oz + d[2] - start[2]) > MCOR_TRIM_REACH;
     failed = failed || (!done && (far || tangent));
     const fixv move = !(done || failed);
-    points->ox += move ? dx : (realv)0;
-    points->oy += move ? dy : (realv)0;
-    points->oz += move ? dz : (realv)0;
+    points->ox += move ? d[0] : (realv)0;
+    points->oy += move ? d[1] : (realv)0;
+    points->oz += move ? d[2] : (realv)0;
   }
 }
 
@@ -300,29 +267,26 @@ void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const 
  * point goes back to its start. If it has no mean there, it goes on to where there is one, and
  * is sought once more from there: the field has no slope to follow where it has hardly any
  * weight. Returns the points that stay. */
-fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
+fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
+  mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
   const realv start[3] = { points->ox, points->oy, points->oz };
-  mcor_tile_init(&reach->tile);
-  fixv linear = mcor_trim_seek(
-    grid, query, iso, tolerance, limits, steps, start, (fixv)MCOR_TRUE, points, reach, at);
+  fixv linear = mcor_trim_seek(grid, query, limits, start, (fixv)MCOR_TRUE, points, reach, at);
   if (!MCOR_ANY(linear))
   {
     return linear;
   }
-  mcor_trim_return(grid, query, iso, start, linear, points, reach, at);
-  if (MCOR_FIELD != 0 || steps == 0) /* a preview */
+  mcor_trim_return(grid, query, limits->iso, start, linear, points, reach, at);
+  if (MCOR_FIELD != 0 || limits->steps == 0) /* a preview */
   {
     return linear;
   }
-  const fixv moved = mcor_trim_retreat(grid, query, iso, limits, linear, points, reach, at);
+  const fixv moved = mcor_trim_retreat(grid, query, limits, linear, points, reach, at);
   if (MCOR_ANY(moved))
   {
     const realv mean[3] = { points->ox, points->oy, points->oz };
-    const fixv lost =
-      mcor_trim_seek(grid, query, iso, tolerance, limits, steps, start, moved, points, reach, at);
-    mcor_trim_return(grid, query, iso, mean, lost, points, reach, at);
+    const fixv lost = mcor_trim_seek(grid, query, limits, start, moved, points, reach, at);
+    mcor_trim_return(grid, query, limits->iso, mean, lost, points, reach, at);
     linear = lost || (linear && !moved);
   }
   return linear;
@@ -332,26 +296,15 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
  * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 2
  * instead of 1 if the linear cut stays, because the two surfaces are tangent or too far away, or
  * the boundary eigenvalue has no gradient. */
-__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
-  __global const int4* node, const real iso, const real tolerance, const real threshold,
-  const real fluid_share, const int by_eigenvalue, const int steps, const int plane,
-  __global real4* offset, __global real* value, __global real4* gradient, __global real* weight,
-  __global uchar* flag, MCOR_ATTRIBUTE_PARAMS)
+__kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
+  const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
+  const int plane, __global real4* offset, __global real* value, __global real4* gradient,
+  __global real* weight, __global uchar* flag, MCOR_ATTRIBUTE_PARAMS)
 {
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
+  MCOR_GROUP_ITEM(MCOR_TRIM_REACH);
+  mcor_trim_limits limits = { iso, tolerance, threshold, fluid_share, steps, by_eigenvalue, plane };
   mcor_field_at at;
   realv lacks = 0;
-  mcor_group_load(
-    &grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
-  mcor_trim_limits limits;
-  limits.threshold = threshold;
-  limits.fluid_share = fluid_share;
-  limits.by_eigenvalue = by_eigenvalue;
-  limits.plane = plane;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];
@@ -362,8 +315,7 @@ __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count, __global 
     MCOR_SET(lacks, lane) = along.w;
   }
   limits.lacking = lacks != 0;
-  const fixv linear =
-    mcor_trim_group(&grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
+  const fixv linear = mcor_trim_group(&grid, &query, &limits, &points, &reach, &at);
   if (attribute_count > 0)
   {
     mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);

@@ -142,20 +142,6 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link(
   }
 }
 
-/* Takes the loop through a slot out of the links. */
-MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_take_loop(
-  int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
-{
-  loop->length = 0;
-  while (links->next[slot] != 0xff)
-  {
-    const int next = links->next[slot];
-    loop->slot[loop->length++] = (MCOR_TYPE(uchar))slot;
-    links->next[slot] = 0xff;
-    slot = next;
-  }
-}
-
 /* Finds the position of a vertex: the middle of its half-edge or edge. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
@@ -192,42 +178,17 @@ MCOR_ADAPTIVE_FUNCTION MCOR_TYPE(uint)
   return facets;
 }
 
-MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_locate(MCOR_TYPE(uint) split, mcor_adaptive_loop* loop)
-{
-  for (int i = 0; i < loop->length; ++i)
-  {
-    mcor_adaptive_place(split, loop->slot[i], loop->place[i]);
-    loop->facets[i] = mcor_adaptive_facets(split, loop->place[i]);
-  }
-}
-
-MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_is_flat(const mcor_adaptive_loop* loop)
-{
-  MCOR_TYPE(uint) common = loop->facets[0] >> 24;
-  for (int i = 1; i < loop->length; ++i)
-  {
-    common &= loop->facets[i] >> 24;
-  }
-  return common != 0;
-}
-
-/* Whether two vertices lie in one sub-face or whole face, or on one edge, i.e. in two faces. */
-MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_forbids(MCOR_TYPE(uint) facets_a, MCOR_TYPE(uint) facets_b)
-{
-  const MCOR_TYPE(uint) common = facets_a & facets_b, faces = common >> 24;
-  return (common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;
-}
-
 /* Returns the cost of a diagonal. In a cell without finer cells around it, all allowed diagonals
  * cost the same: the first way found is taken, as in the case table. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, int a, int b)
 {
-  const MCOR_TYPE(uint) facets_a = loop->facets[a], facets_b = loop->facets[b];
-  int cost = mcor_adaptive_forbids(facets_a, facets_b) ? MCOR_ADAPTIVE_FORBIDDEN : 0;
+  const MCOR_TYPE(uint) common = loop->facets[a] & loop->facets[b], faces = common >> 24;
+  /* Both are in one sub-face or whole face, or on one edge, i.e. in two faces. */
+  int cost = (common & 0xffffff) || (faces & (faces - 1)) ? MCOR_ADAPTIVE_FORBIDDEN : 0;
   if (split)
   {
-    cost += (facets_a & facets_b) >> 24 ? MCOR_ADAPTIVE_FLAT : 0;
+    cost += faces ? MCOR_ADAPTIVE_FLAT : 0;
     for (int axis = 0; axis < 3; ++axis)
     {
       const int d = loop->place[a][axis] - loop->place[b][axis];
@@ -262,9 +223,13 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   return best;
 }
 
-MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_fill_costs(
-  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(ushort) * costs)
+/* Writes a loop's triangles, each before the triangles of the parts beside it. */
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
+  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
+  MCOR_TYPE(ushort) costs[MCOR_ADAPTIVE_VERTICES * (MCOR_ADAPTIVE_VERTICES - 1) / 2];
+  MCOR_TYPE(uchar) from[MCOR_ADAPTIVE_VERTICES], to[MCOR_ADAPTIVE_VERTICES];
+  int waiting = 1, count = 0;
   for (int b = 1; b < loop->length; ++b)
   {
     costs[mcor_adaptive_part(b - 1, b)] = 0;
@@ -276,16 +241,6 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_fill_costs(
       costs[mcor_adaptive_part(a, b)] = (MCOR_TYPE(ushort))(cost < 0xffff ? cost : 0xffff);
     }
   }
-}
-
-/* Writes a loop's triangles, each before the triangles of the parts beside it. */
-MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
-  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
-{
-  MCOR_TYPE(ushort) costs[MCOR_ADAPTIVE_VERTICES * (MCOR_ADAPTIVE_VERTICES - 1) / 2];
-  MCOR_TYPE(uchar) from[MCOR_ADAPTIVE_VERTICES], to[MCOR_ADAPTIVE_VERTICES];
-  int waiting = 1, count = 0;
-  mcor_adaptive_fill_costs(split, loop, costs);
   from[0] = 0;
   to[0] = (MCOR_TYPE(uchar))(loop->length - 1);
   while (waiting)
@@ -320,11 +275,21 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
   mcor_adaptive_link(split, above, &links);
   for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
-    mcor_adaptive_take_loop(slot, &links, &loop);
+    MCOR_TYPE(uint) common = ~(MCOR_TYPE(uint))0; /* facets */
+    loop.length = 0;
+    for (int at = slot, next; links.next[at] != 0xff; at = next)
+    {
+      const int i = loop.length++;
+      next = links.next[at];
+      links.next[at] = 0xff;
+      loop.slot[i] = (MCOR_TYPE(uchar))at;
+      mcor_adaptive_place(split, at, loop.place[i]);
+      loop.facets[i] = mcor_adaptive_facets(split, loop.place[i]);
+      common &= loop.facets[i];
+    }
     if (loop.length > 2)
     {
-      mcor_adaptive_locate(split, &loop);
-      *flat_loops += mcor_adaptive_is_flat(&loop);
+      *flat_loops += common >> 24 != 0;
       if (triangles)
       {
         mcor_adaptive_cut_loop(split, &loop, triangles + 3 * count);

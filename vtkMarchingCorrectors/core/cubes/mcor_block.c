@@ -11,27 +11,6 @@
  * needs no more. */
 #define MCOR_FIRST_CUBES 32768
 
-/* Numbers the cubes of all levels up to the first size. Larger cubes are the blocks of higher
- * levels, 32 << level nodes long. Returns the level of the first size. */
-static int mcor_make_rungs(mcor_lattice* lattice)
-{
-  mcor_rung* rungs = lattice->rungs;
-  uint64_t total = UINT64_MAX;
-  int level = -1;
-  for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
-       rungs[level + 1].base = rungs[level].base + total)
-  {
-    total = 1;
-    ++level;
-    for (int a = 0; a < 3; ++a)
-    {
-      rungs[level].n[a] = ((lattice->blocks[a] - 1) >> level) + 1;
-      total *= (uint64_t)rungs[level].n[a];
-    }
-  }
-  return level;
-}
-
 /* Finds the states of the cubes in block_keys, and which of them are inactive. parts: how many of
  * these cubes were made by dividing; their places are in `index`, or all in order if that is empty.
  * The others are void, as if they did not exist: kept blocks in cubes that are inactive now. */
@@ -95,8 +74,22 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  const mcor_rung* rungs = context->lattice.rungs;
-  int level = mcor_make_rungs(&context->lattice);
+  mcor_rung* rungs = context->lattice.rungs;
+  uint64_t total = UINT64_MAX;
+  int level = -1;
+  /* The cubes of all levels up to the first size are numbered. Larger cubes are the blocks of higher
+   * levels, 32 << level nodes long. */
+  for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
+       rungs[level + 1].base = rungs[level].base + total)
+  {
+    total = 1;
+    ++level;
+    for (int a = 0; a < 3; ++a)
+    {
+      rungs[level].n[a] = ((context->lattice.blocks[a] - 1) >> level) + 1;
+      total *= (uint64_t)rungs[level].n[a];
+    }
+  }
   MCOR_TRY(
     mcor_write(context, &context->bricks.rungs, rungs, (size_t)(level + 2) * sizeof rungs[0]));
   const mcor_buffer none = { 0 }, *index = &none;
@@ -107,7 +100,7 @@ mcor_status mcor_make_blocks(mcor_context* context)
     kept = bricks->block_keys;
     bricks->block_keys = (mcor_buffer){ 0 };
   }
-  int parts = bricks->block_count = (int)(rungs[level + 1].base - rungs[level].base);
+  int parts = bricks->block_count = (int)total;
   mcor_status status =
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
   MCOR_THEN(status,

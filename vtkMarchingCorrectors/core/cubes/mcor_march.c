@@ -104,49 +104,38 @@ static mcor_status mcor_count_edges(mcor_context* context)
   return MCOR_OK;
 }
 
-static mcor_status mcor_emit_vertices(mcor_context* context)
+/* Writes vertices, and triangles, or lines, with their cells if they carry them. Counts the triangles
+ * of each level; with a box, the owned ones. */
+static mcor_status mcor_emit(mcor_context* context)
 {
-  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_bricks* bricks = &context->bricks;
+  const mcor_brick_data* now = &bricks->now;
+  mcor_box* box = &context->box;
   mcor_mesh* mesh = &context->mesh;
+  mcor_statistics* s = context->run.statistics;
   const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  const bool follows = mcor_follows_cells(context);
+  cl_int begin = 0, end;
   MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
-    MCOR_BRICK_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&context->bricks.neighbours),
-    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->node),
-    MCOR_BUFFER(&mesh->ends));
-}
-
-/* Writes triangles, or lines, and their cells if they carry them. */
-static mcor_status mcor_emit_triangles(mcor_context* context)
-{
-  mcor_box* box = &context->box;
-  const mcor_brick_data* now = &context->bricks.now;
-  const mcor_mesh* mesh = &context->mesh;
-  const bool follows = mcor_follows_cells(context);
-  const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
-  MCOR_TRY(mcor_reserve(context, &box->cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain),
-    MCOR_BUFFER(&context->bricks.leaf_of), MCOR_CUT_ARGS(context), MCOR_SIDES_ARGS(box->halves),
+  MCOR_TRY(mcor_reserve(context, &box->cells, (follows ? triangles : 1) * sizeof(cl_ulong)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count, MCOR_BRICK_ARGS(context),
+      MCOR_INT(now->count), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&now->bricks),
+      MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
+      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count,
+    MCOR_INT(now->count), MCOR_LEAF_ARGS(context), MCOR_BUFFER(&bricks->plain),
+    MCOR_BUFFER(&bricks->leaf_of), MCOR_CUT_ARGS(context), MCOR_SIDES_ARGS(box->halves),
     MCOR_SIDES_ARGS(context->run.options->ranks ? box->whole_halves : box->halves),
-    MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&now->bricks),
+    MCOR_INT(follows), MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&mesh->triangles));
-}
-
-/* Counts the triangles of each level; with a box, the owned ones. */
-static mcor_status mcor_count_triangles(mcor_context* context)
-{
-  mcor_statistics* s = context->run.statistics;
-  cl_int begin = 0, end;
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&mesh->triangles)));
   for (int l = 0; l < context->lattice.levels; ++l, begin = end)
   {
     int count;
-    MCOR_TRY(mcor_read_int(
-      context, &context->mesh.triangle_base, context->bricks.first_slot[l + 1], &end));
+    MCOR_TRY(mcor_read_int(context, &mesh->triangle_base, bricks->first_slot[l + 1], &end));
     MCOR_TRY(mcor_count_owned_triangles(context, begin, end, &count));
     s->triangles_of_level[l] += count;
     s->triangles_before_trimming += count;
@@ -168,13 +157,7 @@ mcor_status mcor_march(mcor_context* context)
   MCOR_TRY(mcor_find_used(context));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
-  if (mesh->triangle_count == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_emit_vertices(context));
-  MCOR_TRY(mcor_emit_triangles(context));
-  return mcor_count_triangles(context);
+  return mesh->triangle_count == 0 ? MCOR_OK : mcor_emit(context);
 }
 
 void mcor_release_mesh(mcor_context* context)

@@ -61,24 +61,6 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
   return mcor_sign_nodes(context, &bricks->need);
 }
 
-/* Grows once. *grown is false if no cell was added. */
-static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  mcor_pairs* pairs = &context->pairs;
-  cl_int flag;
-  MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&bricks->now.bricks), MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached),
-    MCOR_BUFFER(&pairs->found)));
-  MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
-  *grown = flag != 0;
-  ++context->run.statistics->march_rounds;
-  return MCOR_OK;
-}
-
 /* Reaches the periodic images of reached cells. *reached is false if none is new. */
 static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
 {
@@ -121,9 +103,16 @@ mcor_status mcor_find_reached(mcor_context* context)
         mcor_fill(context, &pairs->domain, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong)));
       MCOR_TRY(mcor_clip_near(context, &pairs->domain));
     }
-    for (bool grown = true; grown;)
+    for (cl_int grown = 1; grown;)
     {
-      MCOR_TRY(mcor_grow_reached(context, &grown));
+      const mcor_brick_data* now = &bricks->now;
+      MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof grown));
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+        MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid),
+        MCOR_BUFFER(&now->bricks), MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->domain),
+        MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
+      MCOR_TRY(mcor_read(context, &pairs->found, 0, &grown, sizeof grown));
+      ++context->run.statistics->march_rounds;
     }
     more = placed;
     MCOR_TRY(more ? MCOR_OK : mcor_wrap_reached(context, &more));

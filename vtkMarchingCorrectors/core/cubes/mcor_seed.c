@@ -23,20 +23,6 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Finds the sides of the iso value on which particles are, if the field has values at particles. */
-static mcor_status mcor_find_side_flags(mcor_context* context)
-{
-  mcor_grid* grid = &context->grid;
-  const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
-  MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
-  return context->run.options->field == MCOR_WEIGHT_SUM
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
-        MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
-        MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags));
-}
-
 /* Requests bricks beside bricks with `fresh` nodes, if these nodes show that they are needed. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
@@ -47,40 +33,6 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
-}
-
-/* Listed regions by level: from first[l] to before end[l]. */
-typedef struct mcor_region_list
-{
-  int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
-} mcor_region_list;
-
-/* Requests the bricks that the regions leave uncertain, which are the seeds. Lists these
- * regions. */
-static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* listed)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const int levels = context->lattice.levels;
-  const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
-  for (int l = 0; l <= levels; ++l)
-  {
-    listed->first[l] = bricks->first_block[l] * MCOR_BLOCK_REGIONS;
-  }
-  MCOR_TRY(mcor_reserve(context, &bricks->states, blocks * MCOR_BLOCK_BRICKS));
-  MCOR_TRY(mcor_reserve(context, &bricks->regions, blocks * MCOR_BLOCK_REGIONS * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &bricks->found, 0, counts));
-  MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_regions", 1, listed->first, listed->first + 1,
-    MCOR_INT(context->space.region_depth),
-    MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context), MCOR_SEED_ARGS(context),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->regions),
-    MCOR_BUFFER(&bricks->found)));
-  MCOR_TRY(mcor_read(context, &bricks->found, 0, listed->end, counts));
-  for (int l = 0; l < levels; ++l)
-  {
-    listed->end[l] += listed->first[l];
-  }
-  return MCOR_OK;
 }
 
 /* Requests the bricks whose nodes are known. */
@@ -104,17 +56,37 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Places all bricks that the regions leave uncertain, whose cells are the seeds, and all bricks
- * that are known from earlier iso values. Finds states of the uncertain bricks, and evaluates
- * most of them. In a plane, finds no states: bounds on bricks cost more than their few nodes. */
+/* Requests the bricks that the regions leave uncertain, whose cells are the seeds, and lists these
+ * regions. Places these bricks, and all bricks that are known from earlier iso values. Finds states of
+ * the uncertain bricks, and evaluates most of them. In a plane, finds no states: bounds on bricks cost
+ * more than their few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_region_list listed;
-  MCOR_TRY(mcor_test_regions(context, &listed));
+  const int levels = context->lattice.levels;
+  const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
+  /* Listed regions by level: from first[l] to before end[l]. */
+  int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
+  for (int l = 0; l <= levels; ++l)
+  {
+    first[l] = bricks->first_block[l] * MCOR_BLOCK_REGIONS;
+  }
+  MCOR_TRY(mcor_reserve(context, &bricks->states, blocks * MCOR_BLOCK_BRICKS));
+  MCOR_TRY(mcor_reserve(context, &bricks->regions, blocks * MCOR_BLOCK_REGIONS * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &bricks->found, 0, counts));
+  MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_regions", 1, first, first + 1,
+    MCOR_INT(context->space.region_depth), MCOR_BUFFER(&bricks->rungs),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context),
+    MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
+    MCOR_BUFFER(&bricks->regions), MCOR_BUFFER(&bricks->found)));
+  MCOR_TRY(mcor_read(context, &bricks->found, 0, end, counts));
+  for (int l = 0; l < levels; ++l)
+  {
+    end[l] += first[l];
+  }
   MCOR_TRY(mcor_void_bricks(context));
-  MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0,
-    (size_t)bricks->block_count * MCOR_BLOCK_WORDS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_copy(
+    context, &bricks->seed_bits, &bricks->bits, 0, blocks * MCOR_BLOCK_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
@@ -122,12 +94,11 @@ static mcor_status mcor_test_seeds(mcor_context* context)
    * a brick. */
   return context->space.flat
     ? MCOR_OK
-    : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
-        listed.first, listed.end, MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context),
-        MCOR_BUFFER(&bricks->regions), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states),
-        MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-        MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
-        MCOR_BUFFER(&bricks->now.valid));
+    : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1, first, end,
+        MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context), MCOR_BUFFER(&bricks->regions),
+        MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
+        MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
+        MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid));
 }
 
 /* Evaluates, for uniform cubes, the bricks whose states require it, and then the bricks that
@@ -157,8 +128,17 @@ mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;
   const bool adaptive = mcor_is_adaptive(&context->lattice), pairs = mcor_uses_pairs(context);
+  mcor_grid* grid = &context->grid;
+  const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
   context->adaptive.count = 0;
-  MCOR_TRY(mcor_find_side_flags(context));
+  MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
+  if (context->run.options->field != MCOR_WEIGHT_SUM) /* else particles have no values */
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
+      MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+      MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
+      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags)));
+  }
   MCOR_TRY(adaptive ? mcor_begin_leaves(context, input) : mcor_make_blocks(context));
   const size_t bits = (size_t)bricks->block_count * MCOR_BLOCK_WORDS * sizeof(cl_uint);
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, bits));

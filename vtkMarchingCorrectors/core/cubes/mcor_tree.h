@@ -21,7 +21,6 @@ int mcor_bit_count(uint64_t bits);
  * would be too many leaves, before the sets take much memory. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3]);
-bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
 /* Whether the sets of all levels together make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
 
@@ -78,9 +77,6 @@ static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, in
  * h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
-/* Returns the highest level of a run's leaves, 0 if its cubes are uniform. */
-int mcor_tree_top(const mcor_measure* measure, const mcor_options* options);
-
 /* Clusters, or other units of work, that the host does between two reports of progress. */
 #define MCOR_TREE_STEP 4096
 
@@ -95,7 +91,6 @@ static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 /* Finds the place of a brick, or, with a period, of its image there. Returns false if it is off
  * the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
-bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3]);
 /* Whether all bricks of a cluster are on the lattice, or in its first period. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
 /* Fails: there are too many leaves, or no memory for more. */
@@ -112,8 +107,6 @@ void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 /* Splits the bricks with these keys. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
-/* Splits the bricks that other ranks' particles split. */
-mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree);
 
 /* Bits of a brick's key in keys of points or triangles; the rest is an edge or a cell of the
  * brick. */

@@ -17,11 +17,6 @@ int mcor_tree_level_of(double h, double h_min, int top)
   return level;
 }
 
-int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
-{
-  return mcor_tree_level_of(measure->h_max, measure->h_min, options->level_limit);
-}
-
 /* Most bricks of level 0. All levels together have a seventh more. */
 #define MCOR_BRICK_LIMIT 0x1p63
 
@@ -72,16 +67,6 @@ bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int 
     within = within && placed[a] >= 0 && placed[a] >> 3 < rung->n[a];
   }
   return within;
-}
-
-bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
-{
-  int b[3];
-  return level > 0 && mcor_place_brick(tree, level, brick, b) &&
-    mcor_table_find(
-      &tree->split[level].clusters, mcor_cluster_key(&tree->lattice->rungs[level], b)) >>
-      mcor_cluster_bit(b) &
-    1;
 }
 
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
@@ -135,16 +120,6 @@ bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
 bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3])
 {
   return mcor_set_add(set, mcor_cluster_key(rung, brick), UINT64_C(1) << mcor_cluster_bit(brick));
-}
-
-bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other)
-{
-  bool added = true;
-  for (size_t i = 0; i < other->clusters.capacity && added; ++i)
-  {
-    added = mcor_set_add(set, other->clusters.entries[i].key, other->clusters.entries[i].value);
-  }
-  return added;
 }
 
 bool mcor_are_too_many(const mcor_brick_set* levels)

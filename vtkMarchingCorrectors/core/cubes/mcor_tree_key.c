@@ -77,15 +77,3 @@ mcor_status mcor_take_splits(
   }
   return MCOR_OK;
 }
-
-mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree)
-{
-  uint64_t* own = NULL;
-  const void* all;
-  int64_t count;
-  mcor_status status = mcor_list_splits(context, tree, &own, &count);
-  MCOR_THEN(status, mcor_gather_records(context, own, count, sizeof *own, &all, &count));
-  MCOR_THEN(status, mcor_take_splits(context, tree, all, count));
-  free(own);
-  return status;
-}

@@ -94,17 +94,22 @@ static mcor_status mcor_add_parts(
 /* Returns which bricks of a cluster are split. */
 static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const int first[3])
 {
+  const mcor_table* clusters = &tree->split[level].clusters;
+  const mcor_rung* rung = &tree->lattice->rungs[level];
   if (level == 0 || mcor_has_cluster(tree, level, first))
   {
-    return level == 0 ? 0
-                      : mcor_table_find(&tree->split[level].clusters,
-                          mcor_cluster_key(&tree->lattice->rungs[level], first));
+    return level == 0 ? 0 : mcor_table_find(clusters, mcor_cluster_key(rung, first));
   }
   uint64_t split = 0;
   for (int i = 0; i < 64; ++i)
   {
     const int brick[3] = { first[0] + (i & 3), first[1] + (i >> 2 & 3), first[2] + (i >> 4) };
-    split |= (uint64_t)mcor_tree_is_split(tree, level, brick) << i;
+    int b[3];
+    if (mcor_place_brick(tree, level, brick, b))
+    {
+      const uint64_t bricks = mcor_table_find(clusters, mcor_cluster_key(rung, b));
+      split |= (bricks >> mcor_cluster_bit(b) & 1) << i;
+    }
   }
   return split;
 }

@@ -245,13 +245,17 @@ static mcor_status mcor_split_by_particles(
   {
     for (int l = 1; l <= tree->top + 1; ++l)
     {
-      if (status == MCOR_OK)
+      mcor_table* clusters = &job->split[s][l].clusters;
+      bool made = !job->failed;
+      for (size_t i = 0; i < clusters->capacity && made && status == MCOR_OK; ++i)
       {
-        const bool made = !job->failed && mcor_set_add_all(&tree->split[l], &job->split[s][l]);
-        status = made && !mcor_are_too_many(tree->split) ? mcor_report_launch(context)
-                                                         : mcor_fail_leaves(context);
+        const mcor_entry* entry = &clusters->entries[i];
+        made = mcor_set_add(&tree->split[l], entry->key, entry->value);
       }
-      mcor_table_free(&job->split[s][l].clusters);
+      MCOR_THEN(status,
+        made && !mcor_are_too_many(tree->split) ? mcor_report_launch(context)
+                                                : mcor_fail_leaves(context));
+      mcor_table_free(clusters);
     }
   }
   free(job);
@@ -306,6 +310,16 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
   MCOR_TRY(mcor_split_by_particles(context, input, true, tree));
   MCOR_TRY(mcor_split_above(context, tree));
   MCOR_TRY(mcor_split_by_particles(context, input, false, tree));
-  MCOR_TRY(context->run.options->ranks ? mcor_join_splits(context, tree) : MCOR_OK);
+  if (context->run.options->ranks) /* bricks that other ranks' particles split */
+  {
+    uint64_t* own = NULL;
+    const void* all;
+    int64_t count;
+    mcor_status status = mcor_list_splits(context, tree, &own, &count);
+    MCOR_THEN(status, mcor_gather_records(context, own, count, sizeof *own, &all, &count));
+    MCOR_THEN(status, mcor_take_splits(context, tree, all, count));
+    free(own);
+    MCOR_TRY(status);
+  }
   return mcor_split_above(context, tree);
 }

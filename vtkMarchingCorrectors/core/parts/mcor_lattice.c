@@ -251,7 +251,7 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
     "size, or remove particles with such a small smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
-  int top = mcor_tree_top(m, options);
+  int top = mcor_tree_level_of(m->h_max, m->h_min, options->level_limit);
   MCOR_TRY(mcor_fit_period(context, options, cube, &top));
   while (top > 0 && !mcor_has_keys(m, lattice, top))
   {

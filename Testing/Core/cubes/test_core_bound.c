@@ -19,7 +19,7 @@ static const char source[] =
   "  if (b >= box_count)\n"
   "    return;\n"
   "  const mcor_grid grid = MCOR_GRID;\n"
-  "  mcor_query query = mcor_seed_query(&grid, boxes[b], boxes[b].w, boxes[b].w);\n"
+  "  mcor_query query = mcor_node_query(&grid, boxes[b], 0, boxes[b].w, 1);\n"
   "  mcor_bound bound = mcor_bound_start();\n"
   "  mcor_tile tile;\n"
   "  mcor_tile_init(&tile);\n"

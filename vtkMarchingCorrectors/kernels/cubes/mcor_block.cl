@@ -30,8 +30,8 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 cube = mcor_block_of_key(rungs, keys[i]);
-  mcor_query query = mcor_seed_query(
-    &grid, cube * (8 << cube.w), (MCOR_BLOCK_CUBES << cube.w) - 1, MCOR_BLOCK_CUBES << cube.w);
+  mcor_query query =
+    mcor_node_query(&grid, cube * (8 << cube.w), 0, (MCOR_BLOCK_CUBES << cube.w) - 1, 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
   states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, &limits);

@@ -113,7 +113,8 @@ int mcor_seed_proof(
   int state = MCOR_ABOVE;
   for (int first = 0; first < 64 && state != MCOR_EXAMINE; first += MCOR_ITEM_NODES)
   {
-    mcor_query query = mcor_node_query(grid, brick, first, beside, MCOR_INSIDE_SHARE);
+    mcor_query query = mcor_node_query(grid, brick, mcor_place_of(first),
+      MCOR_ITEM_NODES == 1 ? 0 : MCOR_ITEM_EXTENT + beside, MCOR_INSIDE_SHARE);
     mcor_node_sums sums[MCOR_NODE_GROUPS];
     mcor_tile tile;
     mcor_tile_init(&tile);

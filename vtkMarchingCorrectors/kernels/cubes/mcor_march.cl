@@ -138,9 +138,8 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
   {
     return node_value[next * 64L + n - 3 * step];
   }
-  const int4 at = 2 *
-    (brick * MCOR_BRICK +
-      (int4)((n & 3) + (axis == 0), (n >> 2 & 3) + (axis == 1), (n >> 4) + (axis == 2), 0));
+  const int4 along = (int4)(axis == 0, axis == 1, axis == 2, 0);
+  const int4 at = 2 * (brick * MCOR_BRICK + mcor_place_of(n) + along);
   const int other =
     mcor_find_brick(MCOR_BRICK_ARGS, (int4)(at.x >> 2, at.y >> 2, at.z >> 2, brick.w - 1));
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
@@ -166,9 +165,8 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
       if (e[axis] >> n & 1)
       {
         const int copies = 1 + (int)(e[6 + axis] >> n & 1);
-        const int4 edge = (int4)(brick.x * MCOR_BRICK + (n & 3),
-          brick.y * MCOR_BRICK + (n >> 2 & 3), brick.z * MCOR_BRICK + (n >> 4),
-          axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT);
+        int4 edge = brick * MCOR_BRICK + mcor_place_of(n);
+        edge.w = axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT;
         const real end =
           mcor_march_end(neighbours, MCOR_BRICK_ARGS, brick, slot, n, axis, node_value);
         for (int copy = 0; copy < copies; ++copy, ++to)

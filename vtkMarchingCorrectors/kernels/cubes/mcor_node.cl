@@ -8,6 +8,7 @@
  * once. They form groups of MCOR_LANES. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
+#define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
 
 /* Sums at a group of nodes: s = sum V (A - A0) W, w = sum V W, and, with solids, the trimming
  * weight t. */
@@ -51,32 +52,26 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
   }
 }
 
-/* Completes the query for nodes of a brick. All bricks of a region count positions from its
- * first node, so a node's value is the same whichever tile of the region it is made from. */
-void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
-{
-  const int4 first = brick / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS * MCOR_BRICK;
-  const fix origin[3] = { (fix)first.x * grid->step[0], (fix)first.y * grid->step[1],
-    (fix)first.z * grid->step[2] };
-  mcor_query_place(grid, query, origin);
-}
-
-/* Returns the query for the nodes of a work-item: MCOR_ITEM_NODES of a brick from `first` on,
- * and `more` beyond the last ones. share: share of each particle's support that counts. */
+/* Returns the query for the nodes up to `extent` from node `first` of a brick. share: share of each
+ * particle's support that counts. All bricks of a region count positions from its first node, so a
+ * node's value is the same whichever tile of the region it is made from. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
-  const mcor_grid* grid, int4 brick, int first, int more, float share)
+  const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {
-  const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
-    brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };
-  const fix extent = MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1 + more;
+  const int4 low = brick * MCOR_BRICK + first, high = low + extent;
+  const int4 region = brick / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS * MCOR_BRICK;
+  const int from[3] = { low.x, low.y, low.z }, to[3] = { high.x, high.y, high.z };
+  const int begin[3] = { region.x, region.y, region.z };
+  fix origin[3];
   mcor_query query;
   query.radius = -share;
   for (int a = 0; a < 3; ++a)
   {
-    query.low[a] = (fix)corner[a] * grid->step[a];
-    query.high[a] = query.low[a] + extent * grid->step[a];
+    query.low[a] = (fix)from[a] * grid->step[a];
+    query.high[a] = (fix)to[a] * grid->step[a];
+    origin[a] = (fix)begin[a] * grid->step[a];
   }
-  mcor_query_in_region(grid, brick, &query);
+  mcor_query_place(grid, &query, origin);
   return query;
 }
 
@@ -128,7 +123,8 @@ __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int coun
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 0, 1);
+  mcor_query query = mcor_node_query(
+    &grid, bricks[slot], mcor_place_of((int)(first_node % 64)), MCOR_ITEM_EXTENT, 1);
   mcor_node_sums sums[MCOR_NODE_GROUPS];
   mcor_tile tile;
   mcor_tile_init(&tile);

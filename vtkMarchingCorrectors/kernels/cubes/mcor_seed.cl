@@ -74,23 +74,6 @@ int mcor_query_side_flags(
   return seen;
 }
 
-/* Returns the query for a cube of nodes from the first node of a brick on. It is `cubes` long,
- * but no more than `depth` along z. */
-MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes, int depth)
-{
-  mcor_query query;
-  query.radius = -1;
-  query.low[0] = (fix)(brick.x * MCOR_BRICK) * grid->step[0];
-  query.low[1] = (fix)(brick.y * MCOR_BRICK) * grid->step[1];
-  query.low[2] = (fix)(brick.z * MCOR_BRICK) * grid->step[2];
-  for (int a = 0; a < 3; ++a)
-  {
-    query.high[a] = query.low[a] + (fix)(a == 2 ? min(cubes, depth) : cubes) * grid->step[a];
-  }
-  mcor_query_in_region(grid, brick, &query);
-  return query;
-}
-
 /* Returns the sides of the tile's particles. */
 int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 {
@@ -195,7 +178,8 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1 + has_leaves, depth);
+  const int far = MCOR_REGION_CUBES - 1 + has_leaves;
+  mcor_query query = mcor_node_query(&grid, brick, 0, (int4)(far, far, min(far, depth), 0), 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
   int state = own == 0 ? MCOR_VOID
@@ -258,7 +242,7 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
     *state = (uchar)proof;
     return 0;
   }
-  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - !beside, MCOR_BRICK);
+  mcor_query query = mcor_node_query(grid, brick, 0, MCOR_BRICK - !beside, 1);
   mcor_tile_init(&tile);
   if (wide->complete)
   {
@@ -292,8 +276,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int number = mcor_region_number(list[first + i]);
   const int4 region = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query =
-    mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves, MCOR_REGION_CUBES);
+  mcor_query query = mcor_node_query(&grid, region, 0, MCOR_REGION_CUBES - 1 + has_leaves, 1);
   mcor_tile wide;
   mcor_tile_init(&wide);
   if (MCOR_ITEM_BRICKS > 1)

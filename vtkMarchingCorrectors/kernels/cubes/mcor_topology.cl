@@ -73,8 +73,8 @@ real mcor_topology_part(real part, real whole)
 
 int4 mcor_topology_node(__global const int4* bricks, int slot, int n)
 {
-  return (int4)(bricks[slot].x * MCOR_BRICK + (n & 3), bricks[slot].y * MCOR_BRICK + (n >> 2 & 3),
-    bricks[slot].z * MCOR_BRICK + (n >> 4), 0);
+  const int4 node = bricks[slot] * MCOR_BRICK + mcor_place_of(n);
+  return (int4)(node.x, node.y, node.z, 0);
 }
 
 /* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each:

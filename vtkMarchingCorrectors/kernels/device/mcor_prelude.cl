@@ -159,6 +159,12 @@ ulong mcor_from_last(int axis, ulong m, ulong last)
   return (m & ~(low << 3 * step)) << step | (last >> 3 * step & low);
 }
 
+/* Returns where node or cell n is in its brick. */
+int4 mcor_place_of(int n)
+{
+  return (int4)(n & 3, n >> 2 & 3, n >> 4, 0);
+}
+
 /* Returns the step to neighbour d of the 7 up from a cell or brick (bits x, y, z; 0 is itself), and
  * to d of the 27 around it. */
 int4 mcor_up(int d)

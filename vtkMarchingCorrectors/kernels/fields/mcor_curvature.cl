@@ -125,8 +125,7 @@ __kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* off
   {
     for (int i = 0; i < MCOR_REACH_COUNT(&reach); ++i)
     {
-      mcor_points_from(at, &points, MCOR_REACH(&reach, x, i), MCOR_REACH(&reach, y, i),
-        MCOR_REACH(&reach, z, i), u);
+      MCOR_REACH_FROM(at, &points, &reach, i, u);
       mcor_weight_hessian(u, MCOR_REACH(&reach, inv_h, i), &sum);
 #if MCOR_FIELD != 1
       mcor_bent_add(&w, MCOR_REACH(&reach, weight, i), &sum);

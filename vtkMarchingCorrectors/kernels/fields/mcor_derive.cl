@@ -42,8 +42,7 @@ void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const r
   realv d[3], along[3], slope;
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    mcor_points_from(
-      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+    MCOR_REACH_FROM(at, points, reach, i, d);
     const mcor_length length = mcor_length_of(d);
     mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
     const realv m = MCOR_REACH(reach, weight, i) * slope;

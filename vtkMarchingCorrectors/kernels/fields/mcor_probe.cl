@@ -36,23 +36,19 @@ __kernel void mcor_probe_order(const int count, __global const int* order,
 void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
   __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
-  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* constant limit: sums stay in registers */
-  {
-    for (int lane = 0; lane < MCOR_LANES && c < attribute_count; ++lane)
-    {
-      const long v = points->index[lane];
-      if (v >= 0)
-      {
-        means[v * attribute_count + c] = MCOR_GET(sums[c], lane);
-      }
-    }
-  }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const long v = points->index[lane];
     if (v >= 0)
     {
       weight_sum[v] = MCOR_GET(weight, lane);
+    }
+    for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* constant limit: sums stay in registers */
+    {
+      if (c < attribute_count && v >= 0)
+      {
+        means[v * attribute_count + c] = MCOR_GET(sums[c], lane);
+      }
     }
   }
 }
@@ -73,37 +69,6 @@ void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_point
 
 /* mcor_probe_sums, which launches these, is in mcor_probe_lanes.cl and mcor_probe_point.cl. */
 
-/* Gradients, per cube, of the weight sum and of the sums of up to MCOR_ARRAY_STEP arrays. */
-typedef struct
-{
-  realv weight[3], sums[MCOR_ARRAY_STEP][3];
-} mcor_probe_slopes;
-
-/* Adds the particles of a reach. at: made by mcor_points_relative. */
-void mcor_probe_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
-  const mcor_values* values, mcor_probe_slopes* slopes)
-{
-  realv d[3], along[3], slope;
-  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
-  {
-    mcor_points_from(
-      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
-    const mcor_length length = mcor_length_of(d);
-    mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
-    const realv m = MCOR_REACH(reach, weight, i) * slope;
-    for (int a = 0; a < 3; ++a)
-    {
-      const realv g = m * along[a];
-      slopes->weight[a] += g;
-      for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
-      {
-        const realv value = MCOR_VALUE_OF(values, reach, c, i);
-        slopes->sums[c][a] = MCOR_FMA(g, value, slopes->sums[c][a]);
-      }
-    }
-  }
-}
-
 /* One work-item = one group of points. Reads arrays from number `first_array` on. Writes the
  * gradients, per cube, of the weight sums and of the sums of weight times array, of up to
  * MCOR_ARRAY_STEP arrays. */
@@ -115,31 +80,44 @@ __kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offs
   const int count = min(attribute_count - first_array, MCOR_ARRAY_STEP);
   __global const real* arrays[MCOR_ARRAY_STEP];
   mcor_values values;
-  mcor_probe_slopes slopes;
-  realv at[3];
+  realv weight_slope[3] = { 0, 0, 0 }, slopes[MCOR_ARRAY_STEP][3];
+  realv at[3], d[3], along[3], slope;
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
     /* The weights stand in for arrays beyond the last: any finite values do. */
     arrays[c] = c < count ? attributes + (first_array + c) * (long)stride : p_weight;
-    slopes.sums[c][0] = slopes.sums[c][1] = slopes.sums[c][2] = 0;
+    slopes[c][0] = slopes[c][1] = slopes[c][2] = 0;
   }
-  slopes.weight[0] = slopes.weight[1] = slopes.weight[2] = 0;
   for (bool first = true; mcor_reach_next(&grid, &query, &points, 0, &reach, first); first = false)
   {
     mcor_values_load(&reach, arrays, &values);
-    mcor_probe_add(&reach, &points, at, &values, &slopes);
+    for (int i = 0; i < MCOR_REACH_COUNT(&reach); ++i)
+    {
+      MCOR_REACH_FROM(at, &points, &reach, i, d);
+      const mcor_length length = mcor_length_of(d);
+      mcor_weight_gradient(d, &length, MCOR_REACH(&reach, inv_h, i), &slope, along);
+      const realv m = MCOR_REACH(&reach, weight, i) * slope;
+      for (int a = 0; a < 3; ++a)
+      {
+        const realv g = m * along[a];
+        weight_slope[a] += g;
+        for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+        {
+          slopes[c][a] = MCOR_FMA(g, MCOR_VALUE_OF(&values, &reach, c, i), slopes[c][a]);
+        }
+      }
+    }
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const long v = points.index[lane];
     for (int a = 0; a < 3 && v >= 0; ++a)
     {
-      weight_gradient[3 * v + a] = MCOR_GET(slopes.weight[a], lane);
+      weight_gradient[3 * v + a] = MCOR_GET(weight_slope[a], lane);
       for (int c = 0; c < count; ++c)
       {
-        gradients[(v * attribute_count + first_array + c) * 3 + a] =
-          MCOR_GET(slopes.sums[c][a], lane);
+        gradients[(v * attribute_count + first_array + c) * 3 + a] = MCOR_GET(slopes[c][a], lane);
       }
     }
   }

@@ -390,8 +390,7 @@ __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   {
     if (make)
     {
-      mcor_points_from(
-        at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+      MCOR_REACH_FROM(at, points, reach, i, d);
       const mcor_length length = mcor_length_of(d);
       const realv k = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
       weight[i] = MCOR_REACH(reach, weight, i) * k;

@@ -23,18 +23,9 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int coun
   }
   const mcor_grid grid = MCOR_GRID;
   const int node = (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES;
-  const int corner[3] = { bricks[slot].x * MCOR_BRICK + (node & 3),
-    bricks[slot].y * MCOR_BRICK + (node >> 2), 0 };
-  const int extent[3] = { MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1, 0 };
-  mcor_query query;
+  const int4 extent = (int4)(MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1, 0, 0);
+  mcor_query query = mcor_node_query(&grid, bricks[slot], mcor_place_of(node), extent, 1);
   real at[3];
-  query.radius = -1;
-  for (int a = 0; a < 3; ++a)
-  {
-    query.low[a] = (fix)corner[a] * grid.step[a];
-    query.high[a] = query.low[a] + (fix)extent[a] * grid.step[a];
-  }
-  mcor_query_in_region(&grid, bricks[slot], &query);
   for (int a = 0; a < 3; ++a)
   {
     at[a] = (real)(query.low[a] - query.origin[a]) * grid.unit;

@@ -45,21 +45,6 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
-/* Writes lane `lane` of a group as point v: position, value, gradient and trimming weight. With
- * solids, the fluid's part of the weight goes with the gradient. */
-MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* points,
-  const mcor_field_at* at, int lane, int v, __global real4* offset, __global real* value,
-  __global real4* gradient, __global real* weight)
-{
-  offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
-    MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
-  value[v] = MCOR_GET(at->field.value, lane);
-  gradient[v] =
-    (real4)(MCOR_GET(at->field.gradient[0], lane), MCOR_GET(at->field.gradient[1], lane),
-      MCOR_GET(at->field.gradient[2], lane), MCOR_SOLIDS ? MCOR_GET(at->fluid.value, lane) : 0);
-  weight[v] = MCOR_GET(at->weight.value, lane);
-}
-
 /* Required accuracy along the edge. With a small gradient, a small residual alone may be far
  * from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)

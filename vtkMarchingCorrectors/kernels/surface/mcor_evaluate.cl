@@ -40,15 +40,13 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       const int end = min(begin + MCOR_STEP, MCOR_REACH_COUNT(reach));
       for (int i = begin; i < end; ++i)
       {
-        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
-          MCOR_REACH(reach, z, i), d);
+        MCOR_REACH_FROM(at_node, points, reach, i, d);
         length[i - begin] = mcor_length_of(d);
       }
       for (int i = begin; i < end; ++i)
       {
         /* Made again: keeping it takes longer. */
-        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
-          MCOR_REACH(reach, z, i), d);
+        MCOR_REACH_FROM(at_node, points, reach, i, d);
         const realv k =
           mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
         MCOR_REACH_KEEP(reach, i, k);
@@ -78,4 +76,41 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
 #endif
   at->weight = MCOR_SOLIDS ? t : w;
   at->fluid = w;
+}
+
+/* Writes lane `lane` of a group as point v: position, value, gradient and trimming weight. With
+ * solids, the fluid's part of the weight goes with the gradient. */
+MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* points,
+  const mcor_field_at* at, int lane, int v, __global real4* offset, __global real* value,
+  __global real4* gradient, __global real* weight)
+{
+  offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
+    MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
+  value[v] = MCOR_GET(at->field.value, lane);
+  gradient[v] =
+    (real4)(MCOR_GET(at->field.gradient[0], lane), MCOR_GET(at->field.gradient[1], lane),
+      MCOR_GET(at->field.gradient[2], lane), MCOR_SOLIDS ? MCOR_GET(at->fluid.value, lane) : 0);
+  weight[v] = MCOR_GET(at->weight.value, lane);
+}
+
+/* One work-item = one group of points that no edge has: of caps, and where the field decides on the
+ * topology. Writes value, gradient, weight and attributes there. */
+__kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real4* offset,
+  __global real* value, __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
+{
+  MCOR_GROUP_ITEM(0);
+  mcor_field_at at;
+  mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
+  if (attribute_count > 0)
+  {
+    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = points.index[lane];
+    if (v >= 0)
+    {
+      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
+    }
+  }
 }

@@ -19,17 +19,6 @@ int oracle_is_periodic(const mcor_options* options)
 
 /* ---- the cube size ---- */
 
-static int period_fits(const mcor_options* options, double cube)
-{
-  int fits = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double cubes = period_length(options, axis) / cube;
-    fits = fits && fabs(cubes - round(cubes)) <= 1e-9 * cubes;
-  }
-  return fits;
-}
-
 static double period_fit_cube(const mcor_options* options, double cube)
 {
   double best = 0.0;
@@ -39,10 +28,13 @@ static double period_fit_cube(const mcor_options* options, double cube)
     for (double n = 1.0; length > 0.0 && length / n > 0.5 * cube; n += 1.0)
     {
       const double trial = length / n;
-      if (trial <= cube * (1.0 + 1e-9) && trial > best && period_fits(options, trial))
+      int fits = trial <= cube * (1.0 + 1e-9) && trial > best;
+      for (int other = 0; other < 3; ++other)
       {
-        best = trial;
+        const double cubes = period_length(options, other) / trial;
+        fits = fits && fabs(cubes - round(cubes)) <= 1e-9 * cubes;
       }
+      best = fits ? trial : best;
     }
   }
   return best;
@@ -70,56 +62,36 @@ void oracle_fit_edges(const mcor_options* options, double cube, double edge[3])
 
 /* ---- particles ---- */
 
-/* Whether something of this reach at x matters along the axis. */
-static int period_reaches(
-  const mcor_options* options, int axis, double x, double reach, double cube)
-{
-  const double *side = &options->periodic[2 * axis], margin = reach + 2.0 * cube;
-  return !(side[0] < side[1]) || (x >= side[0] - margin && x <= side[1] + margin);
-}
-
-/* Whether an image of particle p, at x, matters. */
-static int period_matters(const particle_set* particles, const mcor_options* options, int64_t p,
-  const int image[3], double reach, double cube, double x[3])
-{
-  int matters = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double length = period_length(options, axis);
-    x[axis] = particles->position[3 * p + axis] + image[axis] * length;
-    matters = matters && (image[axis] == 0 || length > 0.0) &&
-      period_reaches(options, axis, x[axis], reach, cube);
-  }
-  return matters;
-}
-
-/* Each where it is within the period. */
-static void period_wrap(particle_set* particles, const mcor_options* options)
-{
-  for (int64_t i = 0; i < 3 * particles->count; ++i)
-  {
-    const double length = period_length(options, (int)(i % 3));
-    double* x = &particles->position[i];
-    *x -= length > 0.0 ? floor((*x - options->periodic[2 * (i % 3)]) / length) * length : 0.0;
-  }
-}
-
 int64_t* oracle_add_images(
   particle_set* particles, const mcor_options* options, double support, double margin, double cube)
 {
   const int64_t own = particles->count;
   int64_t capacity = own;
   int64_t* source = oracle_allocate(own, sizeof(int64_t));
-  period_wrap(particles, options);
+  for (int64_t i = 0; i < 3 * own; ++i) /* each is within the period */
+  {
+    const double length = period_length(options, (int)(i % 3));
+    double* x = &particles->position[i];
+    *x -= length > 0.0 ? floor((*x - options->periodic[2 * (i % 3)]) / length) * length : 0.0;
+  }
   for (int64_t p = 0; p < own; ++p)
   {
-    const double reach = fmax(support * particles->smoothing_length[p], margin);
+    const double reach = fmax(support * particles->smoothing_length[p], margin) + 2.0 * cube;
     source[p] = p;
     for (int n = 0; n < 343; ++n)
     {
       const int image[3] = { n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3 };
+      int matters = n != 171; /* the particle itself */
       double x[3];
-      if (n != 171 && period_matters(particles, options, p, image, reach, cube, x))
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double *side = &options->periodic[2 * axis], length = period_length(options, axis);
+        x[axis] = particles->position[3 * p + axis] + image[axis] * length;
+        matters = matters &&
+          (length > 0.0 ? x[axis] >= side[0] - reach && x[axis] <= side[1] + reach
+                        : image[axis] == 0);
+      }
+      if (matters)
       {
         source = oracle_grow(source, particles->count, &capacity, sizeof(int64_t));
         source[particles->count] = p;

@@ -141,18 +141,6 @@ static void reference_particles(
   free(source);
 }
 
-static void reference_set_iso(oracle_reference* reference, double iso)
-{
-  /* In single precision rounding may change the side of a node whose value is this close. */
-  const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
-  reference->limits.iso = iso;
-  reference->field.center = iso;
-  reference->limits.close = relative * reference->range;
-  reference->limits.margin = relative;
-  oracle_march(&reference->lattice, &reference->field, &reference->limits, reference->by_field,
-    reference->unit);
-}
-
 /* Evaluates all nodes. */
 static int reference_lattice(
   oracle_reference* reference, const mcor_options* options, int64_t node_limit)
@@ -200,7 +188,14 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  reference_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5);
+  /* In single precision rounding may change the side of a node whose value is this close. */
+  const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
+  reference->limits.iso = options->iso_count > 0 ? options->iso_values[0] : 0.5;
+  reference->field.center = reference->limits.iso;
+  reference->limits.close = relative * reference->range;
+  reference->limits.margin = relative;
+  oracle_march(&reference->lattice, &reference->field, &reference->limits, reference->by_field,
+    reference->unit);
   return 1;
 }
 

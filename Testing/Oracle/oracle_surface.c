@@ -14,20 +14,6 @@ static int lattice_above(const oracle_lattice* lattice, int64_t node)
   return lattice->nodes[node].flags & LATTICE_ABOVE;
 }
 
-static void lattice_classify(lattice_node* node, oracle_kind kind, const oracle_limits* limits)
-{
-  const double difference = node->value - limits->iso;
-  const int of_weight = kind == ORACLE_WEIGHT, of_mean = kind == ORACLE_SHEPARD;
-  const int valid = of_weight ||
-    (node->trim_weight >= limits->node_threshold &&
-      (!of_mean || node->weight >= limits->least_weight));
-  const int margin = !of_weight &&
-    (fabs(node->trim_weight - limits->node_threshold) <= limits->margin ||
-      (of_mean && fabs(node->weight - limits->least_weight) <= limits->margin));
-  node->flags = (difference >= 0.0 ? LATTICE_ABOVE : 0) | (valid ? LATTICE_VALID : 0) |
-    (fabs(difference) <= limits->close ? LATTICE_CLOSE : 0) | (margin ? LATTICE_MARGIN : 0);
-}
-
 /* ---- edges ---- */
 
 /* Which of the four quarters around an edge a cell takes: its middle, but a cell whose face the
@@ -174,9 +160,10 @@ typedef struct lattice_links
   int64_t edge[48], next[48];
 } lattice_links;
 
-/* A segment leads from where the walk around a square enters "above" to where it leaves it. */
+/* A segment leads from where the walk around a square enters "above" to where it leaves it. Where nodes above are
+ * joined, each of the two below is cut off. */
 static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
-  int count, lattice_links* links)
+  int count, int joined, lattice_links* links)
 {
   for (int n = 0; n < count; ++n)
   {
@@ -187,12 +174,13 @@ static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, cons
       continue;
     }
     links->edge[links->count] = lattice_edge_between(lattice, cell, from, ring[last]);
-    while (lattice_above(lattice, ring[(last + 1) % count]))
+    while (!joined && lattice_above(lattice, ring[(last + 1) % count]))
     {
       last = (last + 1) % count;
     }
-    links->next[links->count++] =
-      lattice_edge_between(lattice, cell, ring[last], ring[(last + 1) % count]);
+    links->next[links->count++] = joined
+      ? lattice_edge_between(lattice, cell, from, ring[(n + count - 1) % count])
+      : lattice_edge_between(lattice, cell, ring[last], ring[(last + 1) % count]);
   }
 }
 
@@ -201,20 +189,6 @@ static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring,
   return count == 4 && !lattice_above(lattice, ring[0]) == !lattice_above(lattice, ring[2]) &&
     !lattice_above(lattice, ring[1]) == !lattice_above(lattice, ring[3]) &&
     !lattice_above(lattice, ring[0]) != !lattice_above(lattice, ring[1]);
-}
-
-/* Nodes above joined: each of the two below is cut off. */
-static void lattice_link_joined(
-  oracle_lattice* lattice, const lattice_cell* cell, const int64_t ring[4], lattice_links* links)
-{
-  for (int n = 0; n < 4; ++n)
-  {
-    if (!lattice_above(lattice, ring[n]))
-    {
-      links->edge[links->count] = lattice_edge_between(lattice, cell, ring[n], ring[(n + 1) % 4]);
-      links->next[links->count++] = lattice_edge_between(lattice, cell, ring[n], ring[(n + 3) % 4]);
-    }
-  }
 }
 
 /* Adds the pairs of a square's edges. */
@@ -252,14 +226,7 @@ static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cel
   {
     doubtful = doubtful || (lattice->nodes[ring[n]].flags & LATTICE_CLOSE) != 0;
   }
-  if (joined > 0)
-  {
-    lattice_link_joined(lattice, cell, ring, links);
-  }
-  else
-  {
-    lattice_link(lattice, cell, ring, count, links);
-  }
+  lattice_link(lattice, cell, ring, count, joined > 0, links);
   if (!cell->certain || doubtful)
   {
     lattice_doubt(lattice, cell->certain ? &lattice->either : &lattice->doubts, cell, ring, count);
@@ -474,9 +441,19 @@ void oracle_march(oracle_lattice* lattice, const oracle_field* field, const orac
   oracle_map_free(&lattice->either);
   lattice->cell_count = lattice->edge_count = lattice->segment_count = 0;
   lattice->component_count = lattice->triangle_count = 0;
+  const int of_weight = field->kind == ORACLE_WEIGHT, of_mean = field->kind == ORACLE_SHEPARD;
   for (int64_t n = 0; n < lattice->node_count; ++n)
   {
-    lattice_classify(&lattice->nodes[n], field->kind, limits);
+    lattice_node* node = &lattice->nodes[n];
+    const double difference = node->value - limits->iso;
+    const int valid = of_weight ||
+      (node->trim_weight >= limits->node_threshold &&
+        (!of_mean || node->weight >= limits->least_weight));
+    const int margin = !of_weight &&
+      (fabs(node->trim_weight - limits->node_threshold) <= limits->margin ||
+        (of_mean && fabs(node->weight - limits->least_weight) <= limits->margin));
+    node->flags = (difference >= 0.0 ? LATTICE_ABOVE : 0) | (valid ? LATTICE_VALID : 0) |
+      (fabs(difference) <= limits->close ? LATTICE_CLOSE : 0) | (margin ? LATTICE_MARGIN : 0);
   }
   lattice->decider = by_field ? &decider : NULL;
   lattice_visit_cells(lattice, lattice_march_cell);

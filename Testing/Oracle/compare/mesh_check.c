@@ -38,26 +38,6 @@ void mesh_free_report(mesh_report* report)
 
 /* ---- triangles one by one ---- */
 
-static int mesh_check_ranges(const double* points, const int32_t* triangles, mesh_report* report)
-{
-  for (int64_t p = 0; p < report->points; ++p)
-  {
-    if (!isfinite(points[3 * p]) || !isfinite(points[3 * p + 1]) || !isfinite(points[3 * p + 2]))
-    {
-      mesh_add_fault(report, MESH_BAD_COORDINATE, "point %" PRId64, p);
-    }
-  }
-  for (int64_t c = 0; c < 3 * report->triangles; ++c)
-  {
-    if (triangles[c] < 0 || triangles[c] >= report->points)
-    {
-      mesh_add_fault(
-        report, MESH_BAD_INDEX, "triangle %" PRId64 " names point %" PRId32, c / 3, triangles[c]);
-    }
-  }
-  return report->faults[MESH_BAD_COORDINATE] == 0 && report->faults[MESH_BAD_INDEX] == 0;
-}
-
 static void mesh_measure_triangle(
   const double* points, const int32_t* triangle, int64_t t, mesh_report* report)
 {
@@ -118,25 +98,6 @@ static int mesh_compare_sides(const void* x, const void* y)
     return p->b < q->b ? -1 : 1;
   }
   return (p->triangle > q->triangle) - (p->triangle < q->triangle);
-}
-
-static void mesh_list_sides(const int32_t* triangles, mesh_report* report)
-{
-  for (int64_t t = 0; t < report->triangles; ++t)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      const int32_t from = triangles[3 * t + c];
-      const int32_t to = triangles[3 * t + (c + 1) % 3];
-      mesh_edge* side = &report->side[3 * t + c];
-      side->a = from < to ? from : to;
-      side->b = from < to ? to : from;
-      side->triangle = t;
-      side->forward = from < to;
-    }
-  }
-  report->side_count = 3 * report->triangles;
-  qsort(report->side, (size_t)report->side_count, sizeof(mesh_edge), mesh_compare_sides);
 }
 
 static int64_t mesh_first_side(const mesh_report* report, int32_t a, int32_t b)
@@ -273,15 +234,6 @@ static void mesh_check_fans(
   report->euler = used - report->edges + report->triangles;
 }
 
-static void mesh_number_components(mesh_report* report)
-{
-  for (int64_t t = 0; t < report->triangles; ++t)
-  {
-    const int64_t up = report->component[t];
-    report->component[t] = up == t ? report->components++ : report->component[up];
-  }
-}
-
 /* ---- duplicates ---- */
 
 static int mesh_compare_triples(const void* x, const void* y)
@@ -344,28 +296,51 @@ void mesh_check(const double* points, int64_t point_count, const int32_t* triang
   memset(report, 0, sizeof(*report));
   report->points = point_count;
   report->triangles = triangle_count;
-  if (!mesh_check_ranges(points, triangles, report))
+  for (int64_t p = 0; p < point_count; ++p)
+  {
+    if (!isfinite(points[3 * p]) || !isfinite(points[3 * p + 1]) || !isfinite(points[3 * p + 2]))
+    {
+      mesh_add_fault(report, MESH_BAD_COORDINATE, "point %" PRId64, p);
+    }
+  }
+  for (int64_t c = 0; c < 3 * triangle_count; ++c)
+  {
+    if (triangles[c] < 0 || triangles[c] >= point_count)
+    {
+      mesh_add_fault(
+        report, MESH_BAD_INDEX, "triangle %" PRId64 " names point %" PRId32, c / 3, triangles[c]);
+    }
+  }
+  if (report->faults[MESH_BAD_COORDINATE] + report->faults[MESH_BAD_INDEX] > 0)
   {
     return;
   }
   int64_t* corner_parent = oracle_allocate(3 * triangle_count, sizeof(int64_t));
   int64_t* fan = oracle_allocate(point_count, sizeof(int64_t));
-  report->side = oracle_allocate(3 * triangle_count, sizeof(mesh_edge));
-  report->component = oracle_allocate(triangle_count, sizeof(int64_t));
+  int64_t* component = oracle_allocate(triangle_count, sizeof(int64_t));
+  report->side_count = 3 * triangle_count;
+  report->side = oracle_allocate(report->side_count, sizeof(mesh_edge));
+  report->component = component;
   mesh_check_duplicates(points, triangles, report);
   for (int64_t t = 0; t < triangle_count; ++t)
   {
     mesh_measure_triangle(points, &triangles[3 * t], t, report);
-    report->component[t] = t;
+    component[t] = t;
     for (int64_t c = 3 * t; c < 3 * t + 3; ++c)
     {
+      const int32_t from = triangles[c], to = triangles[c == 3 * t + 2 ? 3 * t : c + 1];
+      const int forward = from < to;
+      report->side[c] = (mesh_edge){ forward ? from : to, forward ? to : from, t, forward };
       corner_parent[c] = c;
     }
   }
-  mesh_list_sides(triangles, report);
-  mesh_check_edges(triangles, report, corner_parent, report->component);
+  qsort(report->side, (size_t)report->side_count, sizeof(mesh_edge), mesh_compare_sides);
+  mesh_check_edges(triangles, report, corner_parent, component);
   mesh_check_fans(triangles, report, corner_parent, fan);
-  mesh_number_components(report);
+  for (int64_t t = 0; t < triangle_count; ++t)
+  {
+    component[t] = component[t] == t ? report->components++ : component[component[t]];
+  }
   free(corner_parent);
   free(fan);
 }

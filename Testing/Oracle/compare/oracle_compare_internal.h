@@ -3,8 +3,8 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* oracle_compare.c calls what compares edges (oracle_compare_edges.c) and vertices and triangles (_mesh.c);
- * these call what they share (_state.c), and not each other. */
+/* oracle_compare.c calls what compares edges (oracle_compare_edges.c) and vertices and triangles (_mesh.c), and has what
+ * these share; they do not call each other. */
 
 #include "oracle_compare.h"
 
@@ -31,7 +31,7 @@ typedef struct compare_state
   double* vertex_cube; /* [point_count], length of the vertex's edge */
 } compare_state;
 
-/* ---- oracle_compare_state.c ---- */
+/* ---- oracle_compare.c ---- */
 
 /* How far a point is inside of what trimming leaves: of the threshold of the trimming weight or the
  * boundary eigenvalue; of where the surface ends at solids, in the unit of the weight; of both. */

@@ -6,10 +6,8 @@
 //
 //   TestRankSamples FOLDER OF DATA [some]     some: of each case one partition, all of them in turn
 #include "RankParts.h"
-#include "RankSurfaces.h"
 
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkIdTypeArray.h"
 #include "vtkMPIController.h"
 #include "vtkNew.h"
@@ -18,7 +16,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHDerivatives.h"
 #include "vtkSPHProbe.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <cmath>
 #include <cstdio>
@@ -201,40 +198,6 @@ Data MakePoints(vtkPolyData* particles, const Case& tried)
   return data;
 }
 
-/// Compares with the points in the order of `given`, and with the arrays that `whole` has at them.
-std::string ComparePart(vtkPolyData* part, vtkPolyData* given, vtkPolyData* whole, vtkIdType& seen)
-{
-  if (!part || part->GetNumberOfPoints() != given->GetNumberOfPoints())
-  {
-    return "points are missing";
-  }
-  vtkPointData *arrays = part->GetPointData(), *expected = whole->GetPointData();
-  vtkDataArray* index = given->GetPointData()->GetArray(IndexName);
-  vtkUnsignedCharArray* marks = given->GetPointGhostArray();
-  for (int k = 0; k < expected->GetNumberOfArrays(); ++k)
-  {
-    const std::string name = expected->GetArrayName(k);
-    vtkDataArray* array = arrays->GetArray(name.c_str());
-    if (!array)
-    {
-      return name + " is missing";
-    }
-    for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
-    {
-      const auto number = static_cast<vtkIdType>(index->GetComponent(i, 0));
-      if (!(marks && marks->GetValue(i)) && !IsSameTuple(array, i, expected->GetArray(k), number))
-      {
-        return name + " of point " + std::to_string(number);
-      }
-    }
-  }
-  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
-  {
-    seen += marks && marks->GetValue(i) ? 0 : 1;
-  }
-  return "";
-}
-
 /// Something other than zeros.
 bool SaysSomething(vtkPolyData* whole)
 {
@@ -258,10 +221,13 @@ int CheckPart(const Case& tried, int part, vtkPolyData* particles, vtkPolyData* 
   const Data at = TakePart(points, (part + 2) % (PartCount - 1), rank, count);
   vtkPolyData* given = isProbe ? at : own;
   const Data result = tried.Do(own, at, controller);
-  vtkIdType seen = 0, total = 0;
-  const std::string problem = ComparePart(result, given, whole, seen);
-  controller->AllReduce(&seen, &total, 1, vtkCommunicator::SUM_OP);
-  const bool isGood = problem.empty() && total == whole->GetNumberOfPoints();
+  std::vector<int> seen(static_cast<std::size_t>(whole->GetNumberOfPoints()), 0), all = seen;
+  const std::string problem = result && result->GetNumberOfPoints() == given->GetNumberOfPoints()
+    ? ComparePoints(result, given->GetPointData()->GetArray(IndexName), given, whole, seen)
+    : "points are missing";
+  controller->AllReduce(
+    seen.data(), all.data(), whole->GetNumberOfPoints(), vtkCommunicator::SUM_OP);
+  const bool isGood = problem.empty() && all == std::vector<int>(all.size(), 1);
   if (!isGood || rank == 0)
   {
     std::printf("%s, %s: %s\n", tried.Name, PartName(part),
@@ -299,15 +265,14 @@ int Check(int number, bool some, const std::string& folder, vtkMPIController* co
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  int failures = 0, all = 0;
-  for (int number = 0; number < static_cast<int>(Cases.size()); ++number)
-  {
-    failures += Check(number, argc > 2, argv[1], controller);
-  }
-  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
-  controller->Finalize();
-  return all == 0 ? 0 : 1;
+  return RunRanks(argc, argv,
+    [=](vtkMPIController* controller)
+    {
+      int failures = 0;
+      for (int number = 0; number < static_cast<int>(Cases.size()); ++number)
+      {
+        failures += Check(number, argc > 2, argv[1], controller);
+      }
+      return failures;
+    });
 }

@@ -6,7 +6,6 @@
 //
 //   TestRanks FOLDER OF DATA [CASE]
 #include "RankParts.h"
-#include "RankSurfaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCommunicator.h"
@@ -308,18 +307,15 @@ int Check(const Case& tried, const std::string& folder, vtkMPIController* contro
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  int failures = 0;
-  for (const Case& tried : Cases)
-  {
-    if (argc < 3 || std::string(tried.Name).find(argv[2]) != std::string::npos)
+  return RunRanks(argc, argv,
+    [=](vtkMPIController* controller)
     {
-      failures += Check(tried, argv[1], controller);
-    }
-  }
-  controller->Broadcast(&failures, 1, 0);
-  controller->Finalize();
-  return failures == 0 ? 0 : 1;
+      int failures = 0;
+      for (const Case& tried : Cases)
+      {
+        const bool isWanted = argc < 3 || std::string(tried.Name).find(argv[2]) != std::string::npos;
+        failures += isWanted ? Check(tried, argv[1], controller) : 0;
+      }
+      return failures;
+    });
 }

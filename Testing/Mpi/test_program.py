@@ -313,6 +313,26 @@ class Program(unittest.TestCase):
         part.GetFieldData().AddArray(array)
         write(part, self.path(piece))
 
+    def test_empty(self):
+        """A surface without points has the arrays that one process gives it, in one file and in pieces."""
+        def forms(file):
+            surface = read(self.path(file))
+            self.assertEqual(surface.GetNumberOfPoints(), 0)
+            return {(array.GetName(), array.GetDataType(), array.GetNumberOfTuples(),
+                     *map(array.GetComponentName, range(array.GetNumberOfComponents())))
+                    for data in (surface.GetPointData(), surface.GetCellData())
+                    for array in map(data.GetArray, range(data.GetNumberOfArrays())) if not array.GetName().startswith("Global")}
+
+        for particles, how in ((PARTICLES, ["--scalar", "Speed", "--iso", "99", "--gradients"]),
+                               (PARTICLES, ["--free-surface", "--iso", "50,60"]),
+                               (self.write_plane(), ["--scalar", "Speed", "--iso", "99", "--filled"])):
+            self.good(self.run_alone(particles, self.path("alone.vtp"), *how, "--quiet"))
+            alone = forms("alone.vtp")
+            self.assertGreater(len(alone), 5)
+            for file, part in ("ranks.vtp", "ranks.vtp"), ("out.pvtp", "out_1.vtp"):
+                self.good(self.run_ranks(particles, self.path(file), *how, "--quiet"))
+                self.assertEqual(forms(part), alone)
+
     def test_pieces(self):
         """Pieces in, pieces out: more of them than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)

@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run that several processes (ranks) share. Each hands over the particles that it has. Space is
-// divided among the ranks, and particles are sent where they are needed. Each rank extracts the
-// part of the surface in its box, as the core does for any box. Points and triangles get the
-// numbers that they have in the whole surface.
+// A surface that several processes (ranks) share, see vtkSPHRanks.h.
 #include "vtkMarchingCorrectors.h"
 
 #include "vtkCellData.h"
@@ -15,15 +12,85 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksSurface.h"
 #include "vtkSPHSharedRun.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
+namespace
+{
+template <typename T>
+void Merge(vtkSPHHow how, T& all, T one)
+{
+  all = how == SUM ? all + one : how == MOST ? std::max(all, one) : all;
+}
+
+template <typename T, std::size_t N>
+void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
+{
+  for (std::size_t i = 0; i < N; ++i)
+  {
+    Merge(how, all[i], one[i]);
+  }
+}
+
+/** Becomes the box around both. */
+void AddCells(mcor_statistics& all, const mcor_statistics& one)
+{
+  for (int a = 0; a < 3 && one.virtual_cells > 0; ++a)
+  {
+    const std::int64_t first = one.lattice_origin[a], last = first + one.lattice_cells[a];
+    const bool isFirst = all.virtual_cells == 0;
+    const std::int64_t end = isFirst ? last : all.lattice_origin[a] + all.lattice_cells[a];
+    all.lattice_origin[a] = isFirst ? first : std::min(all.lattice_origin[a], first);
+    all.lattice_cells[a] = std::max(end, last) - all.lattice_origin[a];
+  }
+}
+
+/**
+ * Merges statistics: sums of counts, the longest seconds, and means over all points (one rank
+ * counts each point). What is evaluated on both sides of a seam counts twice among bricks, nodes
+ * and evaluations.
+ */
+mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
+{
+  // Takes what is global from the first rank that had work: it is the same on all of these.
+  const auto known = std::find_if(
+    parts.begin(), parts.end(), [](const mcor_statistics& part) { return part.cube_size > 0.0; });
+  mcor_statistics all = known == parts.end() ? mcor_statistics() : *known;
+  double points = 0.0, length = 0.0, squares = 0.0, vertices = 0.0, evaluations = 0.0;
+  for (const mcor_statistics& one : parts)
+  {
+    AddCells(all, one);
+    if (known != parts.end() && &one != &*known)
+    {
+#define STATISTIC(how, when, member, name) Merge(how, all.member, one.member);
+#include "mcor_statistics.def"
+    }
+    const auto moved = static_cast<double>(one.correction_count);
+    const auto corrected = static_cast<double>(one.vertices_corrected);
+    points += moved;
+    length += moved * one.correction_mean;
+    squares += moved *
+      (one.correction_deviation * one.correction_deviation +
+        one.correction_mean * one.correction_mean);
+    vertices += corrected;
+    evaluations += std::round(corrected * (one.iterations_mean + 1.0)); // a whole number
+  }
+  points = std::max(points, 1.0);
+  all.correction_mean = length / points;
+  all.correction_deviation =
+    std::sqrt(std::max(0.0, squares / points - all.correction_mean * all.correction_mean));
+  all.iterations_mean = vertices > 0.0 ? evaluations / vertices - 1.0 : 0.0;
+  return all;
+}
+}
+
 // No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   vtkMarchingCorrectorsChoice& choice, vtkMarchingCorrectorsInput& mine, vtkPolyData* output)
@@ -69,7 +136,7 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
     this->WarnOfHugeRun();
   }
   const mcor_options whole = options;
-  run.Balance.Work = this->Partition == BY_WORK
+  run.Work = this->Partition == BY_WORK
     ? vtkSPHExpectWork(run.Ranks, own.Core, options, run.Globals)
     : vtkSPHCountWork(own.Core, options);
   run.Scatter(own.Core, run.Own);
@@ -111,14 +178,17 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorr
   vtkSPHRanks& ranks = run.Ranks;
   const mcor_plane& plane = run.Globals.measured.plane;
   const vtkSPHRanksNumbers numbers = vtkSPHNumber(ranks, surface);
-  const std::vector<vtkSPHRanksShare> shares = ranks.Gather(vtkSPHRanksShare{ surface.statistics,
-    surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
-    run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
-  surface.statistics = vtkSPHMergeShares(shares);
+  vtkSharedRun::Shares shares = run.ListShares();
+  shares.insert(shares.end(),
+    { { "RankWork", run.Space.Work }, { "RankNodesEvaluated", surface.statistics.nodes_evaluated },
+      { "RankTriangles", surface.triangle_count } });
+  const double seconds =
+    std::accumulate(surface.statistics.seconds, surface.statistics.seconds + MCOR_PHASE_COUNT, 0.0);
+  surface.statistics = MergeStatistics(ranks.Gather(surface.statistics));
   const std::unique_ptr<vtkSPHRanksLines> lines = plane.axis > 0
     ? std::make_unique<vtkSPHRanksLines>(ranks, surface, numbers, plane, options.filled != 0)
     : nullptr;
-  if (lines && lines->HasFailed())
+  if (lines && lines->Failed)
   {
     this->Fail("Memory for the lines of all processes could not be allocated.");
     return;
@@ -136,7 +206,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorr
     all.statistics = surface.statistics;
     all.point_count = numbers.Points;
     all.triangle_count = numbers.Triangles;
-    all.line_count = lines ? lines->GetCount() : 0;
+    all.line_count = lines ? lines->Count : 0;
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
     mcor_options asked = options;
@@ -150,9 +220,9 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorr
   vtkSPHAddCount(this->RunStatistics, "Triangles", { numbers.Triangles });
   if (lines)
   {
-    vtkSPHAddCount(this->RunStatistics, "Lines", { lines->GetCount() });
+    vtkSPHAddCount(this->RunStatistics, "Lines", { lines->Count });
   }
-  vtkSPHAddShares(this->RunStatistics, shares);
+  run.AddShares(shares, seconds);
   builder.BuildMesh(output, this->OutputPointsPrecision, run.MergeRanges());
   output->GetPointData()->SetGlobalIds(numbers.OfPoints);
   output->GetCellData()->SetGlobalIds(numbers.OfTriangles);

@@ -25,12 +25,18 @@ namespace
 using Ids = std::vector<vtkIdType>;
 
 /**
- * Sends back what the first rank knows of the whole: the pieces, and numbers among what stays.
- * Returns the pieces of this rank's elements; `numbers` become the new ones.
+ * Sends back what the first rank knows of the whole: the pieces. Returns those of this rank's
+ * elements. `numbers` become the elements' numbers among what stays. Collective.
  */
 Ids Return(
-  vtkSPHRanks& ranks, const vtkSPHRanksLists& sent, const Ids& pieces, vtkIdTypeArray* numbers)
+  vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)
 {
+  vtkDataArray* given = data->GetGlobalIds();
+  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // of the first rank
+  for (vtkIdType i = 0; given && i < given->GetNumberOfTuples(); ++i)
+  {
+    wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));
+  }
   vtkNew<vtkIdTypeArray> whole;
   whole->SetNumberOfComponents(2);
   vtkIdType next = 0;
@@ -39,8 +45,10 @@ Ids Return(
     whole->InsertNextValue(piece);
     whole->InsertNextValue(piece >= 0 ? next++ : -1);
   }
-  const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, { whole.Get() }, sent);
+  const vtkSPHRanksArrays came =
+    vtkSPHSendTuples(ranks, { whole.Get() }, ranks.Exchange(std::move(wanted)));
   auto* answers = vtkIdTypeArray::SafeDownCast(came[0]);
+  numbers->SetName(given ? given->GetName() : "");
   Ids own;
   for (vtkIdType i = 0; i < answers->GetNumberOfTuples(); ++i)
   {
@@ -51,15 +59,6 @@ Ids Return(
     }
   }
   return own;
-}
-
-void Renumber(vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
-{
-  if (data->GetGlobalIds())
-  {
-    numbers->SetName(data->GetGlobalIds()->GetName());
-    data->SetGlobalIds(numbers);
-  }
 }
 }
 
@@ -82,7 +81,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
       fluid->GetPointData()->AddArray(array);
     }
   }
-  return vtkSPHSendParticles(ranks, fluid, vtkSPHAllToFirst(ranks, own->GetNumberOfPoints())).Get();
+  return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();
 }
 
 // Returns what is wrong, on all ranks alike. No rank may return here while another goes on.
@@ -112,16 +111,22 @@ std::string vtkSPHComponents::SplitDistributed(
   bare->SetPolys(mesh->GetPolys());
   bare->GetPointData()->SetGlobalIds(mesh->GetPointData()->GetGlobalIds());
   bare->GetCellData()->SetGlobalIds(mesh->GetCellData()->GetGlobalIds());
-  vtkSPHRanksLists points, triangles;
-  vtkSmartPointer<vtkPolyData> whole = vtkSPHGatherSurface(ranks, bare, points, triangles);
+  vtkSmartPointer<vtkPolyData> whole = vtkSPHGatherSurface(ranks, bare);
   whole = whole ? whole : vtkSmartPointer<vtkPolyData>::New();
   const Numbers found = this->Split(whole, all, table);
-  vtkNew<vtkIdTypeArray> newPoints, newTriangles;
-  const Numbers own = { Return(ranks, points, found.OfPoint, newPoints),
-    Return(ranks, triangles, found.OfTriangle, newTriangles) };
+  vtkNew<vtkIdTypeArray> points, triangles;
+  const Numbers own = { Return(ranks, mesh->GetPointData(), found.OfPoint, points),
+    Return(ranks, mesh->GetCellData(), found.OfTriangle, triangles) };
   Keep(mesh, own, output);
-  Renumber(output->GetPointData(), newPoints);
-  Renumber(output->GetCellData(), newTriangles);
+  const auto renumber = [](vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
+  {
+    if (data->GetGlobalIds())
+    {
+      data->SetGlobalIds(numbers);
+    }
+  };
+  renumber(output->GetPointData(), points);
+  renumber(output->GetCellData(), triangles);
   return "";
 }
 VTK_ABI_NAMESPACE_END

@@ -1,23 +1,42 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: the processes (ranks) that share one run, and what they tell each
- * other. All functions except the getters are collective: all ranks call them in the same order.
- * Built where VTK has MPI and DIY, whose serialization turns values into bytes
- * (diy::Serialization).
+ * Private to the module: the processes (ranks) that share one run, and what they tell each other.
+ *
+ * A shared run in ten sentences:
+ *  1. Each rank comes with any particles, and drops those that are marked as copies of another
+ *     rank's; all agree on one list of arrays (vtkSPHRanksParticles.h).
+ *  2. The core measures what is global over the particles of all (mcor_measure_globals).
+ *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
+ *     (vtkSPHRanksSpace.h).
+ *  4. A particle is sent to each rank whose box its support, or an image of that, reaches, and a
+ *     point to the rank whose box holds it (vtkSPHSendTuples).
+ *  5. Each rank calls the core for its box, as one process may for any box; globals make this part
+ *     that of the whole, to the last bit.
+ *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
+ *     callback ends their calls (vtkSPHSharedRun.cxx).
+ *  7. What was found at points and particles goes back, by the lists that sent them, to the rank
+ *     that they came from (vtkSPHReturnTuples).
+ *  8. A surface stays where it was made; its points and triangles get the numbers that they have in
+ *     the whole surface, by their keys, of which each rank sorts a range (vtkSPHRanksSurface.h).
+ *  9. What needs all of a surface (lines, pieces, a file) is done by the first rank, to which
+ *     tuples are sent, and put in the order of these numbers (vtkSPHGatherTuples).
+ * 10. No rank returns while another goes on: all agree first on what one of them has found.
+ *
+ * All functions except the getters are collective: all ranks call them in the same order. Built
+ * where VTK has MPI and DIY, whose serialization turns values into bytes (diy::Serialization).
  */
 #ifndef vtkSPHRanks_h
 #define vtkSPHRanks_h
 
-#include "mcor_parts.h"
 #include "vtkDIYUtilities.h"
 #include "vtkMPIController.h"
 #include "vtkSPHAlgorithm.h"
 #include "vtkSPHRanksWait.h"
 #include "vtkType.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,7 +49,11 @@ class vtkSPHRanks
 {
 public:
   /** `controller` must be an MPI controller. */
-  explicit vtkSPHRanks(vtkMultiProcessController* controller);
+  explicit vtkSPHRanks(vtkMultiProcessController* controller)
+    : Controller(vtkMPIController::SafeDownCast(controller))
+    , Communicator(vtkDIYUtilities::GetCommunicator(controller))
+  {
+  }
 
   int GetRank() const { return this->Controller->GetLocalProcessId(); }
   int GetCount() const { return this->Controller->GetNumberOfProcesses(); }
@@ -43,10 +66,19 @@ public:
    * becomes, on all ranks, that of the first rank that failed, whose number it names unless all
    * say the same.
    */
-  bool Agree(std::string& sentence);
-
-  /** Finds the number of ranks on this machine, by its name, and this rank's place among them. */
-  void FindNeighbors(int& place, int& count);
+  bool Agree(std::string& sentence)
+  {
+    const std::vector<std::string> all = this->Gather(sentence);
+    const auto first =
+      std::find_if(all.begin(), all.end(), [](const std::string& text) { return !text.empty(); });
+    if (first == all.end())
+    {
+      return true;
+    }
+    const bool isSame = std::count(all.begin(), all.end(), *first) == this->GetCount();
+    sentence = (isSame ? "" : "Rank " + std::to_string(first - all.begin()) + ": ") + *first;
+    return false;
+  }
 
   enum Operation
   {
@@ -66,7 +98,19 @@ public:
    * Merges ranges, each a least and a greatest value; an empty range is infinite the wrong way
    * round.
    */
-  void ReduceRanges(double* ranges, int count);
+  void ReduceRanges(double* ranges, int count)
+  {
+    const auto negateGreatest = [ranges, count] // so that one message does for both
+    {
+      for (int i = 1; i < 2 * count; i += 2)
+      {
+        ranges[i] = -ranges[i];
+      }
+    };
+    negateGreatest();
+    this->Reduce(LEAST, ranges, 2 * count);
+    negateGreatest();
+  }
 
   /** Gathers one value from each rank, in the order of ranks. */
   template <typename T>
@@ -74,8 +118,11 @@ public:
   {
     diy::MemoryBuffer buffer;
     diy::save(buffer, mine);
+    std::vector<std::vector<char>> all;
+    vtkSPHAwaitRanks(this->Controller);
+    diy::mpi::all_gather(this->Communicator, buffer.buffer, all);
     std::vector<T> values;
-    for (std::vector<char>& theirs : this->GatherBytes(buffer.buffer))
+    for (std::vector<char>& theirs : all)
     {
       buffer.buffer.swap(theirs);
       buffer.reset();
@@ -85,6 +132,18 @@ public:
     return values;
   }
 
+  /** Joins the lists of all ranks, in the order of ranks. */
+  template <typename T>
+  std::vector<T> Join(const std::vector<T>& mine)
+  {
+    std::vector<T> all;
+    for (const std::vector<T>& theirs : this->Gather(mine))
+    {
+      all.insert(all.end(), theirs.begin(), theirs.end());
+    }
+    return all;
+  }
+
   /** Sends messages[i] to rank i; element i of the result came from rank i. */
   template <typename T>
   std::vector<std::vector<T>> Exchange(std::vector<std::vector<T>> messages)
@@ -92,86 +151,39 @@ public:
     const auto self = static_cast<std::size_t>(this->GetRank());
     std::vector<std::vector<T>> received(messages.size());
     received[self].swap(messages[self]);
-    const auto send = [&](char*, const diy::Master::ProxyWithLink& proxy)
+    char block = 0; // each rank is one block, without data of its own
+    vtkSPHAwaitRanks(this->Controller);
+    diy::Master master(this->Communicator, 1);
+    master.add(this->GetRank(), &block, new diy::Link);
+    for (std::size_t rank = 0; rank < messages.size(); ++rank)
     {
-      for (std::size_t rank = 0; rank < messages.size(); ++rank)
+      if (!messages[rank].empty())
       {
-        if (!messages[rank].empty())
-        {
-          const int to = static_cast<int>(rank);
-          proxy.enqueue(diy::BlockID{ to, to }, messages[rank]);
-          this->BytesSent += static_cast<std::int64_t>(messages[rank].size() * sizeof(T));
-        }
+        const int to = static_cast<int>(rank);
+        master.proxy(0).enqueue(diy::BlockID{ to, to }, messages[rank]);
+        this->BytesSent += static_cast<std::int64_t>(messages[rank].size() * sizeof(T));
       }
-    };
-    const auto receive = [&](char*, const diy::Master::ProxyWithLink& proxy)
+    }
+    master.exchange(true); // finds out who has something for whom
+    std::vector<int> from;
+    master.proxy(0).incoming(from);
+    for (const int rank : from)
     {
-      std::vector<int> from;
-      proxy.incoming(from);
-      for (const int rank : from)
+      if (master.proxy(0).incoming(rank).size() > 0)
       {
-        if (proxy.incoming(rank).size() > 0)
-        {
-          proxy.dequeue(rank, received[static_cast<std::size_t>(rank)]);
-        }
+        master.proxy(0).dequeue(rank, received[static_cast<std::size_t>(rank)]);
       }
-    };
-    this->ExchangeBlocks(send, receive);
+    }
     return received;
-  }
-
-  /** Gathers on the first rank alone; the other ranks get nothing. */
-  template <typename T>
-  std::vector<std::vector<T>> GatherOnFirst(std::vector<T> mine)
-  {
-    std::vector<std::vector<T>> messages(static_cast<std::size_t>(this->GetCount()));
-    messages[0] = std::move(mine);
-    return this->Exchange(std::move(messages));
   }
 
 private:
   vtkSPHRanks(const vtkSPHRanks&) = delete;
   void operator=(const vtkSPHRanks&) = delete;
 
-  std::vector<std::vector<char>> GatherBytes(const std::vector<char>& mine);
-  using Visit = std::function<void(char* block, const diy::Master::ProxyWithLink& proxy)>;
-  void ExchangeBlocks(const Visit& send, const Visit& receive);
-
   vtkMPIController* Controller;
   diy::mpi::communicator Communicator;
   std::int64_t BytesSent = 0;
-};
-
-/** The ranks' callbacks for the core. A rank that fails does not leave the others waiting. */
-class vtkSPHRanksCalls
-{
-public:
-  /** `whole`: the box of all ranks; null until space is divided. */
-  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, const double* whole = nullptr);
-
-  /** Returns the callbacks, for mcor_options during one call of the core. */
-  const mcor_ranks* Get() const { return &this->Core; }
-
-  /** Called by all ranks after the core's call, however that ended. */
-  void End(bool failed);
-
-  /** Whether this rank was told that another one failed. */
-  bool WasStopped() const { return this->Stopped; }
-
-private:
-  vtkSPHRanksCalls(const vtkSPHRanksCalls&) = delete;
-  void operator=(const vtkSPHRanksCalls&) = delete;
-
-  bool AllGoOn(bool self);
-  template <typename T>
-  static int Reduce(void* user, mcor_reduction reduction, T* values, int count);
-  static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
-    const void** all, std::int64_t* allCount);
-
-  vtkSPHRanks& Ranks;
-  mcor_ranks Core = {};
-  bool Stopped = false;
-  std::vector<char> Gathered;
 };
 VTK_ABI_NAMESPACE_END
 

@@ -26,17 +26,13 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Whether the values, as VTK makes them, lie side by side as bytes. */
-bool IsPlain(vtkAbstractArray* array)
-{
-  return vtkArrayDownCast<vtkDataArray>(array) && array->GetDataType() != VTK_BIT;
-}
-
-/** The bytes of so many tuples. */
+/** Returns the bytes of so many tuples; 0 if values do not lie side by side as bytes. */
 std::size_t SizeOf(vtkAbstractArray* array, vtkIdType tuples)
 {
-  return static_cast<std::size_t>(tuples * array->GetNumberOfComponents()) *
-    static_cast<std::size_t>(array->GetDataTypeSize());
+  const bool isPlain = vtkArrayDownCast<vtkDataArray>(array) && array->GetDataType() != VTK_BIT;
+  return isPlain ? static_cast<std::size_t>(tuples * array->GetNumberOfComponents()) *
+      static_cast<std::size_t>(array->GetDataTypeSize())
+                 : 0;
 }
 
 /** Packs the message for a rank: the number of tuples, then the tuples; empty if there are none. */
@@ -55,12 +51,12 @@ std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdT
   {
     const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(arrays[a], count);
     arrays[a]->GetTuples(list, part);
-    if (IsPlain(part))
+    const std::size_t size = SizeOf(part, count);
+    if (size > 0)
     {
-      bytes.save_binary(static_cast<char*>(part->GetVoidPointer(0)), SizeOf(part, count));
-      continue;
+      bytes.save_binary(static_cast<char*>(part->GetVoidPointer(0)), size);
     }
-    for (vtkIdType i = 0; i < part->GetNumberOfValues(); ++i)
+    for (vtkIdType i = 0; size == 0 && i < part->GetNumberOfValues(); ++i)
     {
       diy::save(bytes, static_cast<std::string>(part->GetVariantValue(i).ToString()));
     }
@@ -70,14 +66,14 @@ std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdT
 
 void Unpack(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
 {
-  if (IsPlain(array))
+  const std::size_t size = SizeOf(array, count);
+  if (size > 0)
   {
-    bytes.load_binary(
-      static_cast<char*>(array->GetVoidPointer(0)) + SizeOf(array, first), SizeOf(array, count));
-    return;
+    auto* values = static_cast<char*>(array->GetVoidPointer(0));
+    bytes.load_binary(values + SizeOf(array, first), size);
   }
   const int components = array->GetNumberOfComponents();
-  for (vtkIdType i = first * components; i < (first + count) * components; ++i)
+  for (vtkIdType i = first * components; size == 0 && i < (first + count) * components; ++i)
   {
     std::string text;
     diy::load(bytes, text);
@@ -161,36 +157,67 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
   return came;
 }
 
+namespace
+{
+/** Puts tuples at these places among so many; the others are 0. */
+vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& came, vtkIdList* places, vtkIdType count)
+{
+  vtkNew<vtkIdList> order;
+  order->SetNumberOfIds(places->GetNumberOfIds());
+  std::iota(order->begin(), order->end(), vtkIdType(0));
+  vtkSPHRanksArrays put;
+  for (const vtkSmartPointer<vtkAbstractArray>& array : came)
+  {
+    put.push_back(vtkSPHMakeLike(array, count));
+    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(put.back().Get()))
+    {
+      numbers->Fill(0.0);
+    }
+    put.back()->InsertTuples(places, order, array);
+  }
+  return put;
+}
+}
+
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount)
 {
-  vtkNew<vtkIdList> places, order;
+  vtkNew<vtkIdList> places;
   for (const std::vector<vtkIdType>& ids : home)
   {
     for (const vtkIdType id : ids)
     {
-      order->InsertNextId(places->InsertNextId(id));
+      places->InsertNextId(id);
     }
   }
-  vtkSPHRanksArrays returned;
-  for (const vtkSmartPointer<vtkAbstractArray>& came : vtkSPHSendTuples(ranks, arrays, back))
-  {
-    returned.push_back(vtkSPHMakeLike(came, homeCount));
-    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(returned.back().Get()))
-    {
-      numbers->Fill(0.0);
-    }
-    returned.back()->InsertTuples(places, order, came);
-  }
-  return returned;
+  return PutTuples(vtkSPHSendTuples(ranks, arrays, back), places, homeCount);
 }
 
-vtkSPHRanksLists vtkSPHAllToFirst(const vtkSPHRanks& ranks, vtkIdType count)
+vtkSPHRanksArrays vtkSPHGatherTuples(
+  vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers)
 {
-  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount()));
-  to[0].resize(static_cast<std::size_t>(count));
-  std::iota(to[0].begin(), to[0].end(), vtkIdType(0));
-  return to;
+  if (numbers)
+  {
+    arrays.emplace_back(numbers);
+  }
+  vtkSPHRanksLists toFirst(static_cast<std::size_t>(ranks.GetCount()));
+  toFirst[0].resize(static_cast<std::size_t>(arrays.front()->GetNumberOfTuples()));
+  std::iota(toFirst[0].begin(), toFirst[0].end(), vtkIdType(0));
+  vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, arrays, toFirst);
+  if (!numbers)
+  {
+    return came;
+  }
+  auto* theirs = vtkDataArray::SafeDownCast(came.back());
+  vtkNew<vtkIdList> places;
+  vtkIdType count = 0; // numbers go from 0 on
+  for (vtkIdType i = 0; i < theirs->GetNumberOfTuples(); ++i)
+  {
+    places->InsertNextId(static_cast<vtkIdType>(theirs->GetComponent(i, 0)));
+    count = std::max(count, places->GetId(i) + 1);
+  }
+  came.pop_back();
+  return PutTuples(came, places, count);
 }
 
 namespace
@@ -210,7 +237,7 @@ struct Form
   }
 };
 
-/** The form of the positions, then of the point arrays; empty if there are no points. */
+/** The form of the positions, then of the point arrays. */
 using Layout = std::vector<Form>;
 }
 
@@ -245,15 +272,9 @@ std::vector<std::string> LabelsOf(vtkAbstractArray* array)
 /** Lists the point arrays with a name and a value for each point, except vtkGhostType. */
 Layout Describe(vtkPolyData* particles)
 {
-  Layout layout;
-  const vtkIdType count = particles->GetNumberOfPoints();
-  if (count == 0)
-  {
-    return layout;
-  }
   vtkDataArray* positions = particles->GetPoints()->GetData();
-  layout.push_back({ "Points", positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE,
-    LabelsOf(positions), -1 });
+  Layout layout = { { "Points", positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE,
+    LabelsOf(positions), -1 } };
   vtkPointData* arrays = particles->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
@@ -262,7 +283,7 @@ Layout Describe(vtkPolyData* particles)
     const bool isKnown =
       vtkArrayDownCast<vtkDataArray>(array) || array->GetDataType() == VTK_STRING;
     if (isKnown && !name.empty() && name != vtkDataSetAttributes::GhostArrayName() &&
-      array->GetNumberOfTuples() == count)
+      array->GetNumberOfTuples() == particles->GetNumberOfPoints())
     {
       layout.push_back(
         { name, array->GetDataType(), LabelsOf(array), arrays->IsArrayAnAttribute(i) });
@@ -272,17 +293,20 @@ Layout Describe(vtkPolyData* particles)
 }
 
 /**
- * Lists the arrays that all ranks with points have, in the order of the first such rank.
- * Collective.
+ * Lists the arrays that all ranks with points have, in the order of the first such rank. If there
+ * are no points at all, lists those of the rank that has most arrays. Collective.
  */
-Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
+Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
 {
+  std::int64_t most = particles->GetNumberOfPoints();
+  ranks.Reduce(vtkSPHRanks::GREATEST, &most, 1);
+  const bool speaks = particles->GetNumberOfPoints() > 0 || (most == 0 && particles->GetPoints());
   Layout common;
-  for (const Layout& other : ranks.Gather(mine))
+  for (const Layout& other : ranks.Gather(speaks ? Describe(particles) : Layout()))
   {
-    if (common.empty() || other.empty())
+    if (most == 0 || common.empty() || other.empty())
     {
-      common = common.empty() ? other : common;
+      common = common.size() < other.size() ? other : common;
       continue;
     }
     common[0].Type = std::max(common[0].Type, other[0].Type); // VTK_FLOAT < VTK_DOUBLE
@@ -355,40 +379,33 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout,
   }
   return taken;
 }
-
-/** Lists the points that belong to this rank, without those that the choice leaves out. */
-vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data, const vtkSPHParticlesChoice& choice)
-{
-  auto own = vtkSmartPointer<vtkIdList>::New();
-  const vtkIdType count = data ? data->GetNumberOfPoints() : 0;
-  vtkUnsignedCharArray* marks = count > 0 ? data->GetPointGhostArray() : nullptr;
-  const std::vector<bool> present = count > 0 && vtkSPHLeavesOut(choice)
-    ? vtkSPHFindPresent(choice, data)
-    : std::vector<bool>(static_cast<size_t>(count), true);
-  own->Allocate(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const bool isCopy = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
-    if (present[static_cast<size_t>(i)] && !isCopy)
-    {
-      own->InsertNextId(i);
-    }
-  }
-  return own;
-}
 }
 
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
   const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken)
 {
   vtkNew<vtkPolyData> view;
-  if (data && data->GetNumberOfPoints() > 0)
+  vtkNew<vtkIdList> own;
+  const vtkIdType count = data ? data->GetNumberOfPoints() : 0;
+  if (count > 0)
   {
     view->SetPoints(data->GetPoints());
     view->GetPointData()->ShallowCopy(data->GetPointData());
+    vtkUnsignedCharArray* marks = data->GetPointGhostArray();
+    const std::vector<bool> present = vtkSPHLeavesOut(choice)
+      ? vtkSPHFindPresent(choice, data)
+      : std::vector<bool>(static_cast<size_t>(count), true);
+    own->Allocate(count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const bool isCopy = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+      if (present[static_cast<size_t>(i)] && !isCopy)
+      {
+        own->InsertNextId(i);
+      }
+    }
   }
-  const vtkSmartPointer<vtkIdList> own = ListOwn(data, choice);
-  auto particles = TakePoints(view, AgreeOnLayout(ranks, Describe(view)), own);
+  auto particles = TakePoints(view, AgreeOnLayout(ranks, view), own);
   if (data)
   {
     particles->GetFieldData()->ShallowCopy(data->GetFieldData());
@@ -446,12 +463,11 @@ vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPointSet
 
 void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
 {
-  const Layout common = AgreeOnLayout(ranks, Describe(result));
+  const Layout common = AgreeOnLayout(ranks, result);
   if (result->GetNumberOfPoints() == 0)
   {
-    vtkNew<vtkPolyData> nothing;
     vtkNew<vtkIdList> none;
-    const vtkSmartPointer<vtkPolyData> empty = TakePoints(nothing, common, none);
+    const vtkSmartPointer<vtkPolyData> empty = TakePoints(result, common, none);
     result->SetPoints(empty->GetPoints());
     result->GetPointData()->ShallowCopy(empty->GetPointData());
   }

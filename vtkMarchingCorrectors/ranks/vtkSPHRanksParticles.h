@@ -14,6 +14,7 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkAbstractArray;
+class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
@@ -39,9 +40,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
-/** Lists this rank's tuples, so many, for the first rank. */
-vtkSPHRanksLists vtkSPHAllToFirst(const vtkSPHRanks& ranks, vtkIdType count);
-
 /**
  * Sends results back: of each array, to each rank the tuples that `back` lists for it. Returns
  * arrays of `homeCount` tuples, in which `home` lists the places of what comes from each rank;
@@ -49,6 +47,14 @@ vtkSPHRanksLists vtkSPHAllToFirst(const vtkSPHRanks& ranks, vtkIdType count);
  */
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
+
+/**
+ * Gathers tuples on the first rank, each at the place that its number says. The other ranks get
+ * none. numbers: of this rank's tuples in the whole; if null, tuples stay in the order of ranks.
+ * Collective.
+ */
+vtkSPHRanksArrays vtkSPHGatherTuples(
+  vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers);
 
 /**
  * Takes this rank's particles, without those that vtkGhostType marks as another rank's, and

@@ -7,12 +7,14 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
+#include "vtkIntArray.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksWait.h"
+#include "vtkTypeTraits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,11 +50,7 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
   {
     samples.push_back(keys[i * keys.size() / wanted]);
   }
-  Keys sampled;
-  for (const Keys& theirs : ranks.Gather(samples))
-  {
-    sampled.insert(sampled.end(), theirs.begin(), theirs.end());
-  }
+  Keys sampled = ranks.Join(samples);
   std::sort(sampled.begin(), sampled.end());
   Keys ends;
   for (std::size_t rank = 1; rank < count && !sampled.empty(); ++rank)
@@ -168,82 +166,47 @@ void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArr
   ranks.Reduce(vtkSPHRanks::LEAST, measures.origin, 3);
   mcor_measure_terms(&surface, &measures);
   ranks.Reduce(vtkSPHRanks::SUM, &measures.triangle_count, 1);
-  double most[2] = { measures.area_most, measures.volume_most };
-  ranks.Reduce(vtkSPHRanks::GREATEST, most, 2);
-  measures.area_most = most[0];
-  measures.volume_most = most[1];
+  ranks.Reduce(vtkSPHRanks::GREATEST, &measures.area_most, 1);
+  ranks.Reduce(vtkSPHRanks::GREATEST, &measures.volume_most, 1);
   mcor_measure_sums(&surface, own.data(), &measures);
-  double sums[2] = { measures.area, measures.volume };
-  ranks.Reduce(vtkSPHRanks::SUM, sums, 2);
-  measures.area = sums[0];
-  measures.volume = sums[1];
+  ranks.Reduce(vtkSPHRanks::SUM, &measures.area, 1);
+  ranks.Reduce(vtkSPHRanks::SUM, &measures.volume, 1);
   ranks.Reduce(vtkSPHRanks::SUM, &measures.open, 1);
   mcor_keep_measures(&measures, &statistics);
 }
 
-namespace
+vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(vtkSPHRanks& ranks, vtkPolyData* part)
 {
-/** Returns numbers of any type as ids. */
-std::vector<vtkIdType> NumbersOf(vtkDataSetAttributes* data, vtkIdType count)
-{
-  std::vector<vtkIdType> numbers;
-  for (vtkIdType i = 0; i < count; ++i)
+  vtkNew<vtkPolyData> own;
+  own->ShallowCopy(part);
+  const auto takeNumbers = [](vtkDataSetAttributes* data)
   {
-    numbers.push_back(static_cast<vtkIdType>(data->GetGlobalIds()->GetComponent(i, 0)));
-  }
-  return numbers;
-}
-
-/** Returns how many there are in the whole, whose numbers go from 0 on. */
-vtkIdType CountOf(const vtkSPHRanksLists& numbers)
-{
-  vtkIdType count = 0;
-  for (const std::vector<vtkIdType>& theirs : numbers)
-  {
-    count =
-      theirs.empty() ? count : std::max(count, 1 + *std::max_element(theirs.begin(), theirs.end()));
-  }
-  return count;
-}
-}
-
-vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(
-  vtkSPHRanks& ranks, vtkPolyData* part, vtkSPHRanksLists& points, vtkSPHRanksLists& triangles)
-{
-  const vtkIdType pointCount = part->GetNumberOfPoints(), triangleCount = part->GetNumberOfPolys();
-  const std::vector<vtkIdType> numbers = NumbersOf(part->GetPointData(), pointCount);
-  points = ranks.GatherOnFirst(numbers);
-  triangles = ranks.GatherOnFirst(NumbersOf(part->GetCellData(), triangleCount));
+    auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+    if (vtkDataArray* ids = data->GetGlobalIds()) // of any type
+    {
+      numbers->DeepCopy(ids);
+      data->RemoveArray(ids->GetName());
+    }
+    return numbers;
+  };
+  const auto points = takeNumbers(own->GetPointData()), triangles = takeNumbers(own->GetCellData());
   vtkNew<vtkIdTypeArray> corners;
   vtkNew<vtkIdList> triangle;
   corners->SetNumberOfComponents(3);
-  for (vtkIdType t = 0; t < triangleCount; ++t)
+  for (vtkIdType t = 0; t < part->GetNumberOfPolys(); ++t)
   {
     part->GetPolys()->GetCellAtId(t, triangle);
     for (const vtkIdType corner : *triangle)
     {
-      corners->InsertNextValue(numbers[static_cast<std::size_t>(corner)]);
-    }
-  }
-  vtkNew<vtkPolyData> own;
-  own->ShallowCopy(part);
-  for (vtkDataSetAttributes* data : { static_cast<vtkDataSetAttributes*>(own->GetPointData()),
-         static_cast<vtkDataSetAttributes*>(own->GetCellData()) })
-  {
-    if (data->GetGlobalIds())
-    {
-      data->RemoveArray(data->GetGlobalIds()->GetName());
+      corners->InsertNextValue(points->GetValue(corner));
     }
   }
   vtkSPHMatchEmpty(ranks, own);
   vtkSmartPointer<vtkPolyData> whole =
-    vtkSPHMakePoints(vtkSPHReturnTuples(ranks, vtkSPHListArrays(own),
-                       vtkSPHAllToFirst(ranks, pointCount), points, CountOf(points)),
-      own);
+    vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(own), points), own);
   vtkSPHRanksArrays arrays = vtkSPHListArrays(own->GetCellData());
   arrays.emplace_back(corners);
-  arrays = vtkSPHReturnTuples(
-    ranks, arrays, vtkSPHAllToFirst(ranks, triangleCount), triangles, CountOf(triangles));
+  arrays = vtkSPHGatherTuples(ranks, arrays, triangles);
   auto* wholeCorners = vtkDataArray::SafeDownCast(arrays.back());
   wholeCorners->SetNumberOfComponents(1); // one after the other
   vtkNew<vtkCellArray> cells;
@@ -264,10 +227,9 @@ vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkSPHRanks ranks(controller);
   std::int64_t others = ranks.GetRank() > 0 ? part->GetNumberOfPoints() : 0;
   ranks.Reduce(vtkSPHRanks::SUM, &others, 1);
-  vtkSPHRanksLists points, triangles;
   if (others > 0)
   {
-    return vtkSPHGatherSurface(ranks, part, points, triangles);
+    return vtkSPHGatherSurface(ranks, part);
   }
   auto whole = vtkSmartPointer<vtkPolyData>::New(); // the first rank has all, as of lines
   whole->ShallowCopy(part);
@@ -278,40 +240,25 @@ vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
 
 namespace
 {
-/** Copies the values of an array that the surface may lack. */
+/** Makes a VTK array of values of the core, which it borrows. */
 template <typename T>
-std::vector<T> List(const T* values, std::int64_t count)
+vtkSmartPointer<vtkDataArray> View(T* values, int components, std::int64_t tuples)
 {
-  return std::vector<T>(values, values + (values ? count : 0));
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+  array->SetNumberOfComponents(components);
+  array->SetVoidArray(values, values ? tuples * components : 0, 1);
+  return array;
 }
 
-/** Allocates, uninitialized; not null for 0 elements either. */
+/** Copies values of a VTK array for the core, which frees them; not null for 0 elements either. */
 template <typename T>
-bool Allocate(T*& array, vtkIdType count)
+bool Copy(vtkAbstractArray* from, T*& to)
 {
-  array = static_cast<T*>(std::malloc(static_cast<std::size_t>(count) * sizeof(T) + 1));
-  return array != nullptr;
-}
-
-/**
- * Moves the values of all ranks, the same number of values for each of `numbers`, to the first
- * rank, and there to the places that `numbers` (of GatherOnFirst()) say. `to` may be null.
- * Collective.
- */
-template <typename T>
-void PlaceOnFirst(vtkSPHRanks& ranks, const vtkSPHRanksLists& numbers, std::vector<T> values, T* to)
-{
-  const std::vector<std::vector<T>> all = ranks.GatherOnFirst(std::move(values));
-  for (std::size_t rank = 0; to && rank < all.size(); ++rank)
-  {
-    const std::size_t width = all[rank].empty() ? 0 : all[rank].size() / numbers[rank].size();
-    const T* from = all[rank].data();
-    for (const vtkIdType number : numbers[rank])
-    {
-      std::copy_n(from, width, to + static_cast<std::size_t>(number) * width);
-      from += width;
-    }
-  }
+  const auto count = static_cast<std::size_t>(from->GetNumberOfValues());
+  to = static_cast<T*>(std::malloc(count * sizeof(T) + 1));
+  std::copy_n(static_cast<const T*>(from->GetVoidPointer(0)), to ? count : 0, to);
+  return to != nullptr;
 }
 
 /** Returns the whole numbers from 0 on. */
@@ -327,26 +274,51 @@ vtkSmartPointer<vtkIdTypeArray> CountUp(const char* name, vtkIdType count)
 
 vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   const vtkSPHRanksNumbers& numbers, const mcor_plane& plane, bool isFilled)
+  : Numbers(numbers.OfPoints)
 {
-  const bool isFirst = ranks.GetRank() == 0;
-  mcor_surface& whole = this->Whole;
-  whole.point_count = isFirst ? numbers.Points : 0;
-  whole.triangle_count = isFirst && isFilled ? numbers.Triangles : 0;
-  this->Failed = whole.point_count > std::numeric_limits<std::int32_t>::max() ||
-    !Allocate(whole.points, 3 * whole.point_count) ||
-    (isFilled &&
-      (!Allocate(whole.iso_value, whole.point_count) ||
-        !Allocate(whole.triangles, 3 * whole.triangle_count) ||
-        !Allocate(whole.band_value, whole.triangle_count)));
-  const std::vector<Piece> pieces = this->Gather(ranks, surface, numbers);
-  if (isFirst && !this->Failed)
+  const auto numberOf = [this](std::int32_t point)
+  { return static_cast<std::int32_t>(this->Numbers->GetValue(point)); };
+  vtkNew<vtkIntArray> pieces, corners; // of lines, and of triangles, between points of the whole
+  pieces->SetNumberOfComponents(2);
+  corners->SetNumberOfComponents(3);
+  for (std::int64_t line = 0; line < surface.line_count; ++line)
   {
-    this->Failed =
-      mcor_join_lines(&plane, reinterpret_cast<const std::int32_t(*)[2]>(pieces.data()),
-        static_cast<std::int64_t>(pieces.size()), &whole) != MCOR_OK;
+    for (std::int64_t i = surface.line_offsets[line]; i + 1 < surface.line_offsets[line + 1]; ++i)
+    {
+      pieces->InsertNextValue(numberOf(surface.line_points[i]));
+      pieces->InsertNextValue(numberOf(surface.line_points[i + 1]));
+    }
+  }
+  vtkSPHRanksArrays points = { View(surface.points, 3, surface.point_count) };
+  if (isFilled)
+  {
+    points.emplace_back(View(surface.iso_value, 1, surface.point_count));
+    for (std::int64_t i = 0; i < 3 * surface.triangle_count; ++i)
+    {
+      corners->InsertNextValue(numberOf(surface.triangles[i]));
+    }
+  }
+  const vtkSPHRanksArrays all = vtkSPHGatherTuples(ranks, { pieces.Get() }, nullptr);
+  points = vtkSPHGatherTuples(ranks, points, this->Numbers);
+  mcor_surface& whole = this->Whole;
+  bool isGood = Copy(points[0], whole.points);
+  whole.point_count = points[0]->GetNumberOfTuples();
+  if (isFilled)
+  {
+    const vtkSPHRanksArrays triangles = vtkSPHGatherTuples(ranks,
+      { corners.Get(), View(surface.band_value, 1, surface.triangle_count) }, numbers.OfTriangles);
+    isGood = Copy(points[1], whole.iso_value) && Copy(triangles[0], whole.triangles) &&
+      Copy(triangles[1], whole.band_value) && isGood;
+    whole.triangle_count = triangles[0]->GetNumberOfTuples();
+  }
+  if (ranks.GetRank() == 0)
+  {
+    isGood = isGood && numbers.Points <= std::numeric_limits<std::int32_t>::max() &&
+      mcor_join_lines(&plane, static_cast<const std::int32_t(*)[2]>(all[0]->GetVoidPointer(0)),
+        all[0]->GetNumberOfTuples(), &whole) == MCOR_OK;
   }
   const mcor_statistics& s = whole.statistics;
-  std::int64_t counts[2] = { whole.line_count, this->Failed ? 1 : 0 };
+  std::int64_t counts[2] = { whole.line_count, isGood ? 0 : 1 };
   double measures[3] = { s.length, s.area, s.is_closed ? 1.0 : 0.0 };
   ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // the other ranks have no lines or measures
   ranks.Reduce(vtkSPHRanks::SUM, measures, 3);
@@ -357,52 +329,10 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   surface.statistics.is_closed = measures[2] > 0.0;
 }
 
-// Gathers points and triangles into the whole. Returns the pieces of lines, each between two points
-// of the whole.
-std::vector<vtkSPHRanksLines::Piece> vtkSPHRanksLines::Gather(
-  vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers)
-{
-  const std::int64_t points = surface.point_count,
-                     triangles = surface.band_value ? surface.triangle_count : 0;
-  const vtkIdType* number = numbers.OfPoints->GetPointer(0);
-  const auto numberOf = [number](std::int32_t point)
-  { return static_cast<std::int32_t>(number[point]); };
-  this->Numbers = ranks.GatherOnFirst(List(number, points));
-  PlaceOnFirst(ranks, this->Numbers, List(surface.points, 3 * points), this->Whole.points);
-  PlaceOnFirst(ranks, this->Numbers, List(surface.iso_value, points), this->Whole.iso_value);
-  const vtkSPHRanksLists ofTriangles =
-    ranks.GatherOnFirst(List(numbers.OfTriangles->GetPointer(0), triangles));
-  std::vector<std::int32_t> corners = List(surface.triangles, 3 * triangles);
-  std::transform(corners.begin(), corners.end(), corners.begin(), numberOf);
-  PlaceOnFirst(ranks, ofTriangles, std::move(corners), this->Whole.triangles);
-  PlaceOnFirst(ranks, ofTriangles, List(surface.band_value, triangles), this->Whole.band_value);
-  std::vector<Piece> own, all;
-  for (std::int64_t line = 0; line < surface.line_count; ++line)
-  {
-    for (std::int64_t i = surface.line_offsets[line]; i + 1 < surface.line_offsets[line + 1]; ++i)
-    {
-      own.push_back({ numberOf(surface.line_points[i]), numberOf(surface.line_points[i + 1]) });
-    }
-  }
-  for (const std::vector<Piece>& pieces : ranks.GatherOnFirst(std::move(own)))
-  {
-    all.insert(all.end(), pieces.begin(), pieces.end());
-  }
-  return all;
-}
-
-vtkSPHRanksLines::~vtkSPHRanksLines()
-{
-  mcor_free_surface(&this->Whole);
-}
-
 void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
 {
-  const auto count = static_cast<vtkIdType>(this->Whole.point_count);
   const vtkSmartPointer<vtkPolyData> moved =
-    vtkSPHMakePoints(vtkSPHReturnTuples(ranks, vtkSPHListArrays(output),
-                       vtkSPHAllToFirst(ranks, output->GetNumberOfPoints()), this->Numbers, count),
-      output);
+    vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(output), this->Numbers), output);
   vtkPointData* arrays = output->GetPointData();
   output->SetPoints(moved->GetPoints());
   arrays->ShallowCopy(moved->GetPointData());

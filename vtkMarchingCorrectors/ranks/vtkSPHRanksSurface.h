@@ -9,9 +9,8 @@
 #include "vtkIdTypeArray.h"
 #include "vtkPolyData.h"
 #include "vtkSPHRanks.h"
+#include "vtkSPHRun.h"
 #include "vtkSmartPointer.h"
-
-#include <array>
 
 VTK_ABI_NAMESPACE_BEGIN
 /** The numbers of a rank's points and triangles, and how many the whole surface has. */
@@ -37,31 +36,22 @@ void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArr
 
 /**
  * Puts parts together on the first rank, with all arrays, by GlobalPointIds and GlobalCellIds,
- * which go; null on other ranks. points, triangles: on the first rank, the numbers in the whole of
- * what each rank has. Collective.
+ * which go; null on other ranks. Collective.
  */
-vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(
-  vtkSPHRanks& ranks, vtkPolyData* part, vtkSPHRanksLists& points, vtkSPHRanksLists& triangles);
+vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(vtkSPHRanks& ranks, vtkPolyData* part);
 
 /**
  * Lines of particles in a plane, and filled regions. Each rank makes its part; the first rank
  * gathers all, and joins lines as one process does.
  */
-class vtkSPHRanksLines
+struct vtkSPHRanksLines
 {
-public:
   /**
    * Gathers the lines of all ranks. `numbers` are those of this rank's points and triangles in
    * the whole. Sets the measures in the surface's statistics, on all ranks. Collective.
    */
   vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface, const vtkSPHRanksNumbers& numbers,
     const mcor_plane& plane, bool isFilled);
-  ~vtkSPHRanksLines();
-
-  vtkIdType GetCount() const { return this->Count; }
-
-  /** Whether memory ran out on any rank. */
-  bool HasFailed() const { return this->Failed; }
 
   /**
    * Moves the points and their arrays to the first rank, which gets all cells; the others end
@@ -69,18 +59,12 @@ public:
    */
   void Move(vtkSPHRanks& ranks, vtkPolyData* output);
 
+  vtkIdType Count = 0; ///< of all lines
+  bool Failed = false; ///< memory ran out on any rank
+
 private:
-  vtkSPHRanksLines(const vtkSPHRanksLines&) = delete;
-  void operator=(const vtkSPHRanksLines&) = delete;
-
-  using Piece = std::array<std::int32_t, 2>;
-  std::vector<Piece> Gather(
-    vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers);
-
-  mcor_surface Whole = {};  ///< points, lines and triangles, on the first rank
-  vtkSPHRanksLists Numbers; ///< on the first rank: the points of each rank
-  vtkIdType Count = 0;
-  bool Failed = false;
+  vtkSPHOwned<mcor_surface, mcor_free_surface> Whole; ///< all cells and points, on the first rank
+  const vtkSmartPointer<vtkIdTypeArray> Numbers;      ///< of this rank's points
 };
 VTK_ABI_NAMESPACE_END
 

@@ -29,17 +29,6 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* particles);
 
-/** Tests at once, then less and less often. */
-inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
-{
-  std::chrono::microseconds pause(10);
-  while (!request.Test())
-  {
-    std::this_thread::sleep_for(pause);
-    pause = std::min(2 * pause, std::chrono::microseconds(1000));
-  }
-}
-
 /**
  * Returns when all ranks have called it. With every message a rank hears of twice as many
  * others.
@@ -55,8 +44,14 @@ inline void vtkSPHAwaitRanks(vtkMPIController* controller)
     vtkMPICommunicator::Request sending, receiving;
     controller->NoBlockReceive(&received, 1, (rank - step + count) % count, tag, receiving);
     controller->NoBlockSend(&sent, 1, (rank + step) % count, tag, sending);
-    vtkSPHAwait(receiving);
-    vtkSPHAwait(sending);
+    for (vtkMPICommunicator::Request* request : { &receiving, &sending })
+    {
+      for (std::chrono::microseconds pause(10); !request->Test(); // less and less often
+           pause = std::min(2 * pause, std::chrono::microseconds(1000)))
+      {
+        std::this_thread::sleep_for(pause);
+      }
+    }
   }
 }
 VTK_ABI_NAMESPACE_END

@@ -7,9 +7,9 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksStatistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +26,87 @@ namespace
 constexpr double MarginCubes = 4.0;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/** The ranks' callbacks for the core. A rank that fails does not leave the others waiting. */
+class Callbacks
+{
+public:
+  /** `whole`: the box of all ranks; null until space is divided. */
+  explicit Callbacks(vtkSPHRanks& ranks, const double* whole = nullptr)
+    : Ranks(ranks)
+  {
+    this->Core.user = this;
+    this->Core.reduce_doubles = Reduce<double>;
+    this->Core.reduce_counts = Reduce<std::int64_t>;
+    this->Core.gather = Gather;
+    std::copy_n(whole, whole ? 6 : 0, this->Core.whole_box);
+  }
+  Callbacks(const Callbacks&) = delete;
+  void operator=(const Callbacks&) = delete;
+
+  /** Returns the callbacks, for mcor_options during one call of the core. */
+  const mcor_ranks* Get() const { return &this->Core; }
+
+  /** Called by all ranks after the core's call, however that ended. */
+  void End(bool failed)
+  {
+    if (!this->Stopped)
+    {
+      this->AllGoOn(!failed);
+    }
+  }
+
+  /** Whether this rank was told that another one failed. */
+  bool WasStopped() const { return this->Stopped; }
+
+private:
+  /**
+   * Every callback, and the end, begins with this call. So all ranks meet here equally often until
+   * one has failed, and never after that.
+   */
+  bool AllGoOn(bool self)
+  {
+    std::int64_t goesOn = self ? 1 : 0;
+    this->Ranks.Reduce(vtkSPHRanks::LEAST, &goesOn, 1);
+    this->Stopped = self && goesOn == 0;
+    return goesOn != 0;
+  }
+
+  template <typename T>
+  static int Reduce(void* user, mcor_reduction reduction, T* values, int count)
+  {
+    auto* self = static_cast<Callbacks*>(user);
+    const vtkSPHRanks::Operation operations[] = { vtkSPHRanks::LEAST, vtkSPHRanks::GREATEST,
+      vtkSPHRanks::SUM };
+    if (!self->AllGoOn(true))
+    {
+      return 1;
+    }
+    self->Ranks.Reduce(operations[reduction], values, count);
+    return 0;
+  }
+
+  static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
+    const void** all, std::int64_t* allCount)
+  {
+    auto* self = static_cast<Callbacks*>(user);
+    if (!self->AllGoOn(true))
+    {
+      return 1;
+    }
+    const auto* first = static_cast<const char*>(records);
+    const std::size_t size = first ? static_cast<std::size_t>(count) * width : 0;
+    self->Gathered = self->Ranks.Join(std::vector<char>(first, first + size));
+    *all = self->Gathered.data();
+    *allCount = static_cast<std::int64_t>(self->Gathered.size() / width);
+    return 0;
+  }
+
+  vtkSPHRanks& Ranks;
+  mcor_ranks Core = {};
+  bool Stopped = false;
+  std::vector<char> Gathered;
+};
 
 std::string Describe(const vtkSPHPeriod& found)
 {
@@ -45,9 +126,9 @@ vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
 {
   vtkSPHRanks ranks(controller);
+  const vtkSPHPeriod mine = vtkSPHFindPeriod(data);
   vtkSPHPeriod first;
   int rank = 0, firstRank = 0;
-  const vtkSPHPeriod mine = vtkSPHFindPeriod(data);
   for (const auto& theirs : ranks.Gather(std::make_pair(mine.Period, mine.Array)))
   {
     const vtkSPHPeriod found = { theirs.first, theirs.second };
@@ -58,10 +139,9 @@ vtkSPHPeriod vtkSPHFindPeriodDistributed(
     }
     else if (!found.Period.empty() && found.Period != first.Period && problem.empty())
     {
-      std::ostringstream text;
-      text << "The field data of the processes give different periods: " << Describe(first)
-           << " on rank " << firstRank << ", " << Describe(found) << " on rank " << rank << ".";
-      problem = text.str();
+      problem = "The field data of the processes give different periods: " + Describe(first) +
+        " on rank " + std::to_string(firstRank) + ", " + Describe(found) + " on rank " +
+        std::to_string(rank) + ".";
     }
     ++rank;
   }
@@ -79,12 +159,6 @@ std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   }
   ranks.ReduceRanges(ends, 3);
   return vtkSPHBoundsOfPeriod(period, ends);
-}
-
-vtkSPHAlgorithm::vtkSharedRun::vtkSharedRun(vtkSPHAlgorithm* filter)
-  : vtkRun(filter)
-  , Ranks(filter->Controller)
-{
 }
 
 bool vtkSPHAlgorithm::vtkSharedRun::Agree(const std::string& problem)
@@ -146,13 +220,13 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;
-  const vtkSPHRanksPeriod period(this->Options, this->Globals);
+  const vtkSPHRanksSpace space(this->Options, this->Globals);
   const double margin = MarginCubes * measured.cube;
   for (int a = 0; a < 3; ++a)
   {
     const auto clamp = [&measured, a](double x)
     { return std::min(std::max(x, measured.low[a]), measured.high[a]); };
-    const bool isPeriodic = period.Length[a] > 0.0;
+    const bool isPeriodic = space.IsPeriodic(a);
     this->Options.box[2 * a] = isPeriodic ? -Infinity : clamp(low[a]) - margin;
     this->Options.box[2 * a + 1] = isPeriodic ? Infinity : clamp(high[a]) + margin;
   }
@@ -161,23 +235,23 @@ void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double h
 // Takes the points with finite coordinates, and the box around those of all ranks.
 void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 {
-  const vtkSPHRanksPeriod period(this->Options, this->Globals);
+  const vtkSPHRanksSpace space(this->Options, this->Globals);
   double box[6] = { Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity };
+  this->Numbers.clear();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (vtkIdType i = 0; data && i < data->GetNumberOfPoints(); ++i)
   {
-    vtkSPHRanksPlace place;
+    vtkSPHRanksPlace place = { {}, 1 };
     data->GetPoint(i, place.At);
     if (!std::isfinite(place.At[0]) || !std::isfinite(place.At[1]) || !std::isfinite(place.At[2]))
     {
       continue;
     }
     points->InsertNextPoint(place.At);
-    this->PlaceNumbers.push_back(i);
-    period.Take(place.At);
-    place.Work = 1;
-    this->Balance.Others.push_back(place);
+    this->Numbers.push_back(i);
+    space.Enter(place.At);
+    this->PlacesOfWork.push_back(place);
     for (int a = 0; a < 3; ++a)
     {
       box[2 * a] = std::min(box[2 * a], place.At[a]);
@@ -196,10 +270,14 @@ void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 
 void vtkSPHAlgorithm::vtkSharedRun::Scatter(const mcor_input& core, vtkPointSet* particles)
 {
-  this->Route = vtkSPHFindRoute(this->Ranks, core, this->Options, this->Globals, this->Balance);
-  this->Near = vtkSPHSendParticles(this->Ranks, particles, this->Route.To, &this->From);
+  this->Work.resize(static_cast<std::size_t>(core.count), 1);
+  this->Space = vtkSPHRanksSpace(this->Options, this->Globals);
+  const vtkSPHRanksLists to =
+    this->Space.Share(this->Ranks, core, this->Work, std::move(this->PlacesOfWork));
+  this->Near = vtkSPHSendParticles(this->Ranks, particles, to, &this->From);
   this->Options.globals = &this->Globals;
-  std::copy(this->Route.Box, this->Route.Box + 6, this->Options.box);
+  const vtkSPHRanksBox box = this->Space.GetBox(this->Ranks.GetRank());
+  std::copy(box.begin(), box.end(), this->Options.box);
 }
 
 vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine, const Collect& collect)
@@ -207,9 +285,8 @@ vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine, con
   this->Scatter(mine.Core, vtkSPHKeepUsed(this->Own, mine));
   if (this->Places)
   {
-    this->PlacesTo = this->Route.ListOwners(this->Places);
-    this->Points =
-      vtkSPHSendParticles(this->Ranks, this->Places, this->PlacesTo, &this->PlacesFrom);
+    this->Points = vtkSPHSendParticles(
+      this->Ranks, this->Places, this->Space.ListOwners(this->Places), &this->From);
   }
   this->Input = std::make_unique<vtkSPHParticles>(mine.Description, this->Near);
   const bool isUsable = collect(*this->Input);
@@ -221,7 +298,7 @@ const std::uint8_t* vtkSPHAlgorithm::vtkSharedRun::MarkOwned()
   this->Owned.clear();
   for (vtkIdType i = 0; i < this->Near->GetNumberOfPoints(); ++i)
   {
-    this->Owned.push_back(this->Owns(i) ? 1 : 0);
+    this->Owned.push_back(this->Owns(this->Near, i) ? 1 : 0);
   }
   this->Owned.push_back(0); // not null where there are none
   return this->Owned.data();
@@ -230,12 +307,15 @@ const std::uint8_t* vtkSPHAlgorithm::vtkSharedRun::MarkOwned()
 bool vtkSPHAlgorithm::vtkSharedRun::Call(
   vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call)
 {
-  int place, count;
-  this->Ranks.FindNeighbors(place, count);
-  vtkSPHRanksCalls calls(this->Ranks, this->Route.Partition ? this->Route.Whole.data() : nullptr);
+  const std::string machine = vtkMPIController::GetProcessorName();
+  const std::vector<std::string> all = this->Ranks.Gather(machine);
+  const auto place = std::count(all.begin(), all.begin() + this->Ranks.GetRank(), machine);
+  const auto count = std::count(all.begin(), all.end(), machine);
+  Callbacks calls(this->Ranks, this->Space.IsShared() ? this->Space.GetWhole().data() : nullptr);
   this->Options.ranks = calls.Get();
   std::string message;
-  const int status = this->CallCore(particles, call, message, place, count);
+  const int status =
+    this->CallCore(particles, call, message, static_cast<int>(place), static_cast<int>(count));
   this->Options.ranks = nullptr;
   calls.End(status != MCOR_OK);
   std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
@@ -245,38 +325,33 @@ bool vtkSPHAlgorithm::vtkSharedRun::Call(
 
 void vtkSPHAlgorithm::vtkSharedRun::CallAside(const std::function<bool(const mcor_ranks*)>& call)
 {
-  vtkSPHRanksCalls calls(this->Ranks);
+  Callbacks calls(this->Ranks);
   calls.End(!call(calls.Get()));
-}
-
-bool vtkSPHAlgorithm::vtkSharedRun::Owns(vtkIdType near) const
-{
-  return this->Route.FindOwner(this->Near->GetPoint(near)) == this->Ranks.GetRank();
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)
 {
-  // Tuples that came from one rank lie together.
+  const vtkSmartPointer<vtkDataSet> mine = this->Places ? this->Places.Get() : this->Own.Get(),
+                                    sent = this->Places ? this->Points.Get() : this->Near.Get();
   vtkSPHRanksLists back;
   vtkIdType next = 0;
-  for (const vtkIdType count : this->Places ? this->PlacesFrom : this->From)
+  for (const vtkIdType count : this->From) // what came from one rank lies together
   {
     back.emplace_back();
     for (const vtkIdType end = next + count; next < end; ++next)
     {
-      if (this->Places || this->Owns(next))
+      if (this->Owns(sent, next))
       {
         back.back().push_back(next);
       }
     }
   }
-  vtkSPHRanksLists places = this->Places ? this->PlacesTo : this->Route.ListOwners(this->Own);
-  const std::vector<vtkIdType>& numbers = this->Places ? this->PlaceNumbers : this->Numbers;
+  vtkSPHRanksLists places = this->Space.ListOwners(mine);
   for (std::vector<vtkIdType>& list : places)
   {
     for (vtkIdType& place : list)
     {
-      place = numbers.empty() ? place : numbers[static_cast<std::size_t>(place)];
+      place = this->Numbers.empty() ? place : this->Numbers[static_cast<std::size_t>(place)];
     }
   }
   const vtkSPHRanksArrays came = vtkSPHReturnTuples(
@@ -299,10 +374,30 @@ void vtkSPHAlgorithm::vtkSharedRun::FindNotFinite(
   }
 }
 
+vtkSPHAlgorithm::vtkSharedRun::Shares vtkSPHAlgorithm::vtkSharedRun::ListShares() const
+{
+  return { { "RankParticles", this->Space.OwnedParticles },
+    { "RankCopies", this->Space.Particles - this->Space.OwnedParticles },
+    { "RankBytesSent", this->Ranks.GetBytesSent() } };
+}
+
+void vtkSPHAlgorithm::vtkSharedRun::AddShares(const Shares& shares, double seconds)
+{
+  for (const auto& share : shares)
+  {
+    vtkSPHAddCount(this->Filter->RunStatistics, share.first, this->Ranks.Gather(share.second));
+  }
+  vtkSPHAddReal(this->Filter->RunStatistics, "RankSeconds", this->Ranks.Gather(seconds));
+}
+
 void vtkSPHAlgorithm::vtkSharedRun::AddShares()
 {
-  vtkSPHAddSampleShares(this->Ranks, this->Filter->RunStatistics, this->Route,
-    this->Points ? this->Points->GetNumberOfPoints() : this->Route.OwnedParticles);
+  Shares shares = this->ListShares();
+  shares.emplace_back(
+    "RankPoints", this->Points ? this->Points->GetNumberOfPoints() : this->Space.OwnedParticles);
+  vtkDataArray* seconds = this->Filter->RunStatistics->GetArray("Seconds");
+  const int total = seconds ? seconds->GetNumberOfComponents() - 1 : 0;
+  this->AddShares(shares, seconds ? seconds->GetComponent(0, total) : 0.0);
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::OfAll(mcor_input& core, mcor_options& options) const

@@ -11,14 +11,18 @@
 #include "mcor_parts.h"
 #include "vtkPolyData.h"
 #include "vtkSPHRanks.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksSpace.h"
 #include "vtkSPHRun.h"
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHAlgorithm::vtkSharedRun : public vtkSPHAlgorithm::vtkRun
 {
 public:
-  explicit vtkSharedRun(vtkSPHAlgorithm* filter);
+  explicit vtkSharedRun(vtkSPHAlgorithm* filter)
+    : vtkRun(filter)
+    , Ranks(filter->Controller)
+  {
+  }
   ~vtkSharedRun() override { mcor_free_globals(&this->Globals); }
 
   bool IsShared() const override { return true; }
@@ -58,27 +62,35 @@ public:
   void Scatter(const mcor_input& core, vtkPointSet* particles);
   /** Makes of a rank's particles, of which the warnings read no positions, those of all ranks. */
   void OfAll(mcor_input& core, mcor_options& options) const;
-  /** Whether this rank's box holds a particle that was sent to it. */
-  bool Owns(vtkIdType near) const;
+  /** Names, and what this rank has done. */
+  using Shares = std::vector<std::pair<const char*, std::int64_t>>;
+  /** Lists what was exchanged: "RankParticles", "RankCopies" and "RankBytesSent". */
+  Shares ListShares() const;
+  /** Adds shares, one component for each rank, and "RankSeconds". */
+  void AddShares(const Shares& shares, double seconds);
 
   vtkSPHRanks Ranks;
   mcor_globals Globals = {};
-  vtkSPHRanksBalance Balance;
-  vtkSPHRanksRoute Route;
+  std::vector<std::int64_t> Work; ///< of its own particles; empty: 1 each
+  vtkSPHRanksSpace Space;
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
 
 protected:
   std::vector<double> FindPeriod(std::string& problem) override;
 
 private:
-  std::vector<vtkIdType> Numbers; ///< of its particles among those that it was given
-  std::vector<vtkIdType> From;    ///< how many particles came from each rank
+  /** Whether this rank's box holds what was sent to it. */
+  bool Owns(vtkDataSet* sent, vtkIdType i) const
+  {
+    return this->Space.FindOwner(sent->GetPoint(i)) == this->Ranks.GetRank();
+  }
+
   std::unique_ptr<vtkSPHParticles> Input;
   std::vector<std::uint8_t> Owned;
-  vtkSmartPointer<vtkPolyData> Places; ///< its points with finite coordinates
-  std::vector<vtkIdType> PlaceNumbers; ///< of these among its points
-  vtkSPHRanksLists PlacesTo;           ///< those that each rank evaluates
-  std::vector<vtkIdType> PlacesFrom;   ///< how many points came from each rank
+  vtkSmartPointer<vtkPolyData> Places;        ///< its points with finite coordinates
+  std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< those of these points
+  std::vector<vtkIdType> Numbers;             ///< of Places, or of its particles, among those given
+  std::vector<vtkIdType> From;                ///< how many of these came from each rank
 };
 VTK_ABI_NAMESPACE_END
 

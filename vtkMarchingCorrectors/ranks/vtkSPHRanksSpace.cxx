@@ -1,0 +1,514 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksSpace.h"
+
+#include "vtkDataSet.h"
+#include "vtkSPHReals.h"
+#include "vtkSPHRun.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+VTK_ABI_NAMESPACE_BEGIN
+namespace
+{
+/** Cubes along an edge of a brick. Cuts may lie anywhere, but those between bricks cost least. */
+constexpr double BrickCubes = 4.0;
+
+/** Samples for each rank's share of the work: shares come out even within some percent. */
+constexpr std::int64_t SamplesPerRank = 1024;
+
+/** Cells of the coarse grid. */
+constexpr double CellLimit = 1 << 18;
+
+/** Edge of a cell in median smoothing lengths, unless that makes too many cells. */
+constexpr double CellLengths = 2.0;
+
+/** The cost of a cube with surface, in costs of a particle. */
+constexpr double CubeWork = 40.0;
+
+/** A cell has far fewer particles than another if it has less than one in so many. */
+constexpr std::int64_t FarFewer = 4;
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+std::size_t Index(int i)
+{
+  return static_cast<std::size_t>(i);
+}
+}
+
+vtkSPHRanksSpace::vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals)
+  : Options(&options)
+  , Globals(&globals)
+  , Margin(mcor_reach_margin(&options, &globals, 0.0))
+{
+  const mcor_plane& plane = globals.measured.plane;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double edge = globals.measured.edge[a];
+    const double first = options.periodic[2 * a];
+    // A period across the plane of two dimensions means nothing.
+    this->Length[a] =
+      plane.axis == a + 1 ? 0.0 : std::max(0.0, options.periodic[2 * a + 1] - first);
+    this->First[a] = this->IsPeriodic(a) ? edge * std::ceil(first / edge - 0.5) : 0.0;
+    double low = this->IsPeriodic(a) ? this->First[a] : -Infinity;
+    double high = this->IsPeriodic(a) ? this->First[a] + this->Length[a] : Infinity;
+    if (mcor_has_box(&options))
+    {
+      low = std::min(std::max(low, options.box[2 * a]), high);
+      high = std::max(std::min(high, options.box[2 * a + 1]), low);
+      // A flat box in the plane of particles must hold them.
+      high = plane.axis == a + 1 && low == plane.at ? std::max(high, std::nextafter(low, Infinity))
+                                                    : high;
+    }
+    this->Whole[Index(2 * a)] = low;
+    this->Whole[Index(2 * a + 1)] = high;
+  }
+}
+
+void vtkSPHRanksSpace::Enter(double at[3]) const
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    if (this->IsPeriodic(a))
+    {
+      at[a] -= std::floor((at[a] - this->First[a]) / this->Length[a]) * this->Length[a];
+    }
+  }
+}
+
+// Finds how far a particle reaches by its scaled and widened support, and, of a large particle, by
+// what it needs more than the least margin: levels are those of the lengths before widening.
+double vtkSPHRanksSpace::ReachOf(const mcor_input& input, std::int64_t i) const
+{
+  const mcor_options& options = *this->Options;
+  const double factor = options.h_scale * mcor_support_factor(options.sph_kernel);
+  const double support = input.estimate_smoothing_length
+    ? this->Globals->measured.h_estimate * factor
+    : vtkSPHValueOf(input.smoothing_length, i) *
+      (input.smoothing_length_is_support_radius ? options.h_scale : factor);
+  const double more = mcor_reach_margin(&options, this->Globals, support / factor) - this->Margin;
+  return support * (input.widening.data ? vtkSPHValueOf(input.widening, i) : 1.0) + more;
+}
+
+bool vtkSPHRanksSpace::Holds(const double at[3]) const
+{
+  bool isIn = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    isIn = isIn && at[a] >= this->Whole[Index(2 * a)] && at[a] < this->Whole[Index(2 * a + 1)];
+  }
+  return isIn;
+}
+
+vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& input,
+  const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places)
+{
+  const std::size_t count = Index(ranks.GetCount());
+  places.reserve(places.size() + work.size());
+  for (std::size_t i = 0; i < work.size(); ++i)
+  {
+    if (work[i] > 0)
+    {
+      vtkSPHRanksPlace place = { {}, work[i], static_cast<vtkIdType>(i) };
+      for (int a = 0; a < 3; ++a)
+      {
+        place.At[a] = vtkSPHValueOf(input.positions, 3 * place.Particle + a);
+      }
+      this->Enter(place.At);
+      place.Reach = this->ReachOf(input, place.Particle);
+      places.push_back(place);
+    }
+  }
+  this->Divide(ranks, places);
+  const std::vector<double> radii = this->FindRadii(ranks, input, places);
+  const double widest = *std::max_element(radii.begin(), radii.end());
+  vtkSPHRanksLists to(count);
+  std::vector<std::int64_t> totals(3 * count, 0);
+  std::vector<int> found, own;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    if (place.Particle < 0)
+    {
+      continue;
+    }
+    if (this->Holds(place.At))
+    {
+      const std::size_t owner = Index(this->FindOwner(place.At));
+      ++totals[owner];
+      totals[2 * count + owner] += place.Work;
+    }
+    const double most = std::max(place.Reach, widest);
+    this->FindReached(place.At, most, found);
+    for (const int rank : found)
+    {
+      const double reach = std::max(place.Reach, radii[Index(rank)]);
+      if (reach < most)
+      {
+        this->FindReached(place.At, reach, own);
+        if (std::find(own.begin(), own.end(), rank) == own.end())
+        {
+          continue;
+        }
+      }
+      to[Index(rank)].push_back(place.Particle);
+      ++totals[count + Index(rank)];
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, totals.data(), static_cast<int>(totals.size()));
+  const std::size_t self = Index(ranks.GetRank());
+  this->OwnedParticles = totals[self];
+  this->Particles = totals[count + self];
+  this->Work = totals[2 * count + self];
+  return to;
+}
+
+// Finds how far around its box each rank needs all particles, whatever their supports: for
+// computed volumes, and for nearest particles.
+std::vector<double> vtkSPHRanksSpace::FindRadii(
+  vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const
+{
+  const mcor_options& o = *this->Options;
+  const bool computesVolumes = vtkSPHComputesVolumes(input);
+  const bool findsNearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) != 0;
+  std::vector<double> radii(Index(ranks.GetCount()), 0.0);
+  if (!computesVolumes && o.widen <= 1.0 && !findsNearest)
+  {
+    return radii;
+  }
+  std::vector<int> found;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    if (place.Particle >= 0)
+    {
+      this->FindReached(place.At, place.Reach, found);
+      for (const int rank : found)
+      {
+        radii[Index(rank)] = std::max(radii[Index(rank)], place.Reach);
+      }
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
+  for (double& radius : radii)
+  {
+    const double cubes = this->Margin;
+    const double volumes = computesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
+    const double nearest = findsNearest ? radius + cubes : 0.0;
+    // Sums at particles whose lengths are widened: see mcor_widen.
+    const double widened =
+      o.widen > 1.0 ? std::max(volumes, radius) * (1.0 + o.widen) + cubes : 0.0;
+    radius = radius > 0.0 ? std::max({ volumes, nearest, widened }) : 0.0;
+  }
+  return radii;
+}
+
+// A sample stands for `step` of the work; where there is little, all of it is sampled.
+void vtkSPHRanksSpace::Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places)
+{
+  std::int64_t all = 0, before = 0;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    all += this->Holds(place.At) ? place.Work : 0;
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, &all, 1);
+  const std::int64_t step = std::max<std::int64_t>(1, all / (SamplesPerRank * ranks.GetCount()));
+  std::vector<vtkSPHRanksPlace> samples;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    const std::int64_t work = this->Holds(place.At) ? place.Work : 0;
+    const std::int64_t count = (before + work) / step - before / step;
+    before += work;
+    if (count > 0)
+    {
+      samples.push_back(place);
+      samples.back().Work = count;
+    }
+  }
+  samples = ranks.Join(samples);
+  this->Planes.resize(Index(ranks.GetCount()));
+  this->Boxes.resize(Index(ranks.GetCount()));
+  this->Cut(samples.begin(), samples.end(), 0, ranks.GetCount(), this->Whole);
+}
+
+// Cuts a box, which so many ranks from the first one on share, across the longest side of the
+// samples' bounds, at the side of a brick that leaves the work below nearest to the goal.
+void vtkSPHRanksSpace::Cut(
+  Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box)
+{
+  if (count == 1)
+  {
+    this->Boxes[Index(first)] = box;
+    return;
+  }
+  int axis = 0;
+  double longest = -Infinity;
+  for (int a = 0; a < 3 && begin != end; ++a)
+  {
+    const auto ends = std::minmax_element(begin, end,
+      [a](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q) { return p.At[a] < q.At[a]; });
+    const double length = ends.second->At[a] - ends.first->At[a];
+    axis = length > longest ? a : axis;
+    longest = std::max(longest, length);
+  }
+  std::sort(begin, end,
+    [axis](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q)
+    { return p.At[axis] < q.At[axis]; });
+  const auto workUntil = [begin](Samples to)
+  {
+    return std::accumulate(begin, to, std::int64_t(0),
+      [](std::int64_t sum, const vtkSPHRanksPlace& place) { return sum + place.Work; });
+  };
+  const auto findEnd = [=](double plane)
+  {
+    return std::lower_bound(begin, end, plane,
+      [axis](const vtkSPHRanksPlace& place, double at) { return place.At[axis] < at; });
+  };
+  const int lower = count / 2;
+  const std::int64_t goal = workUntil(end) * lower / count;
+  std::int64_t below = 0;
+  Samples middle = begin;
+  while (middle != end && below + middle->Work <= goal)
+  {
+    below += (middle++)->Work;
+  }
+  const double brick = BrickCubes * this->Globals->measured.cube;
+  const double side = middle == end ? 0.0 : std::floor(middle->At[axis] / brick); // or the next
+  const std::int64_t less = goal - workUntil(findEnd(side * brick));
+  const std::int64_t more = workUntil(findEnd((side + 1.0) * brick)) - goal;
+  const double plane =
+    std::min(std::max((side + (more < less ? 1.0 : 0.0)) * brick, box[Index(2 * axis)]),
+      box[Index(2 * axis + 1)]);
+  middle = findEnd(plane);
+  vtkSPHRanksBox low = box, high = box;
+  low[Index(2 * axis + 1)] = high[Index(2 * axis)] = plane;
+  this->Planes[Index(first + lower)] = { axis, plane };
+  this->Cut(begin, middle, first, lower, low);
+  this->Cut(middle, end, first + lower, count - lower, high);
+}
+
+// If there are more ranks than bricks, some boxes are empty: the core wants a box, so it gets one
+// where there is nothing.
+vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
+{
+  const vtkSPHRanksBox& box = this->Boxes[Index(rank)];
+  const bool isEmpty = box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5];
+  return isEmpty ? vtkSPHRanksBox{ 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 } : box;
+}
+
+int vtkSPHRanksSpace::FindOwner(const double at[3]) const
+{
+  double place[3] = { at[0], at[1], at[2] };
+  this->Enter(place);
+  int first = 0;
+  for (int count = static_cast<int>(this->Boxes.size()); count > 1;)
+  {
+    const int lower = count / 2;
+    const Plane& plane = this->Planes[Index(first + lower)];
+    const bool isBelow = place[plane.Axis] < plane.At;
+    first += isBelow ? 0 : lower;
+    count = isBelow ? lower : count - lower;
+  }
+  return first;
+}
+
+vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
+{
+  vtkSPHRanksLists owners(this->Boxes.size());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    owners[Index(this->FindOwner(points->GetPoint(i)))].push_back(i);
+  }
+  return owners;
+}
+
+// Finds the ranks whose boxes, or images of them, a particle at a place in the first period
+// reaches, and the least margin.
+void vtkSPHRanksSpace::FindReached(const double at[3], double reach, std::vector<int>& found) const
+{
+  const double radius = reach + this->Margin;
+  const int owner = this->Holds(at) ? this->FindOwner(at) : -1;
+  bool isWithin = owner >= 0; // the usual case
+  int last[3], images = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    isWithin = isWithin && at[a] - radius > this->Boxes[Index(owner)][Index(2 * a)] &&
+      at[a] + radius < this->Boxes[Index(owner)][Index(2 * a + 1)];
+    // The core refuses supports of more than two periods.
+    const double periods = this->IsPeriodic(a) ? std::ceil(radius / this->Length[a]) : 0.0;
+    last[a] = static_cast<int>(std::min(periods, 3.0));
+    images *= 2 * last[a] + 1;
+  }
+  found.assign(isWithin ? 1 : 0, owner);
+  for (int image = 0; image < images && !isWithin; ++image)
+  {
+    vtkSPHRanksBox box;
+    int rest = image;
+    for (int a = 0; a < 3; rest /= 2 * last[a++] + 1)
+    {
+      const double place = at[a] + (rest % (2 * last[a] + 1) - last[a]) * this->Length[a];
+      box[Index(2 * a)] = place - radius;
+      box[Index(2 * a + 1)] = place + radius;
+    }
+    this->FindOverlaps(box, 0, static_cast<int>(this->Boxes.size()), found);
+  }
+}
+
+// Adds those of so many ranks, from the first one on, whose boxes overlap this box.
+void vtkSPHRanksSpace::FindOverlaps(
+  const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const
+{
+  if (count > 1)
+  {
+    const int lower = count / 2;
+    const Plane& plane = this->Planes[Index(first + lower)];
+    if (box[Index(2 * plane.Axis)] <= plane.At)
+    {
+      this->FindOverlaps(box, first, lower, found);
+    }
+    if (box[Index(2 * plane.Axis + 1)] >= plane.At)
+    {
+      this->FindOverlaps(box, first + lower, count - lower, found);
+    }
+    return;
+  }
+  bool overlaps = std::find(found.begin(), found.end(), first) == found.end();
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = this->Boxes[Index(first)][Index(2 * a)],
+                 high = this->Boxes[Index(first)][Index(2 * a + 1)];
+    overlaps = overlaps && low < high && box[Index(2 * a)] <= high && box[Index(2 * a + 1)] >= low;
+  }
+  if (overlaps)
+  {
+    found.push_back(first);
+  }
+}
+
+namespace
+{
+using Range = std::array<double, 2>; // least and greatest
+
+/** Cells around all fluid, with what all ranks have in them. */
+struct CoarseGrid
+{
+  explicit CoarseGrid(const mcor_measure& m)
+    : Edge(std::max(CellLengths * m.h_median, m.cube))
+    , Low(m.x_low)
+  {
+    const auto cellsAlong = [this, &m](int a)
+    { return std::floor((m.x_high[a] - m.x_low[a]) / this->Edge) + 1.0; };
+    while (cellsAlong(0) * cellsAlong(1) * cellsAlong(2) > CellLimit)
+    {
+      this->Edge *= 1.25;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Size[a] = static_cast<std::size_t>(cellsAlong(a));
+    }
+    this->Counts.assign(this->Size[0] * this->Size[1] * this->Size[2], 0);
+    this->Ranges.assign(this->Counts.size(), { Infinity, -Infinity });
+  }
+
+  std::size_t Find(const mcor_array& positions, std::int64_t i) const
+  {
+    std::size_t cell = 0;
+    for (int a = 2; a >= 0; --a)
+    {
+      const double at = (vtkSPHValueOf(positions, 3 * i + a) - this->Low[a]) / this->Edge;
+      const double last = static_cast<double>(this->Size[a]) - 1.0;
+      cell = cell * this->Size[a] +
+        static_cast<std::size_t>(std::min(std::max(std::floor(at), 0.0), last));
+    }
+    return cell;
+  }
+
+  /**
+   * Estimates how many surfaces, each as large as a side of the cell, pass through it, from the
+   * cell and the six around it.
+   */
+  int CountSurfaces(const mcor_options& options, std::size_t cell) const
+  {
+    double low = this->Ranges[cell][0], high = this->Ranges[cell][1];
+    int ends = 0; // sides at which the fluid ends
+    std::size_t stride = 1;
+    for (const std::size_t size : this->Size)
+    {
+      const std::size_t at = cell / stride % size;
+      for (const bool isUp : { false, true })
+      {
+        const bool isIn = isUp ? at + 1 < size : at > 0;
+        const std::size_t other = isUp ? cell + stride : cell - stride;
+        ends += !isIn || FarFewer * this->Counts[other] < this->Counts[cell] ? 1 : 0;
+        low = isIn ? std::min(low, this->Ranges[other][0]) : low;
+        high = isIn ? std::max(high, this->Ranges[other][1]) : high;
+      }
+      stride *= size;
+    }
+    return options.field == MCOR_WEIGHT_SUM
+      ? ends * options.iso_count
+      : static_cast<int>(std::count_if(options.iso_values, options.iso_values + options.iso_count,
+          [low, high](double iso) { return low <= iso && iso <= high; }));
+  }
+
+  double Edge;
+  const double* const Low;
+  std::size_t Size[3];
+  std::vector<std::int64_t> Counts; // of fluid particles
+  std::vector<Range> Ranges;        // of what is contoured
+};
+}
+
+std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options)
+{
+  std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
+  const bool usesSolids =
+    !input.ignore_solids && (options.field != MCOR_WEIGHT_SUM || options.wall_share != 0.0);
+  for (std::int64_t i = 0; input.solid && !usesSolids && i < input.count; ++i)
+  {
+    work[static_cast<std::size_t>(i)] = input.solid[i] ? 0 : 1;
+  }
+  return work;
+}
+
+std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals)
+{
+  CoarseGrid grid(globals.measured);
+  const bool hasValues = options.field != MCOR_WEIGHT_SUM;
+  const auto isFluid = [&input](std::int64_t i) { return !input.solid || !input.solid[i]; };
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    if (isFluid(i))
+    {
+      const std::size_t cell = grid.Find(input.positions, i);
+      const double value = hasValues ? vtkSPHScalarOf(input, i) : 0.0;
+      Range& range = grid.Ranges[cell];
+      range = { std::min(range[0], value), std::max(range[1], value) };
+      ++grid.Counts[cell];
+    }
+  }
+  const int count = static_cast<int>(grid.Counts.size());
+  ranks.Reduce(vtkSPHRanks::SUM, grid.Counts.data(), count);
+  if (hasValues)
+  {
+    ranks.ReduceRanges(grid.Ranges.front().data(), count);
+  }
+  const double across = grid.Edge / globals.measured.cube;
+  std::vector<std::int64_t> shares; // of a cell's surface, for each of its particles
+  for (std::size_t cell = 0; cell < grid.Counts.size(); ++cell)
+  {
+    const double particles = static_cast<double>(std::max<std::int64_t>(grid.Counts[cell], 1));
+    const double cost = grid.CountSurfaces(options, cell) * CubeWork * across * across;
+    shares.push_back(static_cast<std::int64_t>(std::min(cost / particles, 1e9)));
+  }
+  std::vector<std::int64_t> work = vtkSPHCountWork(input, options);
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    work[static_cast<std::size_t>(i)] += isFluid(i) ? shares[grid.Find(input.positions, i)] : 0;
+  }
+  return work;
+}
+VTK_ABI_NAMESPACE_END

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/** Private to the module: which rank owns which part of space, and which particles it needs. */
+#ifndef vtkSPHRanksSpace_h
+#define vtkSPHRanksSpace_h
+
+#include "mcor_parts.h"
+#include "vtkSPHRanks.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkDataSet;
+
+/** Low and high sides of x, y, z. The low sides belong to the box, the high ones do not. */
+using vtkSPHRanksBox = std::array<double, 6>;
+
+/** Work at a place, to be divided evenly: a particle, or a point to evaluate. */
+struct vtkSPHRanksPlace
+{
+  double At[3]; ///< in the first period
+  std::int64_t Work;
+  vtkIdType Particle = -1; ///< its number; -1: a point
+  double Reach = 0.0;      ///< of the particle, without the least margin
+};
+
+/**
+ * Space as the run has it: in a box, and in periods. Share() divides it among ranks by a k-d tree
+ * over samples of the work, with cuts between the lattice's bricks. All ranks have the same
+ * samples, and so the same tree.
+ */
+class vtkSPHRanksSpace
+{
+public:
+  vtkSPHRanksSpace() = default;
+  /** Reads the options and globals, those of all particles, again in Share(). */
+  vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
+
+  bool IsPeriodic(int axis) const { return this->Length[axis] > 0.0; }
+
+  /** Moves a place into the first period, which begins at a node of the lattice. */
+  void Enter(double at[3]) const;
+
+  /**
+   * Divides the work evenly. input: this rank's particles; work: of each of them; 0: it is needed
+   * nowhere; places: further work of this rank. Lists, for each rank, the particles whose
+   * supports, or images of them, reach its box. Collective.
+   */
+  vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
+    const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places);
+
+  bool IsShared() const { return !this->Boxes.empty(); }
+
+  /** Returns a rank's box, as in mcor_options; may hold nothing. */
+  vtkSPHRanksBox GetBox(int rank) const;
+
+  /** Returns the box that holds all ranks' boxes. */
+  const vtkSPHRanksBox& GetWhole() const { return this->Whole; }
+
+  /** Returns the rank whose box holds a place, or an image of it. */
+  int FindOwner(const double at[3]) const;
+
+  /** Lists, for each rank, those of this rank's points that its box holds. */
+  vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
+
+  std::int64_t OwnedParticles = 0; ///< of all ranks' particles, those in this rank's box
+  std::int64_t Particles = 0;      ///< these, and copies of others'
+  std::int64_t Work = 0;           ///< of the particles in this rank's box
+
+private:
+  using Samples = std::vector<vtkSPHRanksPlace>::iterator;
+
+  double ReachOf(const mcor_input& input, std::int64_t i) const;
+  bool Holds(const double at[3]) const;
+  void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places);
+  void Cut(Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box);
+  std::vector<double> FindRadii(
+    vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
+  void FindReached(const double at[3], double reach, std::vector<int>& found) const;
+  void FindOverlaps(const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const;
+
+  const mcor_options* Options = nullptr;
+  const mcor_globals* Globals = nullptr;
+  double Margin = 0.0; ///< the least by which a support may miss a box that needs the particle
+  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< of a period; 0: open
+  vtkSPHRanksBox Whole = {};
+  struct Plane
+  {
+    int Axis;
+    double At;
+  };
+  std::vector<Plane> Planes; ///< by rank: below the upper one of two groups, which begins with it
+  std::vector<vtkSPHRanksBox> Boxes; ///< by rank
+};
+
+/**
+ * Returns 1 for each of this rank's particles, but 0 for those that the surface does not depend
+ * on: solids, if it uses none.
+ */
+std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
+
+/**
+ * Adds a share of the surface's cost where the surface is expected: in cells of a coarse grid
+ * that have values on both sides of an iso value around them, or, for a free surface, far fewer
+ * particles beside them. The number of cells does not grow with the particles. The result is the
+ * same to the last bit however particles are spread over ranks. Collective.
+ */
+std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals);
+VTK_ABI_NAMESPACE_END
+
+#endif

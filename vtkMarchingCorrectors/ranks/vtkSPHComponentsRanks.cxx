@@ -7,8 +7,11 @@
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -16,13 +19,63 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksSurface.h"
+#include "vtkSPHRanksWait.h"
 #include "vtkTable.h"
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Ids = std::vector<vtkIdType>;
+
+/**
+ * Puts parts together on the first rank, with all arrays, by GlobalPointIds and GlobalCellIds,
+ * which go; null on other ranks. Collective.
+ */
+vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part)
+{
+  vtkNew<vtkPolyData> own;
+  own->ShallowCopy(part);
+  const auto takeNumbers = [](vtkDataSetAttributes* data)
+  {
+    auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+    if (vtkDataArray* ids = data->GetGlobalIds()) // of any type
+    {
+      numbers->DeepCopy(ids);
+      data->RemoveArray(ids->GetName());
+    }
+    return numbers;
+  };
+  const auto points = takeNumbers(own->GetPointData()), triangles = takeNumbers(own->GetCellData());
+  vtkNew<vtkIdTypeArray> corners;
+  vtkNew<vtkIdList> triangle;
+  corners->SetNumberOfComponents(3);
+  for (vtkIdType t = 0; t < part->GetNumberOfPolys(); ++t)
+  {
+    part->GetPolys()->GetCellAtId(t, triangle);
+    for (const vtkIdType corner : *triangle)
+    {
+      corners->InsertNextValue(points->GetValue(corner));
+    }
+  }
+  vtkSPHMatchEmpty(ranks, own);
+  vtkSmartPointer<vtkPolyData> whole =
+    vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(own), points), own);
+  vtkSPHRanksArrays arrays = vtkSPHListArrays(own->GetCellData());
+  arrays.emplace_back(corners);
+  arrays = vtkSPHGatherTuples(ranks, arrays, triangles);
+  auto* wholeCorners = vtkDataArray::SafeDownCast(arrays.back());
+  wholeCorners->SetNumberOfComponents(1); // one after the other
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(3, wholeCorners);
+  whole->SetPolys(cells);
+  arrays.pop_back();
+  for (const auto& array : arrays)
+  {
+    whole->GetCellData()->AddArray(array);
+  }
+  whole->GetFieldData()->ShallowCopy(part->GetFieldData());
+  return ranks.GetRank() == 0 ? whole : nullptr;
+}
 
 /**
  * Sends back what the first rank knows of the whole: the pieces. Returns those of this rank's
@@ -60,6 +113,23 @@ Ids Return(
   }
   return own;
 }
+}
+
+vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
+  vtkMultiProcessController* controller, vtkPolyData* part)
+{
+  vtkSPHRanks ranks(controller);
+  std::int64_t others = ranks.GetRank() > 0 ? part->GetNumberOfPoints() : 0;
+  ranks.Reduce(vtkSPHRanks::SUM, &others, 1);
+  if (others > 0)
+  {
+    return GatherSurface(ranks, part);
+  }
+  auto whole = vtkSmartPointer<vtkPolyData>::New(); // the first rank has all, as of lines
+  whole->ShallowCopy(part);
+  whole->GetPointData()->RemoveArray("GlobalPointIds");
+  whole->GetCellData()->RemoveArray("GlobalCellIds");
+  return ranks.GetRank() == 0 ? whole : nullptr;
 }
 
 // The first rank has all of them, with what the table tells of them.
@@ -111,7 +181,7 @@ std::string vtkSPHComponents::SplitDistributed(
   bare->SetPolys(mesh->GetPolys());
   bare->GetPointData()->SetGlobalIds(mesh->GetPointData()->GetGlobalIds());
   bare->GetCellData()->SetGlobalIds(mesh->GetCellData()->GetGlobalIds());
-  vtkSmartPointer<vtkPolyData> whole = vtkSPHGatherSurface(ranks, bare);
+  vtkSmartPointer<vtkPolyData> whole = GatherSurface(ranks, bare);
   whole = whole ? whole : vtkSmartPointer<vtkPolyData>::New();
   const Numbers found = this->Split(whole, all, table);
   vtkNew<vtkIdTypeArray> points, triangles;

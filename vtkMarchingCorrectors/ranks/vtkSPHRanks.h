@@ -16,9 +16,10 @@
  *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
  *     callback ends their calls (vtkSPHSharedRun.cxx).
  *  7. What was found at points and particles goes back, by the lists that sent them, to the rank
- *     that they came from (vtkSPHReturnTuples).
+ *     that they came from (vtkSPHPutTuples).
  *  8. A surface stays where it was made; its points and triangles get the numbers that they have in
- *     the whole surface, by their keys, of which each rank sorts a range (vtkSPHRanksSurface.h).
+ *     the whole surface, by their keys, of which each rank sorts a range
+ *     (vtkMarchingCorrectorsRanks.cxx).
  *  9. What needs all of a surface (lines, pieces, a file) is done by the first rank, to which
  *     tuples are sent, and put in the order of these numbers (vtkSPHGatherTuples).
  * 10. No rank returns while another goes on: all agree first on what one of them has found.

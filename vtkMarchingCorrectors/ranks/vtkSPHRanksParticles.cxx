@@ -157,16 +157,14 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
   return came;
 }
 
-namespace
-{
-/** Puts tuples at these places among so many; the others are 0. */
-vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& came, vtkIdList* places, vtkIdType count)
+vtkSPHRanksArrays vtkSPHPutTuples(
+  const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count)
 {
   vtkNew<vtkIdList> order;
   order->SetNumberOfIds(places->GetNumberOfIds());
   std::iota(order->begin(), order->end(), vtkIdType(0));
   vtkSPHRanksArrays put;
-  for (const vtkSmartPointer<vtkAbstractArray>& array : came)
+  for (const vtkSmartPointer<vtkAbstractArray>& array : tuples)
   {
     put.push_back(vtkSPHMakeLike(array, count));
     if (auto* numbers = vtkArrayDownCast<vtkDataArray>(put.back().Get()))
@@ -176,21 +174,6 @@ vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& came, vtkIdList* places, vt
     put.back()->InsertTuples(places, order, array);
   }
   return put;
-}
-}
-
-vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
-  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount)
-{
-  vtkNew<vtkIdList> places;
-  for (const std::vector<vtkIdType>& ids : home)
-  {
-    for (const vtkIdType id : ids)
-    {
-      places->InsertNextId(id);
-    }
-  }
-  return PutTuples(vtkSPHSendTuples(ranks, arrays, back), places, homeCount);
 }
 
 vtkSPHRanksArrays vtkSPHGatherTuples(
@@ -217,7 +200,7 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
     count = std::max(count, places->GetId(i) + 1);
   }
   came.pop_back();
-  return PutTuples(came, places, count);
+  return vtkSPHPutTuples(came, places, count);
 }
 
 namespace

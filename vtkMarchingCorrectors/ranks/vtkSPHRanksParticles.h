@@ -16,6 +16,7 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkAbstractArray;
 class vtkDataArray;
 class vtkDataSetAttributes;
+class vtkIdList;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
@@ -40,13 +41,9 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
-/**
- * Sends results back: of each array, to each rank the tuples that `back` lists for it. Returns
- * arrays of `homeCount` tuples, in which `home` lists the places of what comes from each rank;
- * the rest is 0. Collective.
- */
-vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
-  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
+/** Puts tuples, in their order, at these places among so many; the rest is 0. */
+vtkSPHRanksArrays vtkSPHPutTuples(
+  const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count);
 
 /**
  * Gathers tuples on the first rank, each at the place that its number says. The other ranks get

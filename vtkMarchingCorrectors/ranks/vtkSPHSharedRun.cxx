@@ -4,6 +4,7 @@
 // No rank may return here while another goes on: all agree first on what one of them has found.
 #include "vtkSPHSharedRun.h"
 
+#include "vtkIdList.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
@@ -346,16 +347,17 @@ void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home
       }
     }
   }
-  vtkSPHRanksLists places = this->Space.ListOwners(mine);
-  for (std::vector<vtkIdType>& list : places)
+  vtkNew<vtkIdList> places;
+  for (const std::vector<vtkIdType>& list : this->Space.ListOwners(mine))
   {
-    for (vtkIdType& place : list)
+    for (const vtkIdType i : list)
     {
-      place = this->Numbers.empty() ? place : this->Numbers[static_cast<std::size_t>(place)];
+      places->InsertNextId(this->Numbers.empty() ? i : this->Numbers[static_cast<std::size_t>(i)]);
     }
   }
-  const vtkSPHRanksArrays came = vtkSPHReturnTuples(
-    this->Ranks, vtkSPHListArrays(found), back, places, home ? home->GetNumberOfPoints() : 0);
+  const vtkSPHRanksArrays came =
+    vtkSPHPutTuples(vtkSPHSendTuples(this->Ranks, vtkSPHListArrays(found), back), places,
+      home ? home->GetNumberOfPoints() : 0);
   for (const auto& array : came)
   {
     found->AddArray(array); // in place of that of its name

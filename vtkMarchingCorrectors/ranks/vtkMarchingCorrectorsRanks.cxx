@@ -45,19 +45,6 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
   }
 }
 
-/** Becomes the box around both. */
-void AddCells(mcor_statistics& all, const mcor_statistics& one)
-{
-  for (int a = 0; a < 3 && one.virtual_cells > 0; ++a)
-  {
-    const std::int64_t first = one.lattice_origin[a], last = first + one.lattice_cells[a];
-    const bool isFirst = all.virtual_cells == 0;
-    const std::int64_t end = isFirst ? last : all.lattice_origin[a] + all.lattice_cells[a];
-    all.lattice_origin[a] = isFirst ? first : std::min(all.lattice_origin[a], first);
-    all.lattice_cells[a] = std::max(end, last) - all.lattice_origin[a];
-  }
-}
-
 /**
  * Merges statistics: sums of counts, the longest seconds, and means over all points (one rank
  * counts each point). What is evaluated on both sides of a seam counts twice among bricks, nodes
@@ -72,7 +59,14 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
   double points = 0.0, length = 0.0, squares = 0.0, vertices = 0.0, evaluations = 0.0;
   for (const mcor_statistics& one : parts)
   {
-    AddCells(all, one);
+    for (int a = 0; a < 3 && one.virtual_cells > 0; ++a) // the box around both
+    {
+      const bool isFirst = all.virtual_cells == 0;
+      const std::int64_t first = one.lattice_origin[a], last = first + one.lattice_cells[a],
+                         end = isFirst ? last : all.lattice_origin[a] + all.lattice_cells[a];
+      all.lattice_origin[a] = isFirst ? first : std::min(all.lattice_origin[a], first);
+      all.lattice_cells[a] = std::max(end, last) - all.lattice_origin[a];
+    }
     if (known != parts.end() && &one != &*known)
     {
 #define STATISTIC(how, when, member, name) Merge(how, all.member, one.member);

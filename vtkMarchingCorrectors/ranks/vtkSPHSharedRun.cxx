@@ -45,9 +45,6 @@ public:
   Callbacks(const Callbacks&) = delete;
   void operator=(const Callbacks&) = delete;
 
-  /** Returns the callbacks, for mcor_options during one call of the core. */
-  const mcor_ranks* Get() const { return &this->Core; }
-
   /** Called by all ranks after the core's call, however that ended. */
   void End(bool failed)
   {
@@ -57,8 +54,8 @@ public:
     }
   }
 
-  /** Whether this rank was told that another one failed. */
-  bool WasStopped() const { return this->Stopped; }
+  mcor_ranks Core = {}; ///< for mcor_options during one call of the core
+  bool Stopped = false; ///< this rank was told that another one failed
 
 private:
   /**
@@ -104,8 +101,6 @@ private:
   }
 
   vtkSPHRanks& Ranks;
-  mcor_ranks Core = {};
-  bool Stopped = false;
   std::vector<char> Gathered;
 };
 
@@ -313,13 +308,13 @@ bool vtkSPHAlgorithm::vtkSharedRun::Call(
   const auto place = std::count(all.begin(), all.begin() + this->Ranks.GetRank(), machine);
   const auto count = std::count(all.begin(), all.end(), machine);
   Callbacks calls(this->Ranks, this->Space.IsShared() ? this->Space.GetWhole().data() : nullptr);
-  this->Options.ranks = calls.Get();
+  this->Options.ranks = &calls.Core;
   std::string message;
   const int status =
     this->CallCore(particles, call, message, static_cast<int>(place), static_cast<int>(count));
   this->Options.ranks = nullptr;
   calls.End(status != MCOR_OK);
-  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
+  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.Stopped ? 1 : 0;
   this->Ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
   return this->Agree(message) && cancelled == 0;
 }
@@ -327,7 +322,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::Call(
 void vtkSPHAlgorithm::vtkSharedRun::CallAside(const std::function<bool(const mcor_ranks*)>& call)
 {
   Callbacks calls(this->Ranks);
-  calls.End(!call(calls.Get()));
+  calls.End(!call(&calls.Core));
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)

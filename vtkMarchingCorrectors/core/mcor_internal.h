@@ -224,8 +224,8 @@ mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
 /* Gathers the records of all ranks, valid until the next gathering; alone, they are the
  * caller's. */
-mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count, size_t width,
-  const void** all, int64_t* all_count);
+mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count,
+  size_t width, const void** all, int64_t* all_count);
 
 /* mcor_statistics.c. Reports what runs from one fraction of the call to another; the report may
  * cancel it. */

@@ -169,9 +169,9 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
-  /* The kernels' form for CPUs suits CPUs with vectors. A device that claims to be one without them
-   * works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu or gpu, is
-   * for tests. */
+  /* The kernels' form for CPUs suits CPUs with vectors. A device that claims to be one without
+   * them works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu
+   * or gpu, is for tests. */
   const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
   const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);

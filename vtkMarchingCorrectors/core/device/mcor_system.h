@@ -19,9 +19,9 @@ uint64_t mcor_system_memory(void);
 /* alignment: a power of 2. Returns NULL if memory ran out. */
 void* mcor_system_allocate(size_t alignment, size_t bytes);
 void mcor_system_release(void* memory);
-/* Asks for large pages, where the system has them, before a large array of the host, or of a device
- * that shares its memory, is first touched. Without them, the first touch of each 4 kB takes a third
- * of the time of a run with ten million particles. */
+/* Asks for large pages, where the system has them, before a large array of the host, or of a
+ * device that shares its memory, is first touched. Without them, the first touch of each 4 kB
+ * takes a third of the time of a run with ten million particles. */
 #define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 

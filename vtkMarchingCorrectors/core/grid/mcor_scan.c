@@ -90,8 +90,8 @@ mcor_status mcor_sort(
   const int segments = mcor_segments(context, count);
   const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
   const size_t n = (size_t)count;
-  /* The bits that one round treats: the fewest rounds possible, of about equal size, with a histogram
-   * no larger than the sorted array. */
+  /* The bits that one round treats: the fewest rounds possible, of about equal size, with a
+   * histogram no larger than the sorted array. */
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
   while (most > 8 && segments << most > count)
   {

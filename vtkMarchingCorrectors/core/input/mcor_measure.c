@@ -12,11 +12,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- Neighbours ---- how many a fluid particle has, and how near the nearest one is. A few watched
- * particles suffice to notice smoothing lengths that cannot be meant. A watch is shown all positions
- * while these are measured, and at its end fills in the measure's neighbours, spacing, filled and
- * h_median. If the watched particles lie in a plane that is tilted in space, it is also seen whether all
- * others do. */
+/* ---- Neighbours ---- how many a fluid particle has, and how near the nearest one is. A few
+ * watched particles suffice to notice smoothing lengths that cannot be meant. A watch is shown all
+ * positions while these are measured, and at its end fills in the measure's neighbours, spacing,
+ * filled and h_median. If the watched particles lie in a plane that is tilted in space, it is also
+ * seen whether all others do. */
 
 #define MCOR_WATCHED 32 /* bits of a mask */
 #define MCOR_WATCH_CELLS 64

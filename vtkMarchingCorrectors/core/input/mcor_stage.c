@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Copies the particles that a call needs from the caller's arrays to the device, in its units and in
- * input order; in a periodic box their images, too. */
+/* Copies the particles that a call needs from the caller's arrays to the device, in its units and
+ * in input order; in a periodic box their images, too. */
 
 #include "mcor_stage.h"
 #include "mcor_plane.h"

@@ -7,7 +7,7 @@
 #include "Ending.h"
 #include "Extra.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
@@ -206,7 +206,7 @@ void MakeSurface(Sharing& sharing)
     sharing.OnAll(
       [&]
       {
-        Messages().Clear();
+        Messages() = {};
         if (!job.Surface->Widen(vtkPointSet::SafeDownCast(job.Surface->GetInput()), widened))
         {
           Messages().Check();

@@ -5,7 +5,7 @@
 #include "ColorScale.h"
 #include "Ending.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "SafeText.h"
 
 #include "vtkActor.h"
@@ -191,7 +191,7 @@ public:
     const ColorScale& colors, int sliceAxis) override
   {
     const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
-    Messages().Clear();
+    Messages() = {};
     const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
     const bool isSlice = axis >= 0;
     this->Show(data, colors, isSlice);
@@ -219,9 +219,9 @@ public:
                      : ObliqueView(up),
       this->Seen, (this->HasBar ? 1.0 - WidthOfBar : 1.0) * Width / Height);
     std::string bytes = this->Render();
-    if (bytes.empty() || !Messages().GetErrors().empty())
+    if (bytes.empty() || !Messages().Errors.empty())
     {
-      FailToWrite(file, Messages().GetErrors().empty() ? "" : Messages().GetErrors().front());
+      FailToWrite(file, Messages().Errors.empty() ? "" : Messages().Errors.front());
     }
     return bytes;
   }

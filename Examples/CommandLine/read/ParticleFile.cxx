@@ -6,7 +6,7 @@
 #include "Extra.h"
 #include "FileName.h"
 #include "Formats.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "SafeText.h"
 
 #include "vtkAbstractArray.h"
@@ -266,15 +266,15 @@ void CheckRegularFile(const std::string& file)
 
 void ReadWithCare(const std::string& file, const std::function<void()>& read)
 {
-  Messages().Clear();
+  Messages() = {};
   const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
   const Silence silence;
   try
   {
     read();
-    if (!Messages().GetErrors().empty())
+    if (!Messages().Errors.empty())
     {
-      FailToRead(file, Messages().GetErrors().front());
+      FailToRead(file, Messages().Errors.front());
     }
     return;
   }

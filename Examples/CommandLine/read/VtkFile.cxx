@@ -3,7 +3,7 @@
 #include "Formats.h"
 
 #include "FileName.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OptionValue.h"
 #include "SafeText.h"
 
@@ -399,7 +399,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
   {
     // A fault is told where all of the file is read.
   }
-  Messages().Clear();
+  Messages() = {};
   // Field data at the end of an XML file have the least and greatest value at its beginning.
   for (std::size_t i = 0; i < std::size(TimeNames) && times.empty(); ++i)
   {

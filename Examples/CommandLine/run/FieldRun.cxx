@@ -6,7 +6,7 @@
 #include "DataFile.h"
 #include "Extra.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Runs.h"
@@ -225,7 +225,7 @@ void MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      for (const std::string& warning : Messages().GetWarnings())
+      for (const std::string& warning : Messages().Warnings)
       {
         Say("warning: " + warning);
       }

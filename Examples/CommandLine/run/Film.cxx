@@ -5,7 +5,7 @@
 #include "Extra.h"
 #include "FileName.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleTimes.h"
@@ -148,7 +148,8 @@ private:
     this->Shared.OnAll(
       [&] { projection->SetInputData(SetUpParticles(projection, this->Options, particles)); });
     this->Shared.OnAll([&] { seconds = Update(projection, this->Shared, progress); });
-    Messages().AppendWarnings(warnings);
+    const std::vector<std::string>& told = Messages().Warnings;
+    warnings.insert(warnings.end(), told.begin(), told.end());
     this->Shared.OnFirst(
       [&]
       {

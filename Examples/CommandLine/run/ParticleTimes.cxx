@@ -6,7 +6,7 @@
 #include "FileName.h"
 #include "Formats.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
@@ -339,13 +339,13 @@ void ParticleTimes::Reset()
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
-  Messages().Clear();
+  Messages() = {};
   this->Source->Error.clear();
   this->Interpolator->UpdateTimeStep(time);
   const std::string error = this->Source->Error;
   Messages().Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
   const bool hasTimes = IsCollectionFile(this->Shared.Options.Inputs.front());
-  for (const std::string& sentence : Messages().GetWarnings())
+  for (const std::string& sentence : Messages().Warnings)
   {
     warnings.push_back(Reworded(sentence, "set the time scale",
       hasTimes ? "change those in the .pvd file" : "use --time-step"));

@@ -4,7 +4,7 @@
 // Tables: what gauges and sections measure, pieces of surfaces, numbers of films.
 #include "DataFile.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
@@ -143,7 +143,7 @@ private:
       before.assign(rates->Begin(), rates->End());
     }
     this->LastTime = time;
-    for (const std::string& warning : Messages().GetWarnings())
+    for (const std::string& warning : Messages().Warnings)
     {
       if (!this->IsImage || warning.find("is outside of all fluid") == std::string::npos)
       {
@@ -317,7 +317,8 @@ void AddFilmNumbers(
   if (job.Gauge->GetNumberOfGauges() > 0)
   {
     vtkTable* gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
-    Messages().AppendWarnings(run.Warnings);
+    const std::vector<std::string>& more = Messages().Warnings;
+    run.Warnings.insert(run.Warnings.end(), more.begin(), more.end());
     for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
     {
       const std::string name = gauges->GetValueByName(i, "gauge").ToString();

@@ -7,7 +7,7 @@
 #include "Ending.h"
 #include "Extra.h"
 #include "Job.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
 #include "SafeText.h"
@@ -279,7 +279,7 @@ double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string
 {
   const bool isQuiet = sharing.Options.Quiet;
   std::chrono::duration<double> elapsed;
-  Messages().Clear();
+  Messages() = {};
   filter->Modified();
   {
     Progress progress(before, !isQuiet && isatty(STDERR_FILENO), isQuiet || !sharing.IsFirst());
@@ -317,7 +317,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
                 << std::endl;
     }
   }
-  for (const std::string& sentence : Messages().GetWarnings())
+  for (const std::string& sentence : Messages().Warnings)
   {
     run.Warnings.push_back(WithOptions(sentence)); // they are in the statistics, too
   }

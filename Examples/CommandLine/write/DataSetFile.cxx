@@ -4,7 +4,7 @@
 
 #include "Ending.h"
 #include "FileName.h"
-#include "MessageCapture.h"
+#include "Messages.h"
 #include "OutputFile.h"
 #include "SafeText.h"
 
@@ -111,7 +111,7 @@ void CheckDataSetFile(const std::string& file, vtkDataSet* data)
 std::string DataSetBytes(const std::string& file, vtkDataSet* data)
 {
   const Activity writing(file + " could not be written", "memory may have run out");
-  Messages().Clear();
+  Messages() = {};
   std::string bytes; // in memory, because the writer of VTK 9.1 crashes on a full disk
   bool isGood = false;
   if (EndsWith(file, ".vtk"))
@@ -136,9 +136,9 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data)
     isGood = writer->Write() != 0;
     bytes = writer->GetOutputString();
   }
-  if (!isGood || !Messages().GetErrors().empty())
+  if (!isGood || !Messages().Errors.empty())
   {
-    FailToWrite(file, Messages().GetErrors().empty() ? "" : Messages().GetErrors().front());
+    FailToWrite(file, Messages().Errors.empty() ? "" : Messages().Errors.front());
   }
   return bytes;
 }

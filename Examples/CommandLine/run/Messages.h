@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Messages_h
+#define Messages_h
+
+#include <string>
+#include <vector>
+
+/// VTK's messages, which are kept instead of printed: one failure makes VTK report several times,
+/// over many lines, with source files and addresses, where the user needs one sentence.
+struct KeptMessages
+{
+  std::vector<std::string> Errors, Warnings; ///< sentences without file, line and address
+
+  /// Throws std::runtime_error with `error`, or with the first one that was reported, if any.
+  void Check(const std::string& error = "") const;
+};
+
+/// Those since they were last emptied. VTK has one window for all objects: from the first use on,
+/// its messages come here.
+KeptMessages& Messages();
+
+#endif

@@ -30,176 +30,164 @@ namespace
 class RankSession : public Sharing
 {
 public:
-  explicit RankSession(Job& job);
-  ~RankSession() override;
+  explicit RankSession(Job& job)
+    : Sharing(job)
+    , Periodic(job.Periodic)
+    , DetectPeriod(job.DetectPeriod)
+  {
+    int count = 0;
+    char** none = nullptr;
+    this->Controller->Initialize(&count, &none, 0);
+    vtkMultiProcessController::SetGlobalController(this->Controller);
+    for (vtkSPHAlgorithm* filter : job.All())
+    {
+      filter->SetController(this->Controller); // they were made before MPI began
+    }
+  }
+
+  ~RankSession() override
+  {
+    for (vtkSPHAlgorithm* filter : this->Options.All())
+    {
+      filter->SetController(nullptr);
+    }
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    this->Controller->Finalize();
+  }
 
   int GetRank() const override { return this->Controller->GetLocalProcessId(); }
   int GetCount() const override { return this->Controller->GetNumberOfProcesses(); }
-  void OnAll(const std::function<void()>& work) override;
-  Particles Read() override;
-  Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
+
+  void OnAll(const std::function<void()>& work) override
+  {
+    std::string sentence = FailureOf(work);
+    const int self = sentence.empty() ? this->GetCount() : this->GetRank();
+    int failed = self;
+    vtkSPHAwaitRanks(this->Controller);
+    this->Controller->AllReduce(&self, &failed, 1, vtkCommunicator::MIN_OP);
+    if (failed == this->GetCount())
+    {
+      return;
+    }
+    vtkIdType size = static_cast<vtkIdType>(sentence.size());
+    this->Controller->Broadcast(&size, 1, failed);
+    sentence.resize(static_cast<std::size_t>(size));
+    this->Controller->Broadcast(&sentence[0], size, failed);
+    throw std::runtime_error(sentence);
+  }
+
+  Particles Read() override
+  {
+    return this->Options.Walls.empty() ? this->Part(this->Options.Inputs.front(), false)
+                                       : this->Share([this] { return Sharing::Read(); }, false);
+  }
+
+  /// Reads a stored time as for a single surface; a time between two steps is read by the first
+  /// process.
+  Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings) override
+  {
+    this->Options.Periodic = this->Periodic; // of each time anew
+    this->Options.DetectPeriod = this->DetectPeriod;
+    const ParticleTimes::Step* step = times.GetStored(time);
+    if (step && step->Files.size() == 1 && step->Walls.empty())
+    {
+      return this->Part(step->Files.front(), true);
+    }
+    return this->Share(
+      [&]
+      {
+        return step ? AddWalls(ReadParticles(step->Files, true), ReadWalls(step->Walls))
+                    : times.At(time, warnings);
+      },
+      true);
+  }
+
   /// Puts the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override
   {
     return vtkSPHMergeSurface(this->Controller, part);
   }
-  vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) override;
+
+  vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) override
+  {
+    std::vector<vtkSmartPointer<vtkDataObject>> parts;
+    vtkNew<vtkAppendPolyData> append;
+    vtkSPHAwaitRanks(this->Controller);
+    this->Controller->Gather(particles, parts, 0);
+    for (const auto& part : parts)
+    {
+      append->AddInputData(vtkPolyData::SafeDownCast(part));
+    }
+    if (this->IsFirst())
+    {
+      append->Update();
+      append->GetOutput()->GetFieldData()->ShallowCopy(particles->GetFieldData());
+    }
+    return append->GetOutput();
+  }
 
 private:
   /// The part of particles that each process reads of one file, or that the first one makes;
   /// `mayBeEmpty`: all together.
-  Particles Part(const std::string& file, bool mayBeEmpty);
-  Particles Share(const std::function<Particles()>& make, bool mayBeEmpty);
+  Particles Part(const std::string& file, bool mayBeEmpty)
+  {
+    Particles particles;
+    ParticleSets sets;
+    this->OnAll([&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount()); });
+    const int own = sets.HaveVertices ? 1 : 0;
+    int any = own;
+    this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
+    sets.HaveVertices = any > 0;
+    this->OnAll([&] { particles = JoinSets(sets); });
+    return this->Complete(particles, mayBeEmpty);
+  }
+
+  Particles Share(const std::function<Particles()>& make, bool mayBeEmpty)
+  {
+    Particles particles = vtkSmartPointer<vtkPolyData>::New();
+    this->OnFirst([&] { particles = make(); });
+    return this->Complete(particles, mayBeEmpty);
+  }
 
   /// Processes without particles get the arrays, without values, that those of the others have:
   /// what a name in the options is must not depend on who asks. The period is that of all.
-  Particles Complete(vtkPointSet* particles, bool mayBeEmpty);
+  Particles Complete(vtkPointSet* particles, bool mayBeEmpty)
+  {
+    const vtkIdType own = particles->GetNumberOfPoints();
+    vtkIdType all = own;
+    this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
+    if (all == 0 && !mayBeEmpty)
+    {
+      throw std::runtime_error("the input holds no points");
+    }
+    vtkNew<vtkPolyData> form;
+    if (own > 0)
+    {
+      form->SetPoints(particles->GetPoints());
+      form->GetPointData()->ShallowCopy(particles->GetPointData());
+    }
+    vtkSPHMatchEmpty(this->Controller, form);
+    const Particles complete = own > 0 || all == 0 ? particles : form.Get();
+    Job& job = this->Options;
+    if (job.DetectPeriod) // of which field data tell
+    {
+      std::string problem;
+      const vtkSPHPeriod found =
+        vtkSPHFindPeriodDistributed(this->Controller, complete->GetFieldData(), problem);
+      this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
+      job.DetectPeriod = false;
+    }
+    if (job.Periodic.size() == 3) // lengths alone: all particles tell where it begins
+    {
+      job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
+    }
+    return complete;
+  }
 
   vtkNew<vtkMPIController> Controller;
   const std::vector<double> Periodic; ///< as the job had it
   const bool DetectPeriod;
 };
-
-RankSession::RankSession(Job& job)
-  : Sharing(job)
-  , Periodic(job.Periodic)
-  , DetectPeriod(job.DetectPeriod)
-{
-  int count = 0;
-  char** none = nullptr;
-  this->Controller->Initialize(&count, &none, 0);
-  vtkMultiProcessController::SetGlobalController(this->Controller);
-  for (vtkSPHAlgorithm* filter : job.All())
-  {
-    filter->SetController(this->Controller); // they were made before MPI began
-  }
-}
-
-RankSession::~RankSession()
-{
-  for (vtkSPHAlgorithm* filter : this->Options.All())
-  {
-    filter->SetController(nullptr);
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  this->Controller->Finalize();
-}
-
-void RankSession::OnAll(const std::function<void()>& work)
-{
-  std::string sentence = FailureOf(work);
-  const int self = sentence.empty() ? this->GetCount() : this->GetRank();
-  int failed = self;
-  vtkSPHAwaitRanks(this->Controller);
-  this->Controller->AllReduce(&self, &failed, 1, vtkCommunicator::MIN_OP);
-  if (failed == this->GetCount())
-  {
-    return;
-  }
-  vtkIdType size = static_cast<vtkIdType>(sentence.size());
-  this->Controller->Broadcast(&size, 1, failed);
-  sentence.resize(static_cast<std::size_t>(size));
-  this->Controller->Broadcast(&sentence[0], size, failed);
-  throw std::runtime_error(sentence);
-}
-
-Sharing::Particles RankSession::Read()
-{
-  return this->Options.Walls.empty() ? this->Part(this->Options.Inputs.front(), false)
-                                     : this->Share([this] { return Sharing::Read(); }, false);
-}
-
-// Reads a stored time as for a single surface; a time between two steps is read by the first
-// process.
-Sharing::Particles RankSession::Read(
-  ParticleTimes& times, double time, std::vector<std::string>& warnings)
-{
-  this->Options.Periodic = this->Periodic; // of each time anew
-  this->Options.DetectPeriod = this->DetectPeriod;
-  const ParticleTimes::Step* step = times.GetStored(time);
-  if (step && step->Files.size() == 1 && step->Walls.empty())
-  {
-    return this->Part(step->Files.front(), true);
-  }
-  return this->Share(
-    [&]
-    {
-      return step ? AddWalls(ReadParticles(step->Files, true), ReadWalls(step->Walls))
-                  : times.At(time, warnings);
-    },
-    true);
-}
-
-vtkSmartPointer<vtkPolyData> RankSession::Append(vtkPolyData* particles)
-{
-  std::vector<vtkSmartPointer<vtkDataObject>> parts;
-  vtkNew<vtkAppendPolyData> append;
-  vtkSPHAwaitRanks(this->Controller);
-  this->Controller->Gather(particles, parts, 0);
-  for (const auto& part : parts)
-  {
-    append->AddInputData(vtkPolyData::SafeDownCast(part));
-  }
-  if (this->IsFirst())
-  {
-    append->Update();
-    append->GetOutput()->GetFieldData()->ShallowCopy(particles->GetFieldData());
-  }
-  return append->GetOutput();
-}
-
-Sharing::Particles RankSession::Part(const std::string& file, bool mayBeEmpty)
-{
-  Particles particles;
-  ParticleSets sets;
-  this->OnAll([&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount()); });
-  const int own = sets.HaveVertices ? 1 : 0;
-  int any = own;
-  this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
-  sets.HaveVertices = any > 0;
-  this->OnAll([&] { particles = JoinSets(sets); });
-  return this->Complete(particles, mayBeEmpty);
-}
-
-Sharing::Particles RankSession::Share(const std::function<Particles()>& make, bool mayBeEmpty)
-{
-  Particles particles = vtkSmartPointer<vtkPolyData>::New();
-  this->OnFirst([&] { particles = make(); });
-  return this->Complete(particles, mayBeEmpty);
-}
-
-Sharing::Particles RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty)
-{
-  const vtkIdType own = particles->GetNumberOfPoints();
-  vtkIdType all = own;
-  this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
-  if (all == 0 && !mayBeEmpty)
-  {
-    throw std::runtime_error("the input holds no points");
-  }
-  vtkNew<vtkPolyData> form;
-  if (own > 0)
-  {
-    form->SetPoints(particles->GetPoints());
-    form->GetPointData()->ShallowCopy(particles->GetPointData());
-  }
-  vtkSPHMatchEmpty(this->Controller, form);
-  const Particles complete = own > 0 || all == 0 ? particles : form.Get();
-  Job& job = this->Options;
-  if (job.DetectPeriod) // of which field data tell
-  {
-    std::string problem;
-    const vtkSPHPeriod found =
-      vtkSPHFindPeriodDistributed(this->Controller, complete->GetFieldData(), problem);
-    this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
-    job.DetectPeriod = false;
-  }
-  if (job.Periodic.size() == 3) // lengths alone: all particles tell where it begins
-  {
-    job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
-  }
-  return complete;
-}
 #endif
 
 /// The first of these variables that is set, as a number.

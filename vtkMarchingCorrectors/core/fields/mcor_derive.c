@@ -197,10 +197,16 @@ static mcor_status mcor_derive_all(mcor_derive_run* run)
   return MCOR_OK;
 }
 
-static mcor_status mcor_make_derivatives(
-  mcor_context* context, const mcor_input* input, mcor_derivatives* d)
+static mcor_status mcor_run_derive(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
+  mcor_derive_run run = *(const mcor_derive_run*)data;
+  mcor_derivatives* d = run.derivatives;
   const size_t n = (size_t)input->count, arrays = (size_t)input->attribute_count;
+  run.input = input;
+  mcor_free_derivatives(d); /* results of an earlier attempt */
+  d->statistics.dimension = options->dimension;
+  MCOR_TRY(mcor_check_input(context, input, options));
   d->count = input->count;
   d->attribute_count = input->attribute_count;
   d->gradients = calloc(arrays + 1, sizeof(double*));
@@ -215,19 +221,6 @@ static mcor_status mcor_make_derivatives(
     d->gradients[a] = some ? calloc(n + 1, 3 * width * sizeof(double)) : NULL;
     MCOR_TRY(mcor_allocated(context, !some || d->gradients[a]));
   }
-  return MCOR_OK;
-}
-
-static mcor_status mcor_run_derive(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
-{
-  mcor_derive_run run = *(const mcor_derive_run*)data;
-  mcor_derivatives* derivatives = run.derivatives;
-  run.input = input;
-  mcor_free_derivatives(derivatives); /* results of an earlier attempt */
-  derivatives->statistics.dimension = options->dimension;
-  MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_make_derivatives(context, input, derivatives));
   if (context->attributes.varying_count == 0 || input->count == 0)
   {
     return MCOR_OK;
@@ -242,8 +235,8 @@ static mcor_status mcor_run_derive(
   MCOR_TRY(status);
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    mcor_unflatten_doubles(&context->plane, derivatives->gradients[a],
-      input->count * mcor_components(&input->attributes[a]), 0);
+    mcor_unflatten_doubles(
+      &context->plane, d->gradients[a], input->count * mcor_components(&input->attributes[a]), 0);
   }
   return mcor_finish_field(context);
 }

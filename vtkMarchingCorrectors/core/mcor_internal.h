@@ -374,13 +374,13 @@ static inline uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int n
   const mcor_rung* rung = &lattice->rungs[node[3] >> MCOR_LEVEL_SHIFT];
   return mcor_brick_key(rung, brick) << 6 | (uint64_t)inner;
 }
-/* mcor_normal.c. Whether the gradient gives no normal; the other function gives such points one. */
+/* mcor_area.c. Whether the gradient gives no normal; the other function gives such points one. */
 static inline bool mcor_lacks_normal(const float normal[3])
 {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
-/* mcor_area.c. Measures the surface into its statistics. */
+/* Measures the surface into its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
 /* The cases of Marching Cubes, with all decisions on their ambiguous faces. */

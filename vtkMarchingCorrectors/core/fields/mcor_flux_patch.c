@@ -179,27 +179,6 @@ static mcor_status mcor_add_corners(
     : mcor_add_patch(job, number, shape, x, edges[0], edges[1], normal);
 }
 
-static mcor_status mcor_add_box(mcor_flux_job* job, int64_t number, const double* low)
-{
-  const double* high = low + 3;
-  for (int side = 0; side < 6; ++side)
-  {
-    const int a = side / 2, is_high = side % 2;
-    double corner[3] = { low[0], low[1], low[2] }, edges[2][3] = { { 0 } }, normal[3] = { 0 };
-    corner[a] = is_high ? high[a] : low[a];
-    normal[a] = is_high ? 1 : -1;
-    for (int e = 1; e < 3; ++e)
-    {
-      const int along = (a + e) % 3;
-      edges[is_high ? e - 1 : 2 - e][along] = high[along] - low[along];
-    }
-    MCOR_TRY(job->is_plane && a == job->across
-        ? MCOR_OK
-        : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, normal));
-  }
-  return MCOR_OK;
-}
-
 /* Appends the quarters of a disc; in two dimensions, the line along which it crosses the plane. */
 static mcor_status mcor_add_disc(
   mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
@@ -244,32 +223,12 @@ static mcor_status mcor_add_disc(
   return MCOR_OK;
 }
 
-static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
-{
-  const mcor_section* section = &job->sections[number];
-  const int w = job->across, first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
-  MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
-    "Section %s is a line, which is a section only of particles in a plane. Give it an area, by a "
-    "corner and two ends.",
-    mcor_label_section(job, number).text);
-  for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 6)
-  {
-    double along[3], normal[3] = { 0 };
-    mcor_subtract(x + 3, x, along);
-    normal[first] = along[second];
-    normal[second] = -along[first];
-    MCOR_TRY(x[w] != job->plane->at || x[3 + w] != job->plane->at ? mcor_leaves_plane(job, number)
-        : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
-                                     : MCOR_OK);
-  }
-  return MCOR_OK;
-}
-
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
   const double *x = section->points, *end = x + 3 * section->point_count;
-  double normal[3], sign = 1;
+  const int w = job->across, first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
+  double normal[3] = { 0 }, sign = 1;
   switch (section->shape)
   {
     case MCOR_SECTION_RECTANGLE:
@@ -280,7 +239,22 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
         ? mcor_add_disc(job, number, x, normal, section->radius)
         : MCOR_OK;
     case MCOR_SECTION_BOX:
-      return mcor_add_box(job, number, x);
+      for (int side = 0; side < 6; ++side)
+      {
+        const int a = side / 2, is_high = side % 2;
+        double corner[3] = { x[0], x[1], x[2] }, edges[2][3] = { { 0 } }, outwards[3] = { 0 };
+        corner[a] = x[3 * is_high + a];
+        outwards[a] = is_high ? 1 : -1;
+        for (int e = 1; e < 3; ++e)
+        {
+          const int along = (a + e) % 3;
+          edges[is_high ? e - 1 : 2 - e][along] = x[3 + along] - x[along];
+        }
+        MCOR_TRY(job->is_plane && a == w
+            ? MCOR_OK
+            : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, outwards));
+      }
+      return MCOR_OK;
     case MCOR_SECTION_TRIANGLES:
       MCOR_TRY(mcor_orient_triangles(job->edges.context, x, section->point_count, &sign));
       for (; x < end; x += 9)
@@ -290,7 +264,24 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
       }
       return MCOR_OK;
     default:
-      return mcor_add_lines(job, number);
+      MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
+        "Section %s is a line, which is a section only of particles in a plane. Give it an area, "
+        "by a "
+        "corner and two ends.",
+        mcor_label_section(job, number).text);
+      for (; x < end; x += 6)
+      {
+        double along[3];
+        mcor_subtract(x + 3, x, along);
+        normal[w] = 0;
+        normal[first] = along[second];
+        normal[second] = -along[first];
+        MCOR_TRY(x[w] != job->plane->at || x[3 + w] != job->plane->at
+            ? mcor_leaves_plane(job, number)
+            : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
+                                         : MCOR_OK);
+      }
+      return MCOR_OK;
   }
 }
 

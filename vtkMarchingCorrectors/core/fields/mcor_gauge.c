@@ -434,7 +434,8 @@ static mcor_status mcor_run_gauge(
   }
   MCOR_THEN(status, mcor_gauge_particles(context, input, options, &job));
   MCOR_THEN(status,
-    mcor_gather_records(context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));
+    mcor_gather_records(
+      context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));
   MCOR_THEN(status, mcor_read_lines(&job, all, count));
   for (int64_t i = 0; i < job.gauges->count; ++i)
   {

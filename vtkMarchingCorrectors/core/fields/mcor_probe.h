@@ -25,8 +25,8 @@ typedef struct mcor_probe_run
  * caller's points. Returns false if there is no box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
-/* Writes sorted particles [first, first + count) to the batch as points, and to points.flags, if the
- * call has a box, of cells `cells` to `end`, whether they lie in it. */
+/* Writes sorted particles [first, first + count) to the batch as points, and to points.flags, if
+ * the call has a box, of cells `cells` to `end`, whether they lie in it. */
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
 /* Writes the caller's points [first, last) to the device. */

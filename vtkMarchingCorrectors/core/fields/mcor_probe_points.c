@@ -53,7 +53,8 @@ static void mcor_read_points(
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
     /* Along a period, whose upper side is included, points are rounded likewise, so those a period
-     * apart have the same position. A point on one side is moved to the other if the box is there. */
+     * apart have the same position. A point on one side is moved to the other if the box is
+     * there. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {

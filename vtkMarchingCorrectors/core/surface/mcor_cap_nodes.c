@@ -79,8 +79,8 @@ static mcor_status mcor_limit_walls(mcor_context* context, size_t count, const c
   return MCOR_OK;
 }
 
-/* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4 to
- * 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
+/* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4
+ * to 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
  * mistake. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)

@@ -13,7 +13,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHPrint.h"
-#include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHSharedRun.h"

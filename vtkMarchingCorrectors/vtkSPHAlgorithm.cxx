@@ -12,10 +12,12 @@
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkVariant.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
 // The core takes these values as they are.
@@ -80,9 +82,8 @@ int vtkSPHAlgorithm::GetNumberOfExcludedArrays() const
 
 const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
 {
-  return i >= 0 && i < this->GetNumberOfExcludedArrays()
-    ? this->ExcludedArrays[static_cast<size_t>(i)].c_str()
-    : nullptr;
+  return i >= 0 && i < this->GetNumberOfExcludedArrays() ? this->ExcludedArrays[i].c_str()
+                                                         : nullptr;
 }
 
 void vtkSPHAlgorithm::AddOnly(const char* name, double low, double high)
@@ -114,7 +115,18 @@ vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
 
 const char* vtkSPHAlgorithm::GetStatistics()
 {
-  this->Statistics = vtkSPHDescribe(this->RunStatistics);
+  std::ostringstream text;
+  for (int i = 0; i < this->RunStatistics->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = this->RunStatistics->GetAbstractArray(i);
+    text << array->GetName() << ":";
+    for (vtkIdType v = 0; v < array->GetNumberOfValues(); ++v)
+    {
+      text << (v ? ", " : " ") << array->GetVariantValue(v).ToString();
+    }
+    text << "\n";
+  }
+  this->Statistics = text.str();
   return this->Statistics.c_str();
 }
 
@@ -223,7 +235,7 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
   vtkSPHRequest request = this->FindRequest(0, particles);
   vtkPointData* data = particles->GetPointData();
   auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
-  if (request.Name.empty() && (!active || !vtkSPHIsFit(active, merge)))
+  if (request.Name.empty() && (!active || vtkSPHArrayChoice({ active }, merge).Rank < 0))
   {
     const std::string best = vtkSPHChooseArray(data, merge);
     if (auto velocity = vtkSPHParticles(*this, particles).JoinVelocity())

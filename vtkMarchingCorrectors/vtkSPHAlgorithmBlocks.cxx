@@ -15,9 +15,7 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
-#include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
-#include "vtkSPHVertices.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
@@ -167,7 +165,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::JoinParticles(vtkDataObject* data)
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles) const
 {
   const std::vector<bool> present =
-    vtkSPHLeavesOut(*this) && particles ? vtkSPHFindPresent(*this, particles) : std::vector<bool>();
+    particles ? vtkSPHFindPresent(*this, particles) : std::vector<bool>();
   if (std::count(present.begin(), present.end(), false) == 0)
   {
     return particles;
@@ -257,7 +255,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
   {
     const auto count = std::min(static_cast<std::int64_t>(list.size()), far + 1);
     std::partial_sort(list.begin(), list.begin() + count, list.end());
-    list.resize(static_cast<std::size_t>(count));
+    list.resize(count);
     return list;
   };
   List ends[6]; // along each axis; every other is that of what is below 0 as above it

@@ -24,7 +24,6 @@
 #include "vtkSPHParticles.h"
 #include "vtkSPHPieces.h"
 #include "vtkSPHPrint.h"
-#include "vtkSPHVertices.h"
 #include "vtkTable.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHRanks.h"
@@ -198,7 +197,7 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
       {
         continue;
       }
-      Content& content = contents[static_cast<size_t>(around[i])];
+      Content& content = contents[around[i]];
       const double one = this->Mass > 0.0 ? this->Mass : 1.0;
       const double mass = masses ? masses->GetComponent(fluid[i], 0) : one;
       content.Particles += step == &OrderlessSum::Add ? 1.0 : 0.0;
@@ -235,7 +234,7 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
   for (size_t i = 0; i < count; ++i)
   {
     const vtkIdType parent = pieces.Pieces[i].Parent;
-    if (stays[i] && (parent < 0 || stays[static_cast<size_t>(parent)]))
+    if (stays[i] && (parent < 0 || stays[parent]))
     {
       number[i] = next++;
     }
@@ -272,7 +271,7 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
     const Content content = filled ? contents[i] : Content();
     const double* b = piece.Bounds;
     const double row[columnCount] = { static_cast<double>(number[i]),
-      piece.Parent >= 0 ? static_cast<double>(number[static_cast<size_t>(piece.Parent)]) : NoNumber,
+      piece.Parent >= 0 ? static_cast<double>(number[piece.Parent]) : NoNumber,
       piece.Closed ? 1.0 : 0.0, piece.Area, has ? piece.Volume : NoNumber, piece.Centre[0],
       piece.Centre[1], piece.Centre[2], b[0], b[1], b[2], b[3], b[4], b[5],
       has ? std::cbrt(6.0 * std::abs(piece.Volume) / vtkMath::Pi()) : NoNumber,
@@ -298,7 +297,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
   {
     for (vtkIdType& piece : *of)
     {
-      piece = piece >= 0 ? number[static_cast<size_t>(piece)] : -1;
+      piece = piece >= 0 ? number[piece] : -1;
     }
   }
   return numbers;
@@ -325,7 +324,7 @@ void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyDa
       mesh->GetPolys()->GetCellAtId(static_cast<vtkIdType>(t), corners);
       for (vtkIdType i = 0; i < 3; ++i)
       {
-        corners->SetId(i, place[static_cast<size_t>(corners->GetId(i))]);
+        corners->SetId(i, place[corners->GetId(i)]);
       }
       kept->InsertNextCell(corners);
       cells->InsertNextId(static_cast<vtkIdType>(t));

@@ -177,7 +177,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   const std::string name = mine.Interpolated[0].Name;
   const auto collect = [&name](vtkSPHParticles& near)
   {
-    vtkAbstractArray* array = near.GetPoints()->GetPointData()->GetAbstractArray(name.c_str());
+    vtkAbstractArray* array = near.Points->GetPointData()->GetAbstractArray(name.c_str());
     return near.CollectArray({ array, name, true }) && near.CollectParticles();
   };
   vtkSPHParticles* input = run->Share(mine, collect);

@@ -165,7 +165,7 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   for (vtkIdType i = 0; i < count; ++i)
   {
     times->SetValue(i, this->InputTime);
-    names->SetValue(i, places[static_cast<size_t>(i)].Name);
+    names->SetValue(i, places[i].Name);
   }
   std::vector<bool> outside;
   mcor_statistics statistics = {};

@@ -14,7 +14,6 @@
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
-#include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 
 #include <algorithm>
@@ -52,7 +51,7 @@ public:
     }
     if (count > this->Room)
     {
-      this->Copied.reset(new double[static_cast<size_t>(3 * count)]);
+      this->Copied.reset(new double[3 * count]);
       this->Room = count;
     }
     double* to = this->Copied.get();

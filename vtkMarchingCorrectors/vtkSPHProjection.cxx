@@ -108,7 +108,7 @@ int vtkSPHProjection::RequestData(
 
 bool vtkSPHProjection::Collect(vtkSPHParticles& particles, mcor_view& view)
 {
-  vtkPointSet* points = particles.GetPoints();
+  vtkPointSet* points = particles.Points;
   vtkSPHRequest scalar = this->FindRequest(0, points);
   if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
   {

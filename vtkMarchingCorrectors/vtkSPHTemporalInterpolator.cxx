@@ -15,7 +15,6 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHTemporalPair.h"
-#include "vtkSPHVertices.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>

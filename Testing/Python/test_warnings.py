@@ -37,10 +37,14 @@ class TestWarnings(unittest.TestCase):
             self.check(None, make_filter(blocks_of(Bound1=fluid, Bound2=fluid)), Blocks=apart)
 
     def test_unused_type(self):
-        for name, words in (("ParticleType", "'ParticleType' is not used.*666 x 0, 665 x 1"), ("Temperature", None)):
+        usual = numpy.arange(1331.0) % 2
+        unknown = numpy.where(numpy.arange(1331) % 3, usual, -numpy.nan)
+        for name, kinds, words in (
+                ("ParticleType", usual, "'ParticleType' is not used.*666 x 0, 665 x 1"), ("Temperature", usual, None),
+                ("ParticleType", unknown, "'ParticleType' is not used.*: it has 444 x 0, 443 x 1, 444 x nan[.].*of the fluid[.]")):
             with self.subTest(name):
-                particles = make_particles(**{name: numpy.arange(1331.0) % 2})
-                self.check(words, make_filter(particles))
+                particles = make_particles(**{name: kinds})
+                self.check(words, make_filter(particles), InterpolateAttributes=0)
                 self.check(None, make_filter(particles), FluidArrayName=name, FluidValue=1, Solids=0)  # they lie everywhere
 
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHArrays.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
@@ -9,69 +10,17 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkSPHReals.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
-#include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
-namespace
-{
-/** Rounds in place: the surface is the largest object in memory at this time. */
-vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkIdType tuples)
-{
-  const vtkIdType count = values ? tuples * components : 0;
-  char* to = reinterpret_cast<char*>(values);
-  for (vtkIdType first = 0; first < count;)
-  {
-    std::array<float, 1024> rounded;
-    const vtkIdType n = std::min<vtkIdType>(count - first, rounded.size());
-    std::transform(values + first, values + first + n, rounded.begin(),
-      [](double value) { return static_cast<float>(value); });
-    std::memcpy(to + first * sizeof(float), rounded.data(), n * sizeof(float));
-    first += n;
-  }
-  void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
-  float* floats = static_cast<float*>(kept ? kept : values);
-  auto array = vtkSPHAdopt(floats, components, count > 0 ? tuples : 0);
-  values = count > 0 ? nullptr : values;
-  return array;
-}
-
-template <typename ArrayT, typename ValueT>
-void AddTuple(vtkFieldData* data, const char* name, const std::vector<ValueT>& values)
-{
-  vtkNew<ArrayT> array;
-  array->SetNumberOfComponents(static_cast<int>(values.size()));
-  array->SetNumberOfTuples(1);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array.Get());
-}
-
-// One component for each phase, one for building programs, and the total; 0 before the first run.
-void AddSeconds(vtkFieldData* run)
-{
-  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
-  seconds->SetNumberOfComponents(MCOR_PHASE_COUNT + 2);
-  seconds->SetNumberOfTuples(1);
-  seconds->Fill(0.0);
-  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
-  {
-    seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
-  }
-  seconds->SetComponentName(MCOR_PHASE_COUNT, "program build");
-  seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
-  vtkSPHAddArray(run, "Seconds", seconds);
-}
-}
-
 std::string vtkSPHNameOf(vtkAbstractArray* array)
 {
   return array && array->GetName() ? array->GetName() : "";
@@ -158,14 +107,29 @@ std::string vtkSPHTakeText(char* text)
   return taken;
 }
 
+// Rounds in place: the surface is the largest object in memory at this time.
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)
 {
-  if (asFloat)
+  if (!asFloat)
   {
-    return RoundToFloat(values, components, tuples);
+    return vtkSPHAdopt(values, components, tuples);
   }
-  return vtkSPHAdopt(values, components, tuples);
+  const vtkIdType count = values ? tuples * components : 0;
+  char* to = reinterpret_cast<char*>(values);
+  for (vtkIdType first = 0; first < count;)
+  {
+    std::array<float, 1024> rounded;
+    const vtkIdType n = std::min<vtkIdType>(count - first, rounded.size());
+    std::transform(values + first, values + first + n, rounded.begin(),
+      [](double value) { return static_cast<float>(value); });
+    std::memcpy(to + first * sizeof(float), rounded.data(), n * sizeof(float));
+    first += n;
+  }
+  void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
+  float* floats = static_cast<float*>(kept ? kept : values);
+  values = count > 0 ? nullptr : values;
+  return vtkSPHAdopt(floats, components, count > 0 ? tuples : 0);
 }
 
 void vtkSPHAddArray(
@@ -173,16 +137,6 @@ void vtkSPHAddArray(
 {
   array->SetName(name);
   data->AddArray(array);
-}
-
-void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values)
-{
-  AddTuple<vtkDoubleArray>(data, name, values);
-}
-
-void vtkSPHAddCount(vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values)
-{
-  AddTuple<vtkTypeInt64Array>(data, name, values);
 }
 
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text)
@@ -211,21 +165,27 @@ void AddToRun(vtkFieldData*, vtkSPHHow, const char*, const T (&)[N])
 
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
-  if (!run->GetArray("Seconds"))
+  // One component for each phase, one for building programs, and the total; 0 before the first run.
+  constexpr int build = MCOR_PHASE_COUNT, total = build + 1;
+  vtkSmartPointer<vtkDataArray> seconds = run->GetArray("Seconds");
+  if (!seconds)
   {
-    AddSeconds(run);
+    vtkSPHAddReal(run, "Seconds", std::vector<double>(total + 1, 0.0));
+    seconds = run->GetArray("Seconds");
+    for (int phase = 0; phase < build; ++phase)
+    {
+      seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
+    }
+    seconds->SetComponentName(build, "program build");
+    seconds->SetComponentName(total, "total");
   }
-  vtkDataArray* seconds = run->GetArray("Seconds");
-  const auto addSeconds = [seconds](int component, double value)
-  { seconds->SetComponent(0, component, seconds->GetComponent(0, component) + value); };
-  double total = s.build_seconds;
-  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  double sum = 0.0;
+  for (int i = 0; i <= total; ++i)
   {
-    addSeconds(phase, s.seconds[phase]);
-    total += s.seconds[phase];
+    const double added = i < build ? s.seconds[i] : i == build ? s.build_seconds : sum;
+    seconds->SetComponent(0, i, seconds->GetComponent(0, i) + added);
+    sum += added;
   }
-  addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
-  addSeconds(MCOR_PHASE_COUNT + 1, total);
   const bool is_run = true, always = false, has_scalar = false, has_levels = false,
              is_widened = false, has_caps = false, is_plane = false, has_area = false,
              has_volume = false;
@@ -271,22 +231,6 @@ vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int comp
   return found;
 }
 
-std::string vtkSPHDescribe(vtkFieldData* data)
-{
-  std::ostringstream text;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* array = data->GetAbstractArray(i);
-    text << array->GetName() << ":";
-    for (vtkIdType v = 0; v < array->GetNumberOfValues(); ++v)
-    {
-      text << (v ? ", " : " ") << array->GetVariantValue(v).ToString();
-    }
-    text << "\n";
-  }
-  return text.str();
-}
-
 void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool isReal, bool varies)
 {
   const int rank = mcor_view_priority(name.c_str(), components, isReal, varies);
@@ -297,9 +241,8 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
   }
 }
 
-namespace
-{
-vtkSPHArrayChoice Consider(const std::vector<vtkDataArray*>& arrays, const vtkSPHMergeRanges& merge)
+vtkSPHArrayChoice::vtkSPHArrayChoice(
+  const std::vector<vtkDataArray*>& arrays, const vtkSPHMergeRanges& merge)
 {
   std::vector<double> ranges; // of each component
   for (vtkDataArray* array : arrays)
@@ -318,7 +261,6 @@ vtkSPHArrayChoice Consider(const std::vector<vtkDataArray*>& arrays, const vtkSP
   {
     merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   }
-  vtkSPHArrayChoice choice;
   const double* range = ranges.data();
   for (vtkDataArray* array : arrays)
   {
@@ -327,11 +269,9 @@ vtkSPHArrayChoice Consider(const std::vector<vtkDataArray*>& arrays, const vtkSP
     {
       varies = varies || range[0] < range[1];
     }
-    choice.Consider(
+    this->Consider(
       vtkSPHNameOf(array), array->GetNumberOfComponents(), vtkSPHIsReal(array), varies);
   }
-  return choice;
-}
 }
 
 std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge)
@@ -345,11 +285,45 @@ std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge
       arrays.push_back(array);
     }
   }
-  return Consider(arrays, merge).Best;
+  return vtkSPHArrayChoice(arrays, merge).Best;
 }
 
-bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge)
+double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
 {
-  return Consider({ array }, merge).Rank >= 0;
+  if (!array.data)
+  {
+    return array.constant;
+  }
+  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                    : static_cast<const double*>(array.data)[i];
+}
+
+double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle)
+{
+  const int components = core.scalar.components;
+  const vtkIdType first = particle * components;
+  if (core.scalar_component >= 0 && !core.scalar_dot.data)
+  {
+    return vtkSPHValueOf(core.scalar, first + core.scalar_component);
+  }
+  double sum = 0.0;
+  for (vtkIdType i = first; i < first + components; ++i)
+  {
+    sum += vtkSPHValueOf(core.scalar, i) *
+      vtkSPHValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
+  }
+  return core.scalar_dot.data ? sum : std::sqrt(sum);
+}
+
+vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array)
+{
+  if (vtkAOSDataArrayTemplate<float>::FastDownCast(array) ||
+    vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    return array;
+  }
+  auto copy = vtkSmartPointer<vtkDoubleArray>::New();
+  copy->DeepCopy(array);
+  return copy;
 }
 VTK_ABI_NAMESPACE_END

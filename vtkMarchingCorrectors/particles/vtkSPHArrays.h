@@ -1,20 +1,24 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: VTK arrays made of what the core returns. */
+/** Private to the module: VTK arrays, read as the core reads them, and made of what it returns. */
 #ifndef vtkSPHArrays_h
 #define vtkSPHArrays_h
 
 #include "mcor.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkTypeTraits.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -83,40 +87,42 @@ void vtkSPHAddArray(
   vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
 ///@{
-/** Adds numbers as one tuple. */
-void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values);
-void vtkSPHAddCount(vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values);
+/** Adds numbers as one tuple, of 64-bit integers or of doubles. */
+template <typename T>
+void vtkSPHAddTuple(vtkFieldData* data, const char* name, const std::vector<T>& values)
+{
+  vtkNew<
+    typename std::conditional<std::is_integral<T>::value, vtkTypeInt64Array, vtkDoubleArray>::type>
+    array;
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkSPHAddArray(data, name, array.Get());
+}
+inline void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values)
+{
+  vtkSPHAddTuple(data, name, values);
+}
+inline void vtkSPHAddCount(
+  vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values)
+{
+  vtkSPHAddTuple(data, name, values);
+}
+template <typename T>
+typename std::enable_if<std::is_arithmetic<T>::value>::type vtkSPHAdd(
+  vtkFieldData* data, const char* name, T value)
+{
+  vtkSPHAddTuple(data, name, std::vector<T>{ value });
+}
+template <typename T, std::size_t N>
+void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
+{
+  vtkSPHAddTuple(data, name, std::vector<T>(values, values + N));
+}
 ///@}
-
-///@{
-/**
- * Adds a number, or an array; counts of levels as a tuple each, up to the last level that
- * has any.
- */
-inline void vtkSPHAdd(vtkFieldData* data, const char* name, double value)
-{
-  vtkSPHAddReal(data, name, { value });
-}
-inline void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value)
-{
-  vtkSPHAddCount(data, name, { value });
-}
-inline void vtkSPHAdd(vtkFieldData* data, const char* name, int value)
-{
-  vtkSPHAddCount(data, name, { value });
-}
+/** Adds counts of levels as a tuple each, up to the last level that has any. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
-inline void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&values)[3])
-{
-  vtkSPHAddCount(data, name, std::vector<std::int64_t>(values, values + 3));
-}
-template <std::size_t N>
-void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&values)[N])
-{
-  vtkSPHAddReal(data, name, std::vector<double>(values, values + N));
-}
-///@}
 
 /** Adds a column, without values, to a table. */
 template <typename ArrayT>
@@ -153,6 +159,8 @@ vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int comp
  */
 struct vtkSPHArrayChoice
 {
+  explicit vtkSPHArrayChoice(
+    const std::vector<vtkDataArray*>& arrays = {}, const vtkSPHMergeRanges& merge = nullptr);
   void Consider(const std::string& name, int components, bool isReal, bool varies);
 
   std::string Best; ///< empty where no array is fit
@@ -161,11 +169,47 @@ struct vtkSPHArrayChoice
 
 /** The name of the fittest array to show; empty: there is none. */
 std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);
-/** Whether an array is fit to show. */
-bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge = nullptr);
+inline bool vtkSPHIsReal(vtkAbstractArray* array)
+{
+  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+}
 
-/** Writes a line "Name: values" for each array. */
-std::string vtkSPHDescribe(vtkFieldData* data);
+/** Returns the array itself if it holds floats or doubles, one after another; else a copy. */
+vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
+
+/** The values of an array. */
+class vtkSPHReals
+{
+public:
+  explicit vtkSPHReals(vtkDataArray* array)
+    : Array(vtkSPHAsReal(array))
+    , Components(array->GetNumberOfComponents())
+    , Floats(this->Array->GetDataType() == VTK_FLOAT
+          ? static_cast<float*>(this->Array->GetVoidPointer(0))
+          : nullptr)
+    , Doubles(this->Floats ? nullptr : static_cast<double*>(this->Array->GetVoidPointer(0)))
+  {
+  }
+
+  double operator()(vtkIdType tuple, int component) const
+  {
+    const vtkIdType i = tuple * this->Components + component;
+    return this->Floats ? static_cast<double>(this->Floats[i]) : this->Doubles[i];
+  }
+
+  const vtkSmartPointer<vtkDataArray> Array; ///< itself, or its copy
+  const int Components;
+
+private:
+  const float* const Floats;
+  const double* const Doubles;
+};
+
+/** Returns an element of the core's array, or the constant that stands for it. */
+double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
+
+/** Returns the scalar to contour at a particle. */
+double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);
 VTK_ABI_NAMESPACE_END
 
 #endif

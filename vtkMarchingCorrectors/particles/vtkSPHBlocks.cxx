@@ -47,19 +47,21 @@ vtkSmartPointer<vtkAbstractArray> JoinArrays(
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const vtkIdType count = blocks[b]->GetNumberOfPoints();
+    vtkPointData* data = blocks[b]->GetPointData();
     if (HasArray(blocks[b], first))
     {
-      joined->InsertTuples(
-        at, count, 0, blocks[b]->GetPointData()->GetAbstractArray(first->GetName()));
+      joined->InsertTuples(at, count, 0, data->GetAbstractArray(first->GetName()));
     }
-    else if (walls.empty() || !walls[b] || isType ||
-      blocks[b]->GetPointData()->HasArray(first->GetName()))
+    else if (walls.empty() || !walls[b] || isType || data->HasArray(first->GetName()))
     {
       return nullptr;
     }
-    for (vtkIdType i = 0; !HasArray(blocks[b], first) && i < count; ++i)
+    else
     {
-      joined->InsertTuple(at + i, 0, first);
+      for (vtkIdType i = at; i < at + count; ++i)
+      {
+        joined->InsertTuple(i, 0, first);
+      }
     }
     at += count;
   }
@@ -83,6 +85,15 @@ struct Leaf
   vtkDataObject* Data; ///< null: the block is empty
   std::string Name;    ///< its name, or that of the block that it is a partition of; empty: none
   unsigned int Index;
+
+  vtkPointSet* Points() const
+  {
+    auto* points = vtkPointSet::SafeDownCast(this->Data);
+    return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
+  }
+
+  /** The name by which a fluid array may choose this block. */
+  std::string FluidArray() const { return "Block: " + this->Name; }
 };
 
 std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
@@ -114,18 +125,6 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
   return leaves;
 }
 
-vtkPointSet* PointsOf(vtkDataObject* data)
-{
-  auto* points = vtkPointSet::SafeDownCast(data);
-  return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
-}
-
-/** Returns the name by which a fluid array may choose this block. */
-std::string FluidArrayOf(const std::string& name)
-{
-  return "Block: " + name;
-}
-
 /**
  * Finds which of the blocks with points are walls: all but the block that was chosen as fluid,
  * else those with names of walls. Returns nothing where no block of the tree, or every one, has
@@ -140,9 +139,9 @@ std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArr
   std::size_t count = 0;
   for (const Leaf& leaf : leaves)
   {
-    const bool isWall = isChosen ? FluidArrayOf(leaf.Name) != fluidArray : TellsOfWalls(leaf.Name);
+    const bool isWall = isChosen ? leaf.FluidArray() != fluidArray : TellsOfWalls(leaf.Name);
     count += isWall ? 1 : 0;
-    if (PointsOf(leaf.Data))
+    if (leaf.Points())
     {
       walls.push_back(isWall);
     }
@@ -185,9 +184,9 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
   for (const Leaf& leaf : tree ? ListLeaves(tree) : std::vector<Leaf>{ { data, "", 0 } })
   {
-    if (vtkPointSet* points = PointsOf(leaf.Data))
+    if (leaf.Points())
     {
-      found.push_back(points);
+      found.push_back(leaf.Points());
     }
   }
   return found;
@@ -208,7 +207,7 @@ std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree)
   std::vector<std::string> list;
   for (const Leaf& leaf : ListLeaves(tree))
   {
-    const std::string choice = FluidArrayOf(leaf.Name);
+    const std::string choice = leaf.FluidArray();
     if (!leaf.Name.empty() && std::find(list.begin(), list.end(), choice) == list.end())
     {
       list.push_back(choice);
@@ -260,11 +259,11 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     }
     joined->GetPointData()->AddArray(marks);
   }
-  const std::vector<vtkDataObject*> all = ListAll(tree);
-  for (auto each = all.rbegin(); each != all.rend();
-       ++each) // the first of several arrays of one name stays
+  std::vector<vtkDataObject*> all = ListAll(tree);
+  std::reverse(all.begin(), all.end()); // the first of several arrays of one name stays
+  for (vtkDataObject* each : all)
   {
-    joined->GetFieldData()->PassData((*each)->GetFieldData());
+    joined->GetFieldData()->PassData(each->GetFieldData());
   }
   return joined;
 }

@@ -59,7 +59,7 @@ vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
   if (numbers > 0)
   {
     found.Period.assign(period, period + numbers);
-    found.Array = arrays[static_cast<std::size_t>(which)].name;
+    found.Array = arrays[which].name;
   }
   return found;
 }

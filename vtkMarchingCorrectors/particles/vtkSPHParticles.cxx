@@ -10,10 +10,11 @@
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
-#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
+#include <iterator>
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -27,17 +28,6 @@ const void* OrEmpty(const void* values)
 }
 
 const char* const MadeName = "vtkSPHMade:";
-
-/** Returns the solver whose names the arrays have, see mcor_find_layout. */
-std::string FindLayout(vtkPointData* data)
-{
-  std::string names;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    names += vtkSPHNameOf(data->GetAbstractArray(i)) + "\n";
-  }
-  return mcor_find_layout(names.c_str());
-}
 
 std::uint64_t BitsOf(double value)
 {
@@ -92,7 +82,7 @@ bool vtkSPHParticles::CollectSmoothingLength()
   if (this->Core.estimate_smoothing_length &&
     f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS)
   {
-    if (!this->SmoothingLength) // not from SumDensities()
+    if (!this->SmoothingLength) // not from Take()
     {
       this->SmoothingLength = this->Compute("SmoothingLength",
         [this, &f](const mcor_input& all, const mcor_options& options, double* values, char** why)
@@ -122,24 +112,30 @@ bool vtkSPHParticles::CollectSmoothingLength()
       "The particles have no smoothing length. Turn Estimate Smoothing Length on, or choose "
       "Smoothing Length Array; no point array has one of its usual names "
       "(SmoothingLength, hsml, h, ...). " +
-      (FindLayout(this->Points->GetPointData()) == "DualSPHysics"
-          ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
-          : std::string()) +
-      this->DescribeSpacing() + vtkSPHListNames(this->Points);
+      this->AdviseOnLength() + vtkSPHListNames(this->Points);
   }
   return this->Error.empty();
 }
 
-// Where one array holds the distance of all particles.
-std::string vtkSPHParticles::DescribeSpacing() const
+// Tells of the solver whose names the arrays have, and of one array with the distance of all.
+std::string vtkSPHParticles::AdviseOnLength() const
 {
+  std::ostringstream text;
+  std::string names;
+  for (int i = 0; i < this->Points->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    names += vtkSPHNameOf(this->Points->GetPointData()->GetAbstractArray(i)) + "\n";
+  }
+  if (std::strcmp(mcor_find_layout(names.c_str()), "DualSPHysics") == 0)
+  {
+    text << "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ";
+  }
   vtkDataArray* spacing = vtkSPHDetect(this->Points, MCOR_SPACING, 1);
   double range[2] = { 0.0, -1.0 };
   if (spacing && this->Core.count > 0)
   {
     spacing->GetRange(range, 0);
   }
-  std::ostringstream text;
   if (range[0] == range[1] && range[0] > 0.0)
   {
     text << "By " << Quote(vtkSPHNameOf(spacing)) << ", particles are " << range[0]
@@ -266,18 +262,6 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
     arrays->AddArray(sent);
   }
   return made.second;
-}
-
-vtkDataArray* vtkSPHParticles::SumDensities()
-{
-  if (!this->CollectSmoothingLength() || !this->CollectVolume())
-  {
-    return nullptr;
-  }
-  this->Summed = this->Compute("Density",
-    [this](const mcor_input& all, const mcor_options& options, double* values, char** why)
-    { return mcor_sum_densities(&all, &options, this->Core.count, values, why); });
-  return this->Summed;
 }
 
 // An array or constant that was set goes before detection: with a mass set, a volume array that
@@ -525,32 +509,25 @@ bool vtkSPHParticles::CollectProjection(
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;
-  vtkSPHSign(particles, this->Points);
-  vtkSPHSign(particles, this->Points->GetPoints()->GetData());
-  vtkSPHSign(particles, this->SmoothingLength);
-  vtkSPHSign(particles, this->Volume);
-  vtkSPHSign(particles, this->Mass);
-  vtkSPHSign(particles, this->Density);
-  vtkSPHSign(particles, this->Fluid);
-  particles.push_back(BitsOf(this->Description.FluidValue));
-  for (const double side : this->Description.Within)
+  vtkDataArray* positions = this->Points->GetPoints()->GetData();
+  for (vtkObject* object : std::initializer_list<vtkObject*>{ this->Points, positions,
+         this->SmoothingLength, this->Volume, this->Mass, this->Density, this->Fluid })
   {
-    particles.push_back(BitsOf(side));
+    vtkSPHSign(particles, object);
   }
-  for (const vtkSPHOnly& only : this->Description.Only)
+  const vtkSPHParticlesChoice& f = this->Description;
+  std::vector<double> numbers(f.Within, f.Within + 6);
+  for (const vtkSPHOnly& only : f.Only)
   {
     vtkSPHSign(particles, this->Points->GetPointData()->GetAbstractArray(only.Name.c_str()));
-    particles.push_back(BitsOf(only.Low));
-    particles.push_back(BitsOf(only.High));
+    numbers.insert(numbers.end(), { only.Low, only.High });
   }
-  particles.push_back(BitsOf(this->Core.smoothing_length.constant));
-  particles.push_back(BitsOf(this->Core.mass.constant));
-  particles.push_back(BitsOf(this->Core.density.constant));
-  for (const int flag : { this->Core.smoothing_length_is_support_radius,
-         this->Core.estimate_smoothing_length, this->Core.ignore_solids, this->Description.Kernel })
-  {
-    particles.push_back(static_cast<std::uint64_t>(flag));
-  }
+  const mcor_input& c = this->Core;
+  numbers.insert(numbers.end(),
+    { f.FluidValue, c.smoothing_length.constant, c.mass.constant, c.density.constant,
+      1.0 * c.smoothing_length_is_support_radius, 1.0 * c.estimate_smoothing_length,
+      1.0 * c.ignore_solids, 1.0 * f.Kernel });
+  std::transform(numbers.begin(), numbers.end(), std::back_inserter(particles), BitsOf);
   return particles;
 }
 
@@ -587,7 +564,13 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Take(
 {
   if (sums && name == "Density" && !array)
   {
-    return this->SumDensities();
+    // It gives volumes, too, from then on.
+    this->Summed = this->CollectSmoothingLength() && this->CollectVolume()
+      ? this->Compute("Density",
+          [this](const mcor_input& all, const mcor_options& options, double* values, char** why)
+          { return mcor_sum_densities(&all, &options, this->Core.count, values, why); })
+      : nullptr;
+    return this->Summed;
   }
   const vtkSmartPointer<vtkDataArray> velocity =
     name == "Velocity" && !array ? this->JoinVelocity() : nullptr;

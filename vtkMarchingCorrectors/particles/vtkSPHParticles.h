@@ -40,6 +40,9 @@ struct vtkSPHAttribute
   int Components;
 };
 
+/** Marks the particles that the choice leaves; empty: all. An array that is not there leaves all. */
+std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
+
 class vtkSPHParticles
 {
 public:
@@ -106,13 +109,6 @@ public:
   vtkSmartPointer<vtkDataArray> JoinVelocity() const;
 
   /**
-   * Names of the arrays that may tell fluid from solids, the most usual one first; none where the
-   * choice names the fluid array.
-   */
-  static std::vector<std::string> ListTypes(
-    const vtkSPHParticlesChoice& choice, vtkPointSet* points);
-
-  /**
    * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if
    * there are such. Those of a block that it names, too.
    */
@@ -131,9 +127,8 @@ public:
    */
   std::string DescribeUnusedType();
 
-  vtkPointSet* GetPoints() const { return this->Points; }
-
   const vtkSPHParticlesChoice Description;
+  const vtkSmartPointer<vtkPointSet> Points;
   mcor_input Core = {};
   std::string Error;
 
@@ -168,13 +163,6 @@ protected:
   bool CollectVolume();
   void Interpolate(vtkDataArray* array);
 
-  /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where
-   * it fails. */
-  vtkDataArray* SumDensities();
-  bool CollectAbsent();
-
-  vtkSmartPointer<vtkPointSet> Points;
-
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
@@ -183,7 +171,7 @@ private:
   vtkSmartPointer<vtkDataArray> Compute(const char* name,
     const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call);
   vtkSmartPointer<vtkDataArray> Summed; // density
-  std::string DescribeSpacing() const;
+  std::string AdviseOnLength() const;
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   std::vector<std::uint64_t> Sign() const;
 

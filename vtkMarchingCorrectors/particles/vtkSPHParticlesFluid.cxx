@@ -5,7 +5,6 @@
 
 #include "vtkPointData.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,79 +13,131 @@
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
+namespace
+{
+bool HasWithin(const vtkSPHParticlesChoice& choice)
+{
+  return std::any_of(choice.Within, choice.Within + 6, [](double side) { return side != 0.0; });
+}
+
+/** Numbers in their order, and NaN as the last one of them. */
+struct NaNLast
+{
+  bool operator()(double a, double b) const { return a < b || (std::isnan(b) && !std::isnan(a)); }
+};
+
+/**
+ * Counts how often each value occurs in an array; none if there are more than kinds of particles,
+ * for which its first values suffice.
+ */
+std::map<double, vtkIdType, NaNLast> CountValues(vtkDataArray* array)
+{
+  std::map<double, vtkIdType, NaNLast> counts;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    const double value = array->GetComponent(i, 0);
+    ++counts[std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value];
+    if (counts.size() > MCOR_PARTICLE_TYPES)
+    {
+      return {};
+    }
+  }
+  return counts;
+}
+
+/**
+ * Names of the arrays that may tell fluid from solids, the most usual one first; none where the
+ * choice names the fluid array.
+ */
+std::vector<std::string> ListTypes(const vtkSPHParticlesChoice& choice, vtkPointData* data)
+{
+  std::multimap<int, std::string> names;
+  const bool isNamed = !vtkSPHRealName(choice.FluidArrayName).empty();
+  for (int i = 0; !isNamed && i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    if (rank >= 0 && array->GetNumberOfComponents() == 1)
+    {
+      names.emplace(rank, array->GetName());
+    }
+  }
+  std::vector<std::string> list;
+  for (const auto& name : names)
+  {
+    list.push_back(name.second);
+  }
+  return list;
+}
+}
+
 bool vtkSPHParticles::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
   this->Core.ignore_solids = this->Description.IgnoreSolids ? 1 : 0;
   const std::string name = vtkSPHRealName(this->Description.FluidArrayName);
-  if (name.empty())
+  if (!name.empty())
   {
-    return this->CollectAbsent();
-  }
-  this->Fluid = this->Find("fluid", name);
-  if (!this->Fluid)
-  {
-    return false;
-  }
-  this->Solid.resize(std::max<size_t>(static_cast<size_t>(this->Core.count), 1));
-  this->FluidCount =
-    vtkSPHMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
-  this->Core.solid = this->Solid.data();
-  return this->CollectAbsent();
-}
-
-// Finds the absent particles. With several ranges of one array, any may hold.
-bool vtkSPHParticles::CollectAbsent()
-{
-  if (!vtkSPHLeavesOut(this->Description) || this->Core.count == 0)
-  {
-    return true;
+    this->Fluid = this->Find("fluid", name);
+    if (!this->Fluid)
+    {
+      return false;
+    }
+    const vtkSPHReals values(this->Fluid);
+    this->Solid.resize(std::max<size_t>(this->Core.count, 1));
+    for (vtkIdType i = 0; i < this->Core.count; ++i)
+    {
+      this->Solid[i] = values(i, 0) == this->Description.FluidValue ? 0 : 1;
+    }
+    this->Core.solid = this->Solid.data();
   }
   for (const vtkSPHOnly& only : this->Description.Only)
   {
-    if (!this->Find("choice of particles", only.Name))
+    if (this->Core.count > 0 && !this->Find("choice of particles", only.Name))
     {
       return false;
     }
   }
-  this->Solid.resize(static_cast<size_t>(this->Core.count)); // 0: fluid
-  vtkIdType fluid = 0, there = 0;
   const std::vector<bool> present = vtkSPHFindPresent(this->Description, this->Points);
-  for (size_t i = 0; i < present.size(); ++i)
+  if (!present.empty())
   {
-    this->Solid[i] = present[i] ? this->Solid[i] : MCOR_ABSENT;
-    fluid += this->Solid[i] == 0 ? 1 : 0;
-    there += present[i] ? 1 : 0;
+    this->Solid.resize(this->Core.count); // 0: fluid
+    for (size_t i = 0; i < present.size(); ++i)
+    {
+      this->Solid[i] = present[i] ? this->Solid[i] : MCOR_ABSENT;
+    }
+    this->AllAbsent = std::count(present.begin(), present.end(), true) == 0;
+    this->Core.solid = this->Solid.data();
   }
-  this->FluidCount = fluid;
-  this->AllAbsent = there == 0;
-  this->Core.solid = this->Solid.data();
+  if (this->Core.solid)
+  {
+    this->FluidCount = std::count(this->Solid.begin(), this->Solid.begin() + this->Core.count, 0);
+  }
   return true;
 }
 
-bool vtkSPHLeavesOut(const vtkSPHParticlesChoice& choice)
-{
-  return !choice.Only.empty() ||
-    std::any_of(choice.Within, choice.Within + 6, [](double side) { return side != 0.0; });
-}
-
+// With several ranges of one array, any may hold.
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
 {
   const vtkIdType count = points->GetNumberOfPoints();
-  std::vector<bool> present(static_cast<size_t>(count), true);
   const double* b = choice.Within;
-  const bool isWithin = std::any_of(b, b + 6, [](double side) { return side != 0.0; });
+  const bool isWithin = HasWithin(choice);
+  if (!isWithin && choice.Only.empty())
+  {
+    return {};
+  }
+  std::vector<bool> present(count, true);
   for (vtkIdType i = 0; isWithin && i < count; ++i)
   {
     double x[3];
     points->GetPoint(i, x);
-    present[static_cast<size_t>(i)] =
+    present[i] =
       x[0] >= b[0] && x[0] <= b[1] && x[1] >= b[2] && x[1] <= b[3] && x[2] >= b[4] && x[2] <= b[5];
   }
-  std::map<std::string, std::vector<std::pair<double, double>>> ranges;
+  std::map<std::string, std::vector<vtkSPHOnly>> ranges;
   for (const vtkSPHOnly& only : choice.Only)
   {
-    ranges[only.Name].emplace_back(only.Low, only.High);
+    ranges[only.Name].push_back(only);
   }
   for (const auto& each : ranges)
   {
@@ -94,10 +145,9 @@ std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPoin
     for (vtkIdType i = 0; array && i < count; ++i)
     {
       const double value = array->GetComponent(i, 0);
-      present[static_cast<size_t>(i)] = present[static_cast<size_t>(i)] &&
+      present[i] = present[i] &&
         std::any_of(each.second.begin(), each.second.end(),
-          [value](const std::pair<double, double>& range)
-          { return value >= range.first && value <= range.second; });
+          [value](const vtkSPHOnly& range) { return value >= range.Low && value <= range.High; });
     }
   }
   return present;
@@ -114,7 +164,7 @@ std::string vtkSPHParticles::DescribeNoFluid() const
     return text.str();
   }
   text << "No particle is ";
-  if (std::any_of(b, b + 6, [](double side) { return side != 0.0; }))
+  if (HasWithin(this->Description))
   {
     for (int i = 0; i < 6; ++i)
     {
@@ -135,45 +185,6 @@ std::string vtkSPHParticles::DescribeNoFluid() const
   return text.str();
 }
 
-std::vector<std::string> vtkSPHParticles::ListTypes(
-  const vtkSPHParticlesChoice& choice, vtkPointSet* points)
-{
-  std::multimap<int, std::string> names;
-  vtkPointData* pointData = points->GetPointData();
-  for (int i = 0;
-       vtkSPHRealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
-    if (rank >= 0 && array->GetNumberOfComponents() == 1)
-    {
-      names.emplace(rank, array->GetName());
-    }
-  }
-  std::vector<std::string> list;
-  for (const auto& name : names)
-  {
-    list.push_back(name.second);
-  }
-  return list;
-}
-
-namespace
-{
-/** Finds the range of an array of whole numbers; for other numbers one that tells of no fluid. */
-void FindWholeRange(vtkDataArray* array, double range[2])
-{
-  const double none = std::numeric_limits<double>::infinity();
-  const std::map<double, vtkIdType> counts = vtkSPHCountValues(array, MCOR_PARTICLE_TYPES);
-  const bool isWhole = !counts.empty() &&
-    std::all_of(counts.begin(), counts.end(),
-      [](const std::pair<const double, vtkIdType>& count)
-      { return count.first == std::floor(count.first); });
-  range[0] = isWhole ? counts.begin()->first : array->GetNumberOfTuples() > 0 ? -none : none;
-  range[1] = isWhole ? counts.rbegin()->first : -none;
-}
-}
-
 void vtkSPHParticles::FindFluid(
   vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge)
 {
@@ -182,10 +193,19 @@ void vtkSPHParticles::FindFluid(
     choice.FluidArrayName = MCOR_WALL_BLOCK;
     choice.FluidValue = 0.0;
   }
-  for (const std::string& name : ListTypes(choice, points))
+  for (const std::string& name : ListTypes(choice, points->GetPointData()))
   {
-    double range[2];
-    FindWholeRange(points->GetPointData()->GetArray(name.c_str()), range);
+    // The range of whole numbers; for other numbers one that tells of no fluid.
+    const double none = std::numeric_limits<double>::infinity();
+    vtkDataArray* array = points->GetPointData()->GetArray(name.c_str());
+    const auto counts = CountValues(array);
+    const bool isWhole = !counts.empty() &&
+      std::all_of(counts.begin(), counts.end(),
+        [](const auto& count) { return count.first == std::floor(count.first); });
+    double range[2] = { isWhole          ? counts.begin()->first
+        : array->GetNumberOfTuples() > 0 ? -none
+                                         : none,
+      isWhole ? counts.rbegin()->first : -none };
     if (merge)
     {
       merge(range, 1);
@@ -210,12 +230,12 @@ std::string vtkSPHParticles::DescribeFluid() const
 
 std::string vtkSPHParticles::DescribeUnusedType()
 {
-  for (const std::string& name : ListTypes(this->Description, this->Points))
+  vtkPointData* data = this->Points->GetPointData();
+  for (const std::string& name : ListTypes(this->Description, data))
   {
     std::vector<double> values;
     std::vector<std::int64_t> counts;
-    for (const auto& count :
-      vtkSPHCountValues(this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
+    for (const auto& count : CountValues(data->GetArray(name.c_str())))
     {
       values.push_back(count.first);
       counts.push_back(count.second);

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkSPHVertices.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -73,9 +72,9 @@ std::vector<vtkIdType> FindVertices(const Cells& cells, vtkIdType points)
     }
     for (vtkIdType i = 0; i < count; ++i)
     {
-      if (ids[i] >= 0 && ids[i] < points && found[static_cast<std::size_t>(ids[i])] < 0)
+      if (ids[i] >= 0 && ids[i] < points && found[ids[i]] < 0)
       {
-        found[static_cast<std::size_t>(ids[i])] = cell;
+        found[ids[i]] = cell;
       }
     }
   }

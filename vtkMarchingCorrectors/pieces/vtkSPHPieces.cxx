@@ -12,7 +12,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -23,26 +22,25 @@ using Triple = std::array<double, 3>;
 constexpr double SideTolerance = 1e-5;
 }
 
+// The root of each part is its lowest point, in any order of joining.
 vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
+  : Points(mesh->GetNumberOfPoints())
+  , Root(this->Points.size())
 {
   std::copy_n(period, 6, this->Period);
-  this->ReadTriangles(mesh);
-  this->JoinPoints();
-  this->JoinSides();
-  this->NumberPieces();
-  this->FindClosed();
-  this->Measure();
-  this->MoveHome();
-  this->FindParents();
-}
-
-void vtkSPHPieces::ReadTriangles(vtkPolyData* mesh)
-{
-  this->Points.resize(static_cast<size_t>(mesh->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  std::iota(this->Root.begin(), this->Root.end(), vtkIdType(0));
+  for (size_t i = 0; i < this->Points.size(); ++i)
   {
-    mesh->GetPoint(i, this->Points[static_cast<size_t>(i)].data());
+    mesh->GetPoint(static_cast<vtkIdType>(i), this->Points[i].data());
   }
+  const auto rootOf = [this](vtkIdType point)
+  {
+    while (this->Root[point] != point)
+    {
+      point = this->Root[point] = this->Root[this->Root[point]];
+    }
+    return point;
+  };
   auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
   for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
   {
@@ -50,40 +48,22 @@ void vtkSPHPieces::ReadTriangles(vtkPolyData* mesh)
     const vtkIdType* corners;
     cells->GetCurrentCell(count, corners);
     this->Triangles.push_back({ { corners[0], corners[1], corners[2] } });
-  }
-}
-
-vtkIdType vtkSPHPieces::RootOf(vtkIdType point)
-{
-  vtkIdType root = point;
-  while (this->Root[static_cast<size_t>(root)] != root)
-  {
-    root = this->Root[static_cast<size_t>(root)];
-  }
-  while (this->Root[static_cast<size_t>(point)] != root)
-  {
-    point = std::exchange(this->Root[static_cast<size_t>(point)], root);
-  }
-  return root;
-}
-
-// The root of each part is its lowest point, in any order of joining.
-void vtkSPHPieces::JoinPoints()
-{
-  this->Root.resize(this->Points.size());
-  std::iota(this->Root.begin(), this->Root.end(), vtkIdType(0));
-  for (const auto& triangle : this->Triangles)
-  {
     for (int i = 1; i < 3; ++i)
     {
-      const vtkIdType a = this->RootOf(triangle[0]), b = this->RootOf(triangle[i]);
-      this->Root[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+      const vtkIdType a = rootOf(corners[0]), b = rootOf(corners[i]);
+      this->Root[std::max(a, b)] = std::min(a, b);
     }
   }
-  for (size_t i = 0; i < this->Root.size(); ++i)
+  for (vtkIdType& root : this->Root)
   {
-    this->RootOf(static_cast<vtkIdType>(i));
+    root = rootOf(root);
   }
+  this->JoinSides();
+  this->NumberPieces();
+  this->FindClosed();
+  this->Measure();
+  this->MoveHome();
+  this->FindParents();
 }
 
 // Points on opposite sides are matched by their other two coordinates. Parts that meet there form a
@@ -107,8 +87,8 @@ void vtkSPHPieces::JoinSides()
     {
       for (const vtkIdType point : triangle)
       {
-        low = std::min(low, this->Points[static_cast<size_t>(point)][a]);
-        high = std::max(high, this->Points[static_cast<size_t>(point)][a]);
+        low = std::min(low, this->Points[point][a]);
+        high = std::max(high, this->Points[point][a]);
       }
     }
     if (!(period > 0.0) || !(std::abs(high - low - period) <= tolerance))
@@ -133,7 +113,7 @@ void vtkSPHPieces::JoinSides()
       {
         continue;
       }
-      const auto twin = static_cast<size_t>(found->second);
+      const vtkIdType twin = found->second;
       this->Twin[i] = this->Twin[twin];
       // The part at the lower side continues, a period higher, in that at the upper side.
       this->JoinParts(this->Root[twin], this->Root[i], a, members);
@@ -145,28 +125,25 @@ void vtkSPHPieces::JoinSides()
 void vtkSPHPieces::JoinParts(
   vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
 {
-  const auto from = static_cast<size_t>(lower), to = static_cast<size_t>(upper);
-  Shift shift = this->GroupShift[to];
+  Shift shift = this->GroupShift[upper];
   shift[axis] += 1;
   for (int c = 0; c < 3; ++c)
   {
-    shift[c] -= this->GroupShift[from][c];
+    shift[c] -= this->GroupShift[lower][c];
   }
-  const auto old = static_cast<size_t>(this->Group[from]),
-             kept = static_cast<size_t>(this->Group[to]);
+  const vtkIdType old = this->Group[lower], kept = this->Group[upper];
   if (old == kept)
   {
     this->GroupEndless[kept] |= shift != Shift{ { 0, 0, 0 } };
     return;
   }
-  members[old].push_back(static_cast<vtkIdType>(old));
+  members[old].push_back(old);
   for (const vtkIdType part : members[old])
   {
-    const auto p = static_cast<size_t>(part);
-    this->Group[p] = static_cast<vtkIdType>(kept);
+    this->Group[part] = kept;
     for (int c = 0; c < 3; ++c)
     {
-      this->GroupShift[p][c] += shift[c];
+      this->GroupShift[part][c] += shift[c];
     }
   }
   members[kept].insert(members[kept].end(), members[old].begin(), members[old].end());
@@ -177,15 +154,15 @@ void vtkSPHPieces::JoinParts(
 // Moves a point to where its piece is in one.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
-  const auto& points = this->Triangles[static_cast<size_t>(triangle)];
-  const vtkIdType root = this->Root[static_cast<size_t>(points[0])];
-  const Shift& shift = this->GroupShift[static_cast<size_t>(root)];
+  const auto& points = this->Triangles[triangle];
+  const vtkIdType root = this->Root[points[0]];
+  const Shift& shift = this->GroupShift[root];
   for (int i = 0; i < 3; ++i)
   {
     for (int a = 0; a < 3; ++a)
     {
-      corners[i][a] = this->Points[static_cast<size_t>(points[i])][a] +
-        shift[a] * (this->Period[2 * a + 1] - this->Period[2 * a]);
+      corners[i][a] =
+        this->Points[points[i]][a] + shift[a] * (this->Period[2 * a + 1] - this->Period[2 * a]);
     }
   }
 }
@@ -198,14 +175,13 @@ void vtkSPHPieces::NumberPieces()
   std::vector<vtkIdType> of(this->Triangles.size());
   for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
-    const auto root = static_cast<size_t>(this->Root[static_cast<size_t>(this->Triangles[t][0])]);
-    const auto group = this->Group[root];
+    const vtkIdType group = this->Group[this->Root[this->Triangles[t][0]]];
     const auto at = numbers.emplace(group, static_cast<vtkIdType>(found.size()));
     if (at.second)
     {
       vtkSPHPiece piece;
       piece.FirstTriangle = static_cast<vtkIdType>(t);
-      piece.Endless = this->GroupEndless[static_cast<size_t>(group)] != 0;
+      piece.Endless = this->GroupEndless[group] != 0;
       found.push_back(piece);
     }
     of[t] = at.first->second;
@@ -214,7 +190,7 @@ void vtkSPHPieces::NumberPieces()
     vtkMath::Subtract(c[1], c[0], u);
     vtkMath::Subtract(c[2], c[0], v);
     vtkMath::Cross(u, v, n);
-    found[static_cast<size_t>(of[t])].Area += 0.5 * vtkMath::Norm(n);
+    found[of[t]].Area += 0.5 * vtkMath::Norm(n);
   }
   std::vector<size_t> order(found.size());
   std::iota(order.begin(), order.end(), size_t(0));
@@ -230,10 +206,10 @@ void vtkSPHPieces::NumberPieces()
   this->PieceOfPoint.assign(this->Points.size(), -1);
   for (size_t t = 0; t < of.size(); ++t)
   {
-    this->PieceOfTriangle[t] = place[static_cast<size_t>(of[t])];
+    this->PieceOfTriangle[t] = place[of[t]];
     for (const vtkIdType point : this->Triangles[t])
     {
-      this->PieceOfPoint[static_cast<size_t>(point)] = this->PieceOfTriangle[t];
+      this->PieceOfPoint[point] = this->PieceOfTriangle[t];
     }
   }
 }
@@ -241,40 +217,28 @@ void vtkSPHPieces::NumberPieces()
 // A piece is closed if each edge is run through as often one way as the other.
 void vtkSPHPieces::FindClosed()
 {
-  struct Edge
-  {
-    vtkIdType Low, High, Way, Piece;
-  };
-  std::vector<Edge> edges;
+  std::vector<std::array<vtkIdType, 4>> edges; // lower and higher point, way, piece
   edges.reserve(3 * this->Triangles.size());
   for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
     for (int i = 0; i < 3; ++i)
     {
-      const vtkIdType a = this->Twin[static_cast<size_t>(this->Triangles[t][i])];
-      const vtkIdType b = this->Twin[static_cast<size_t>(this->Triangles[t][(i + 1) % 3])];
-      edges.push_back({ std::min(a, b), std::max(a, b), a < b ? 1 : -1, this->PieceOfTriangle[t] });
+      const vtkIdType a = this->Twin[this->Triangles[t][i]];
+      const vtkIdType b = this->Twin[this->Triangles[t][(i + 1) % 3]];
+      edges.push_back(
+        { { std::min(a, b), std::max(a, b), a < b ? 1 : -1, this->PieceOfTriangle[t] } });
     }
   }
-  std::sort(edges.begin(), edges.end(),
-    [](const Edge& a, const Edge& b) { return a.Low != b.Low ? a.Low < b.Low : a.High < b.High; });
-  for (vtkSPHPiece& piece : this->Pieces)
-  {
-    piece.Closed = true;
-  }
+  std::sort(edges.begin(), edges.end());
   for (size_t i = 0, next; i < edges.size(); i = next)
   {
     vtkIdType balance = 0;
-    for (next = i; next < edges.size() && edges[next].Low == edges[i].Low &&
-         edges[next].High == edges[i].High;
+    for (next = i; next < edges.size() && std::equal(&edges[i][0], &edges[i][2], &edges[next][0]);
          ++next)
     {
-      balance += edges[next].Way;
+      balance += edges[next][2];
     }
-    if (balance != 0)
-    {
-      this->Pieces[static_cast<size_t>(edges[i].Piece)].Closed = false;
-    }
+    this->Pieces[edges[i][3]].Closed &= balance == 0;
   }
 }
 
@@ -282,22 +246,12 @@ void vtkSPHPieces::FindClosed()
 // the volume, or else of the area.
 void vtkSPHPieces::Measure()
 {
-  const double far = VTK_DOUBLE_MAX;
-  for (vtkSPHPiece& piece : this->Pieces)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      piece.Bounds[2 * a] = far;
-      piece.Bounds[2 * a + 1] = -far;
-    }
-  }
   std::vector<Triple> byArea(this->Pieces.size()), byVolume(this->Pieces.size());
   const auto count = static_cast<vtkIdType>(this->Triangles.size());
   double c[3][3];
   for (vtkIdType t = 0; t < count; ++t)
   {
-    vtkSPHPiece& piece =
-      this->Pieces[static_cast<size_t>(this->PieceOfTriangle[static_cast<size_t>(t)])];
+    vtkSPHPiece& piece = this->Pieces[this->PieceOfTriangle[t]];
     this->CornersOf(t, c);
     for (int i = 0; i < 9; ++i)
     {
@@ -307,7 +261,7 @@ void vtkSPHPieces::Measure()
   }
   for (vtkIdType t = 0; t < count; ++t)
   {
-    const auto number = static_cast<size_t>(this->PieceOfTriangle[static_cast<size_t>(t)]);
+    const vtkIdType number = this->PieceOfTriangle[t];
     vtkSPHPiece& piece = this->Pieces[number];
     double u[3], v[3], n[3];
     this->CornersOf(t, c);
@@ -365,7 +319,7 @@ void vtkSPHPieces::MoveHome()
     {
       for (int a = 0; a < 3; ++a)
       {
-        this->GroupShift[i][a] += moves[static_cast<size_t>(this->PieceOfPoint[i])][a];
+        this->GroupShift[i][a] += moves[this->PieceOfPoint[i]][a];
       }
     }
   }
@@ -391,7 +345,7 @@ void vtkSPHPieces::FindParents()
   const std::vector<vtkIdType> around = isAll ? within : this->FindAround(places);
   for (size_t i = 0; i < cavities.size(); ++i)
   {
-    this->Pieces[static_cast<size_t>(cavities[i])].Parent = within[i] >= 0 ? within[i] : around[i];
+    this->Pieces[cavities[i]].Parent = within[i] >= 0 ? within[i] : around[i];
   }
 }
 VTK_ABI_NAMESPACE_END

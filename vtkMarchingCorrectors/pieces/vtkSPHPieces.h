@@ -16,12 +16,13 @@ class vtkPolyData;
 struct vtkSPHPiece
 {
   vtkIdType Parent = -1; ///< of a cavity: the piece around it; -1: none
-  bool Closed = false;   ///< each edge has a triangle on both sides
+  bool Closed = true;    ///< each edge has a triangle on both sides
   bool Endless = false;  ///< closed only around a period, so that it has no volume
   double Area = 0.0;
   double Volume = 0.0; ///< if closed; negative for a cavity
   double Centre[3] = { 0.0, 0.0, 0.0 };
-  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double Bounds[6] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN, VTK_DOUBLE_MAX, VTK_DOUBLE_MIN,
+    VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
   vtkIdType FirstTriangle = 0;
 
   bool HasVolume() const { return this->Closed && !this->Endless; }
@@ -58,8 +59,6 @@ public:
 
 private:
   using Shift = std::array<int, 3>; // in periods
-  void ReadTriangles(vtkPolyData* mesh);
-  void JoinPoints();
   void JoinSides();
   void JoinParts(
     vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members);
@@ -71,7 +70,6 @@ private:
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
   std::vector<Face> ListFaces(bool hasVolume) const;
   std::vector<vtkIdType> FindAround(const std::vector<std::array<double, 3>>& points) const;
-  vtkIdType RootOf(vtkIdType point);
   void CornersOf(vtkIdType triangle, double corners[3][3]) const;
 
   double Period[6];

@@ -73,7 +73,6 @@ public:
   explicit Columns(std::vector<Face> faces)
     : Faces(std::move(faces))
   {
-    std::fill_n(this->Low, 2, 0.0);
     double high[2] = { 0.0, 0.0 };
     for (int a = 0; a < 2 && !this->Faces.empty(); ++a)
     {
@@ -93,18 +92,31 @@ public:
       this->Counts[a] = std::max(1, std::min(2048, static_cast<int>(side)));
       this->Size[a] = high[a] > this->Low[a] ? (high[a] - this->Low[a]) / this->Counts[a] : 1.0;
     }
-    this->Lists.resize(static_cast<size_t>(this->Counts[0]) * static_cast<size_t>(this->Counts[1]));
+    this->Lists.resize(this->Place(0, this->Counts[1]));
     for (size_t f = 0; f < this->Faces.size(); ++f)
     {
-      this->Put(f);
+      int first[2], last[2];
+      for (int a = 0; a < 2; ++a)
+      {
+        const auto& c = this->Faces[f].Corner;
+        first[a] = this->IndexOf(a, std::min({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
+        last[a] = this->IndexOf(a, std::max({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
+      }
+      for (int j = first[1]; j <= last[1]; ++j)
+      {
+        for (int i = first[0]; i <= last[0]; ++i)
+        {
+          this->Lists[this->Place(i, j)].push_back(f);
+        }
+      }
     }
   }
 
   const std::vector<size_t>& At(double y, double z) const
   {
-    const bool isIn = this->IndexOf(0, y) >= 0 && this->IndexOf(0, y) < this->Counts[0] &&
-      this->IndexOf(1, z) >= 0 && this->IndexOf(1, z) < this->Counts[1];
-    return isIn ? this->Lists[this->Place(this->IndexOf(0, y), this->IndexOf(1, z))] : this->None;
+    const int i = this->IndexOf(0, y), j = this->IndexOf(1, z);
+    const bool isIn = i >= 0 && i < this->Counts[0] && j >= 0 && j < this->Counts[1];
+    return isIn ? this->Lists[this->Place(i, j)] : this->None;
   }
 
   const std::vector<Face> Faces;
@@ -122,25 +134,7 @@ private:
     return static_cast<size_t>(j) * static_cast<size_t>(this->Counts[0]) + static_cast<size_t>(i);
   }
 
-  void Put(size_t f)
-  {
-    int first[2], last[2];
-    for (int a = 0; a < 2; ++a)
-    {
-      const auto& c = this->Faces[f].Corner;
-      first[a] = this->IndexOf(a, std::min({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
-      last[a] = this->IndexOf(a, std::max({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
-    }
-    for (int j = first[1]; j <= last[1]; ++j)
-    {
-      for (int i = first[0]; i <= last[0]; ++i)
-      {
-        this->Lists[this->Place(i, j)].push_back(f);
-      }
-    }
-  }
-
-  double Low[2], Size[2];
+  double Low[2] = { 0.0, 0.0 }, Size[2];
   int Counts[2];
   std::vector<std::vector<size_t>> Lists;
   const std::vector<size_t> None;
@@ -153,8 +147,8 @@ private:
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)
 {
-  std::vector<std::pair<vtkIdType, int>>
-    turns; // by piece: how often the ray leaves it, less how often it enters
+  // By piece: how often the ray leaves it, less how often it enters.
+  std::vector<std::pair<vtkIdType, int>> turns;
   for (const size_t f : columns.At(point[1], point[2]))
   {
     const Face& face = columns.Faces[f];
@@ -168,13 +162,11 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
       turn->second += crossing;
     }
   }
-  const auto sizeOf = [&pieces](vtkIdType piece)
-  { return std::abs(pieces[static_cast<size_t>(piece)].Volume); };
+  const auto sizeOf = [&pieces](vtkIdType piece) { return std::abs(pieces[piece].Volume); };
   for (const auto& turn : turns)
   {
     const bool encloses =
-      (turn.second > 0) == (pieces[static_cast<size_t>(turn.first)].Volume > 0.0) &&
-      turn.second != 0;
+      (turn.second > 0) == (pieces[turn.first].Volume > 0.0) && turn.second != 0;
     if (encloses && (innermost < 0 || sizeOf(turn.first) < sizeOf(innermost)))
     {
       innermost = turn.first;
@@ -233,7 +225,7 @@ std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume) const
   {
     Face face;
     face.Piece = this->PieceOfTriangle[t];
-    if (this->Pieces[static_cast<size_t>(face.Piece)].HasVolume() == hasVolume)
+    if (this->Pieces[face.Piece].HasVolume() == hasVolume)
     {
       this->CornersOf(static_cast<vtkIdType>(t), face.Corner);
       faces.push_back(face);
@@ -260,8 +252,7 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
           const Triple at = { { home[0] + shift[0], home[1] + shift[1], home[2] + shift[2] } };
           Enclose(columns, this->Pieces, at, without.empty() ? -1 : without[i], innermost);
         }
-        const bool isFluid =
-          innermost >= 0 && this->Pieces[static_cast<size_t>(innermost)].Volume > 0.0;
+        const bool isFluid = innermost >= 0 && this->Pieces[innermost].Volume > 0.0;
         found[i] = isFluid ? innermost : -1;
       }
     });
@@ -323,10 +314,8 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& point
       }
     }
   }
-  for (size_t i = 0; i < points.size(); ++i)
-  {
-    found[i] = left[i] > 0 ? found[i] : -1;
-  }
+  std::transform(found.begin(), found.end(), left.begin(), found.begin(),
+    [](vtkIdType piece, int rays) { return rays > 0 ? piece : -1; });
   return found;
 }
 VTK_ABI_NAMESPACE_END

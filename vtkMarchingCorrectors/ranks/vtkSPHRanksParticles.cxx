@@ -13,7 +13,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHReals.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
@@ -375,14 +374,12 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
     view->SetPoints(data->GetPoints());
     view->GetPointData()->ShallowCopy(data->GetPointData());
     vtkUnsignedCharArray* marks = data->GetPointGhostArray();
-    const std::vector<bool> present = vtkSPHLeavesOut(choice)
-      ? vtkSPHFindPresent(choice, data)
-      : std::vector<bool>(static_cast<size_t>(count), true);
+    const std::vector<bool> present = vtkSPHFindPresent(choice, data);
     own->Allocate(count);
     for (vtkIdType i = 0; i < count; ++i)
     {
       const bool isCopy = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
-      if (present[static_cast<size_t>(i)] && !isCopy)
+      if ((present.empty() || present[static_cast<size_t>(i)]) && !isCopy)
       {
         own->InsertNextId(i);
       }

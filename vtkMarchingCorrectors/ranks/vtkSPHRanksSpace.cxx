@@ -3,7 +3,7 @@
 #include "vtkSPHRanksSpace.h"
 
 #include "vtkDataSet.h"
-#include "vtkSPHReals.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHRun.h"
 
 #include <algorithm>

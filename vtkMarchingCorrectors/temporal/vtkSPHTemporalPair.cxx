@@ -12,7 +12,6 @@
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHReals.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
@@ -37,14 +36,14 @@ std::string Text(double value)
 /** Makes an array of the wider type of two, with value(tuple, component), in parallel. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
-  vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
+  const vtkSPHReals& a, const vtkSPHReals& b, vtkIdType count, const ValueT& value)
 {
-  const int components = a->GetNumberOfComponents();
+  const int components = a.Components;
   vtkNew<vtkDoubleArray> array;
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(count);
-  array->SetName(a->GetName());
-  array->CopyComponentNames(a);
+  array->SetName(a.Array->GetName());
+  array->CopyComponentNames(a.Array);
   double* const to = array->GetPointer(0);
   vtkSMPTools::For(0, count, Grain,
     [to, components, &value](vtkIdType begin, vtkIdType end)
@@ -54,7 +53,7 @@ vtkSmartPointer<vtkDataArray> MakeArray(
         to[i] = value(i / components, static_cast<int>(i % components));
       }
     });
-  if (a->GetDataType() != VTK_FLOAT || b->GetDataType() != VTK_FLOAT)
+  if (a.Array->GetDataType() != VTK_FLOAT || b.Array->GetDataType() != VTK_FLOAT)
   {
     return array.Get();
   }
@@ -63,42 +62,6 @@ vtkSmartPointer<vtkDataArray> MakeArray(
   return floats;
 }
 
-using Numbered = std::vector<std::pair<std::int64_t, vtkIdType>>; // particles by their numbers
-
-/** Sorts particles by number. Returns an empty sentence, or what is wrong; `step` names the step. */
-std::string SortByNumber(vtkDataArray* array, const std::string& step, Numbered& sorted)
-{
-  const std::string name = vtkSPHNameOf(array);
-  const vtkIdType count = array->GetNumberOfTuples();
-  for (vtkIdType i = 0; vtkSPHIsReal(array) && i < count; ++i)
-  {
-    // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have become
-    // equal.
-    const double real = array->GetComponent(i, 0);
-    if (!(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
-    {
-      return "The number '" + name + "' of particle " + std::to_string(i) + " in " + step + " is " +
-        Text(real) + "; particles have whole numbers.";
-    }
-  }
-  vtkNew<vtkTypeInt64Array> numbers;
-  numbers->DeepCopy(array);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    sorted.emplace_back(numbers->GetValue(i), i);
-  }
-  if (!std::is_sorted(sorted.begin(), sorted.end()))
-  {
-    vtkSMPTools::Sort(sorted.begin(), sorted.end());
-  }
-  const auto twin = std::adjacent_find(
-    sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-  return twin == sorted.end()
-    ? ""
-    : "Particles " + std::to_string(twin->second) + " and " + std::to_string((twin + 1)->second) +
-      " in " + step + " have the same number " + std::to_string(twin->first) +
-      ", so they cannot be told apart: '" + name + "' is not an array of particle ids.";
-}
 }
 
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
@@ -127,7 +90,16 @@ bool vtkSPHTemporalPair::Match(
   }
   if (first->GetNumberOfPoints() == 0 || second->GetNumberOfPoints() == 0)
   {
-    this->MatchNothing();
+    this->IdName.clear();
+    this->VelocityName.clear();
+    this->Signature.clear();
+    this->FollowsVelocities = false;
+    for (Step& step : this->Steps)
+    {
+      step.Ids = nullptr;
+      step.Velocities = nullptr;
+      step.Partners.assign(step.Particles->GetNumberOfPoints(), -1);
+    }
     return true;
   }
   std::vector<std::uint64_t> signature;
@@ -160,42 +132,60 @@ bool vtkSPHTemporalPair::Match(
   return true;
 }
 
+// Sorts the particles of each step by number, and goes through both lists.
 bool vtkSPHTemporalPair::MatchNumbers()
 {
-  Numbered sorted[2];
-  for (int k = 0; k < 2 && this->Error.empty(); ++k)
+  std::vector<std::pair<std::int64_t, vtkIdType>> sorted[2];
+  for (int k = 0; k < 2; ++k)
   {
-    Step& step = this->Steps[k];
-    this->Error = SortByNumber(step.Ids, this->NameOfStep(k), sorted[k]);
-    step.Partners.assign(sorted[k].size(), -1);
+    vtkDataArray* ids = this->Steps[k].Ids;
+    for (vtkIdType i = 0; vtkSPHIsReal(ids) && i < ids->GetNumberOfTuples(); ++i)
+    {
+      // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have become
+      // equal.
+      const double real = ids->GetComponent(i, 0);
+      if (!(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
+      {
+        this->Error = "The number '" + this->IdName + "' of particle " + std::to_string(i) +
+          " in " + this->NameOfStep(k) + " is " + Text(real) + "; particles have whole numbers.";
+        return false;
+      }
+    }
+    vtkNew<vtkTypeInt64Array> numbers;
+    numbers->DeepCopy(ids);
+    for (vtkIdType i = 0; i < numbers->GetNumberOfValues(); ++i)
+    {
+      sorted[k].emplace_back(numbers->GetValue(i), i);
+    }
+    if (!std::is_sorted(sorted[k].begin(), sorted[k].end()))
+    {
+      vtkSMPTools::Sort(sorted[k].begin(), sorted[k].end());
+    }
+    const auto twin = std::adjacent_find(sorted[k].begin(), sorted[k].end(),
+      [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twin != sorted[k].end())
+    {
+      this->Error = "Particles " + std::to_string(twin->second) + " and " +
+        std::to_string((twin + 1)->second) + " in " + this->NameOfStep(k) +
+        " have the same number " + std::to_string(twin->first) +
+        ", so they cannot be told apart: '" + this->IdName + "' is not an array of particle ids.";
+      return false;
+    }
+    this->Steps[k].Partners.assign(sorted[k].size(), -1);
   }
-  auto one = sorted[0].begin(), other = sorted[1].begin();
-  while (this->Error.empty() && one != sorted[0].end() && other != sorted[1].end())
+  for (auto one = sorted[0].begin(), other = sorted[1].begin();
+       one != sorted[0].end() && other != sorted[1].end();)
   {
     const std::int64_t a = one->first, b = other->first;
     if (a == b)
     {
-      this->Steps[0].Partners[static_cast<size_t>(one->second)] = other->second;
-      this->Steps[1].Partners[static_cast<size_t>(other->second)] = one->second;
+      this->Steps[0].Partners[one->second] = other->second;
+      this->Steps[1].Partners[other->second] = one->second;
     }
     one += a <= b ? 1 : 0;
     other += b <= a ? 1 : 0;
   }
-  return this->Error.empty();
-}
-
-void vtkSPHTemporalPair::MatchNothing()
-{
-  this->IdName.clear();
-  this->VelocityName.clear();
-  this->Signature.clear();
-  this->FollowsVelocities = false;
-  for (Step& step : this->Steps)
-  {
-    step.Ids = nullptr;
-    step.Velocities = nullptr;
-    step.Partners.assign(static_cast<size_t>(step.Particles->GetNumberOfPoints()), -1);
-  }
+  return true;
 }
 
 std::string vtkSPHTemporalPair::NameOfStep(int step) const
@@ -284,9 +274,8 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
 {
   for (int k = 0; k < 2; ++k)
   {
-    const auto values = vtkSPHAsReal(this->Steps[k].Velocities);
-    const vtkSPHReals velocity(values);
-    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+    const vtkSPHReals velocity(this->Steps[k].Velocities);
+    for (vtkIdType i = 0; i < velocity.Array->GetNumberOfTuples(); ++i)
     {
       if (!(std::isfinite(velocity(i, 0)) && std::isfinite(velocity(i, 1)) &&
             std::isfinite(velocity(i, 2))))
@@ -315,10 +304,8 @@ void vtkSPHTemporalPair::CheckVelocities()
   {
     return;
   }
-  const auto x0 = vtkSPHAsReal(first.Particles->GetPoints()->GetData()),
-             x1 = vtkSPHAsReal(second.Particles->GetPoints()->GetData()),
-             v0 = vtkSPHAsReal(first.Velocities), v1 = vtkSPHAsReal(second.Velocities);
-  const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
+  const vtkSPHReals from(first.Particles->GetPoints()->GetData()),
+    to(second.Particles->GetPoints()->GetData()), begun(first.Velocities), ended(second.Velocities);
   const double duration = this->TimeScale * (second.Time - first.Time);
   std::vector<std::pair<double, double>> sums(static_cast<size_t>(count / Grain + 1));
   vtkSMPTools::For(0, static_cast<vtkIdType>(sums.size()), 1,
@@ -326,10 +313,10 @@ void vtkSPHTemporalPair::CheckVelocities()
     {
       for (vtkIdType slice = begin; slice < end; ++slice)
       {
-        std::pair<double, double>& sum = sums[static_cast<size_t>(slice)];
+        std::pair<double, double>& sum = sums[slice];
         for (vtkIdType i = slice * Grain; i < std::min(count, (slice + 1) * Grain); ++i)
         {
-          const vtkIdType j = first.Partners[static_cast<size_t>(i)];
+          const vtkIdType j = first.Partners[i];
           for (int c = 0; j >= 0 && c < 3; ++c)
           {
             const double expected = 0.5 * duration * (begun(i, c) + ended(j, c));
@@ -408,29 +395,21 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   {
     return; // one step has no particles, and the other nothing to interpolate with
   }
-  this->InterpolatePositions(near, far, share, time, output);
-  this->InterpolateArrays(near, far, share, output);
-}
-
-// Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
-void vtkSPHTemporalPair::InterpolatePositions(
-  const Step& near, const Step& far, double share, double time, vtkPolyData* output) const
-{
+  // Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
   const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 in the later half
   const double toTime = this->TimeScale * (time - near.Time);
-  const auto x0 = vtkSPHAsReal(near.Particles->GetPoints()->GetData()),
-             x1 = vtkSPHAsReal(far.Particles->GetPoints()->GetData());
   const bool curved = this->FollowsVelocities;
-  const auto v0 = curved ? vtkSPHAsReal(near.Velocities) : x0,
-             v1 = curved ? vtkSPHAsReal(far.Velocities) : x1;
-  const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
+  vtkDataArray *const x0 = near.Particles->GetPoints()->GetData(),
+                      *const x1 = far.Particles->GetPoints()->GetData();
+  const vtkSPHReals from(x0), to(x1), begun(curved ? near.Velocities.Get() : x0),
+    ended(curved ? far.Velocities.Get() : x1);
   // Hermite's cubic polynomials, for the far position and for both tangents.
   const double ofFar = share * share * (3.0 - 2.0 * share),
                ofBegun = share * (1.0 - share) * (1.0 - share),
                ofEnded = share * share * (share - 1.0);
   const auto position = [&](vtkIdType i, int c)
   {
-    const vtkIdType j = near.Partners[static_cast<size_t>(i)];
+    const vtkIdType j = near.Partners[i];
     const double x = from(i, c);
     if (j < 0)
     {
@@ -441,8 +420,9 @@ void vtkSPHTemporalPair::InterpolatePositions(
                   : x + share * way;
   };
   vtkNew<vtkPoints> points;
-  points->SetData(MakeArray(x0, x1, near.Particles->GetNumberOfPoints(), position));
+  points->SetData(MakeArray(from, to, near.Particles->GetNumberOfPoints(), position));
   output->SetPoints(points);
+  this->InterpolateArrays(near, far, share, output);
 }
 
 // The output already has the nearer step's data.
@@ -463,12 +443,11 @@ void vtkSPHTemporalPair::InterpolateArrays(
     {
       continue;
     }
-    const auto a = vtkSPHAsReal(vtkDataArray::SafeDownCast(array)), b = vtkSPHAsReal(other);
-    const vtkSPHReals from(a), to(b);
-    output->GetPointData()->AddArray(MakeArray(a, b, near.Particles->GetNumberOfPoints(),
+    const vtkSPHReals from(vtkDataArray::SafeDownCast(array)), to(other);
+    output->GetPointData()->AddArray(MakeArray(from, to, near.Particles->GetNumberOfPoints(),
       [&](vtkIdType i, int c)
       {
-        const vtkIdType j = near.Partners[static_cast<size_t>(i)];
+        const vtkIdType j = near.Partners[i];
         const double value = from(i, c);
         return j < 0 ? value : value + share * (to(j, c) - value);
       }));

@@ -53,7 +53,6 @@ private:
   };
 
   bool MatchNumbers();
-  void MatchNothing();
   bool FindIds(const std::string& name);
   bool FindVelocities(const vtkSPHTemporalChoice& choice);
   vtkDataArray* Find(const std::string& role, const std::string& name, int components, int step);
@@ -61,8 +60,6 @@ private:
   void CheckVelocities();
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;
-  void InterpolatePositions(
-    const Step& near, const Step& far, double share, double time, vtkPolyData* output) const;
   void InterpolateArrays(
     const Step& near, const Step& far, double share, vtkPolyData* output) const;
   std::string NameOfStep(int step) const;

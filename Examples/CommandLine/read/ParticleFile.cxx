@@ -18,7 +18,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHFound.h"
-#include "vtkSPHVertices.h"
+#include "vtkSPHBlocks.h"
 
 #include <cerrno>
 #include <cstring>

@@ -91,44 +91,12 @@ QString textOf(vtkSMProperty* property)
   return isKnown ? texts.join(" to ") : QString("-");
 }
 
-bool isShownElsewhere(vtkSMProperty* property)
-{
-  return std::any_of(std::begin(HIDDEN), std::end(HIDDEN),
-    [property](const char* name)
-    { return QLatin1String(property->GetXMLName()) == QLatin1String(name); });
-}
-
 bool isNew(vtkSMProxy* filter)
 {
   auto* found = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   return found && found->modifiedState() == pqProxy::UNINITIALIZED;
 }
 
-bool isHuge(vtkSMProperty* property)
-{
-  return QLatin1String(property->GetXMLName()) == QLatin1String("NextCells") &&
-    vtkSMPropertyHelper(property, true).GetAsDouble() >= HUGE_CELLS;
-}
-
-// A filter like this one that nobody sees, with what the panel shows, applied or not.
-vtkSmartPointer<vtkSMProxy> makeTwin(vtkSMProxy* filter)
-{
-  auto twin = vtkSmartPointer<vtkSMProxy>::Take(
-    filter->GetSessionProxyManager()->NewProxy(filter->GetXMLGroup(), filter->GetXMLName()));
-  if (twin)
-  {
-    const vtkSMPropertyHelper input(filter, "Input");
-    vtkSMPropertyHelper(twin, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
-    for (const char* name : CHOICES)
-    {
-      vtkSMPropertyHelper shown(filter, name);
-      shown.SetUseUnchecked(true);
-      vtkSMPropertyHelper(twin, name).Copy(shown);
-    }
-    twin->UpdateVTKObjects();
-  }
-  return twin;
-}
 }
 
 pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent)
@@ -160,7 +128,9 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
-    if (isShownElsewhere(property))
+    const QLatin1String name(property->GetXMLName());
+    if (std::any_of(std::begin(HIDDEN), std::end(HIDDEN),
+          [name](const char* hidden) { return name == QLatin1String(hidden); }))
     {
       continue;
     }
@@ -408,19 +378,31 @@ void pqSPHInUse::colourLate()
                                 : "What was found, and what is used");
 }
 
-// The range is the domain of the list of iso values, which shows it and follows it.
+// Asks a filter like this one that nobody sees, with what the panel shows, applied or not. The range
+// is the domain of the list of iso values, which shows it and follows it.
 void pqSPHInUse::lookAhead()
 {
   SCOPED_UNDO_EXCLUDE(); // nothing that a user did
-  const vtkSmartPointer<vtkSMProxy> twin = makeTwin(this->proxy());
+  vtkSMProxy* filter = this->proxy();
+  const auto twin = vtkSmartPointer<vtkSMProxy>::Take(
+    filter->GetSessionProxyManager()->NewProxy(filter->GetXMLGroup(), filter->GetXMLName()));
   if (!twin)
   {
     return;
   }
+  const vtkSMPropertyHelper input(filter, "Input");
+  vtkSMPropertyHelper(twin, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
+  for (const char* name : CHOICES)
+  {
+    vtkSMPropertyHelper shown(filter, name);
+    shown.SetUseUnchecked(true);
+    vtkSMPropertyHelper(twin, name).Copy(shown);
+  }
+  twin->UpdateVTKObjects();
   for (const char* name : NEXT)
   {
     twin->UpdatePropertyInformation(twin->GetProperty(name));
-    vtkSMPropertyHelper(this->proxy(), name).Copy(vtkSMPropertyHelper(twin, name));
+    vtkSMPropertyHelper(filter, name).Copy(vtkSMPropertyHelper(twin, name));
   }
   this->begin();
   this->showRows();
@@ -454,21 +436,15 @@ void pqSPHInUse::begin()
   }
 }
 
-// The panel's other widgets come before.
+// An empty row of the list of iso values would count as 0. The panel's other widgets come before.
 void pqSPHInUse::apply()
-{
-  this->dropEmptyRows();
-  this->Superclass::apply();
-}
-
-// An empty row of the list of iso values would count as 0.
-void pqSPHInUse::dropEmptyRows()
 {
   QWidget* panel = this->parentWidget();
   auto* list = panel ? panel->findChild<QWidget*>("ContourValues") : nullptr;
   auto* table = list ? list->findChild<QTableView*>() : nullptr;
   if (!table || !this->proxy()->GetProperty("ContourValues"))
   {
+    this->Superclass::apply();
     return;
   }
   vtkSMPropertyHelper values(this->proxy(), "ContourValues");
@@ -486,14 +462,16 @@ void pqSPHInUse::dropEmptyRows()
     values.SetNumberOfElements(0);
     values.Set(kept.data(), static_cast<unsigned int>(kept.size()));
   }
+  this->Superclass::apply();
 }
 
 void pqSPHInUse::showRows()
 {
   for (const auto& row : this->Rows)
   {
-    const bool huge = isHuge(row.first);
     const QLatin1String name(row.first->GetXMLName());
+    const bool huge = name == QLatin1String("NextCells") &&
+      vtkSMPropertyHelper(row.first, true).GetAsDouble() >= HUGE_CELLS;
     const bool isDrawn = !this->WasEmpty && !isNew(this->proxy());
     QString text = textOf(row.first);
     if (text == "-" &&

@@ -50,7 +50,6 @@ private: // NOLINT(readability-redundant-access-specifiers)
   void begin();
   void beginPlace();
   void colourLate();
-  void dropEmptyRows();
 
   QToolButton* Button;
   bool HasLooked = false, WasEmpty = false; // at the output, the last one

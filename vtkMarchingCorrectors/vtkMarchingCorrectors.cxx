@@ -60,40 +60,6 @@ void vtkMarchingCorrectors::SetSolids(int solids)
   }
 }
 
-// Lists the values that are numbers: an empty row of a panel's list is NaN.
-void vtkMarchingCorrectors::SetIsoValues(
-  vtkRun& run, const vtkMarchingCorrectorsInput& input, std::vector<double>& list)
-{
-  const bool isFree = input.Choice.FreeSurface;
-  vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
-  std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
-    std::back_inserter(list), [](double value) { return !std::isnan(value); });
-  run.CallAside(
-    [&](const mcor_ranks* ranks)
-    {
-      double range[2], value = 0.5;
-      if (list.empty() && (isFree || mcor_find_iso_value(&input.Core, ranks, range, &value)))
-      {
-        list.push_back(value);
-      }
-      return !list.empty();
-    });
-  run.Options.iso_values = list.data();
-  run.Options.iso_count = static_cast<int>(list.size());
-}
-
-void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)
-{
-  const double* b = this->Box;
-  this->SetBox(x, x + b[1] - b[0], y, y + b[3] - b[2], z, z + b[5] - b[4]);
-}
-
-void vtkMarchingCorrectors::SetPanelBoxLength(double x, double y, double z)
-{
-  const double* b = this->Box;
-  this->SetBox(b[0], b[0] + x, b[2], b[2] + y, b[4], b[4] + z);
-}
-
 void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 {
   this->Superclass::FillOptions(options);
@@ -183,12 +149,10 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->FillChoice(choice, run->Own, run->MergeRanges());
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(run->Options);
   vtkMarchingCorrectorsInput input(choice, run->Own);
-  if (!this->IsTaken(*run, input))
+  if (!this->Take(*run, input))
   {
     return;
   }
-  std::vector<double> isoValues;
-  this->SetIsoValues(*run, input, isoValues);
 #if MCOR_HAS_RANKS
   if (run->IsShared())
   {
@@ -200,17 +164,35 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->Extract(*run, input, vtkPolyData::SafeDownCast(output));
 }
 
-// Whether the particles have all that is needed, and fluid among them.
-bool vtkMarchingCorrectors::IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& input)
+// Returns whether the particles have all that is needed, and fluid among them. Sets the run's iso
+// values to those that are numbers, as an empty row of a panel's list is NaN, or to a usual one.
+bool vtkMarchingCorrectors::Take(vtkRun& run, vtkMarchingCorrectorsInput& input)
 {
   const auto collect = [&input](vtkSPHParticles&) { return input.Collect(); };
-  const bool isTaken = run.Accept(input, collect, "no surface") && run.HasFluid &&
-    (run.IsShared() || run.Measure(input, false));
-  if (!isTaken)
+  if (!run.Accept(input, collect, "no surface") || !run.HasFluid ||
+    !(run.IsShared() || run.Measure(input, false)))
   {
     this->SetUsedNames(&input, false); // no volumes were used
+    return false;
   }
-  return isTaken;
+  const bool isFree = input.Choice.FreeSurface;
+  vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
+  std::vector<double>& list = run.IsoValues;
+  std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
+    std::back_inserter(list), [](double value) { return !std::isnan(value); });
+  run.CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      double range[2], value = 0.5;
+      if (list.empty() && (isFree || mcor_find_iso_value(&input.Core, ranks, range, &value)))
+      {
+        list.push_back(value);
+      }
+      return !list.empty();
+    });
+  run.Options.iso_values = list.data();
+  run.Options.iso_count = static_cast<int>(list.size());
+  return true;
 }
 
 bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
@@ -225,15 +207,9 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   this->FillChoice(choice, run->Own, run->MergeRanges());
   choice.InterpolateAttributes = false;
   vtkMarchingCorrectorsInput input(choice, run->Own);
-  std::vector<double> isoValues;
-  if (!this->IsTaken(*run, input))
-  {
-    return false;
-  }
-  this->SetIsoValues(*run, input, isoValues);
   vtkNew<vtkPointData> found;
   mcor_statistics statistics = {};
-  if (!this->FindWidening(*run, input, found, statistics))
+  if (!this->Take(*run, input) || !this->FindWidening(*run, input, found, statistics))
   {
     return false;
   }
@@ -294,7 +270,11 @@ bool vtkMarchingCorrectors::FindWidening(
     statistics.smoothing_length_min = range[0];
   }
   const auto count = static_cast<vtkIdType>(input->Core.count);
-  vtkSPHAddWidening(found, mine.Core, widening, count);
+  vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, count));
+  if (vtkSPHComputesVolumes(mine.Core))
+  {
+    vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, count));
+  }
   vtkSPHAddArray(found, "WideningOutside", vtkSPHAdopt(widening.outside, 1, count));
   sums->Return(found, run.Own);
   statistics.widening_outside = 0;
@@ -368,8 +348,7 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
     this->Next.Cells = this->EstimatedCells;
     return this->Next;
   }
-  vtkDataObject* data =
-    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
+  vtkDataObject* data = this->GetParticles();
   if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
   {
     return this->Next;

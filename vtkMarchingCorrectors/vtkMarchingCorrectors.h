@@ -73,12 +73,9 @@
 #include "vtkSPHAlgorithm.h"
 #include "vtkTimeStamp.h" // For members
 
-#include <cstdint> // For members
-#include <limits>  // For members
-#include <vector>  // For members
+#include <limits> // For members
 
 struct mcor_input;
-struct mcor_ranks;
 struct mcor_statistics;
 struct mcor_surface;
 
@@ -285,8 +282,16 @@ public:
 
   ///@{
   /** Box as its lower corner and its lengths, for ParaView's box widget. */
-  void SetPanelBoxPosition(double x, double y, double z);
-  void SetPanelBoxLength(double x, double y, double z);
+  void SetPanelBoxPosition(double x, double y, double z)
+  {
+    const double* b = this->Box;
+    this->SetBox(x, x + b[1] - b[0], y, y + b[3] - b[2], z, z + b[5] - b[4]);
+  }
+  void SetPanelBoxLength(double x, double y, double z)
+  {
+    const double* b = this->Box;
+    this->SetBox(b[0], b[0] + x, b[2], b[2] + y, b[4], b[4] + z);
+  }
   ///@}
 
   ///@{
@@ -524,7 +529,7 @@ private:
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
-  bool IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& input);
+  bool Take(vtkRun& run, vtkMarchingCorrectorsInput& input);
   void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
     const vtkSPHMergeRanges& merge = nullptr);
@@ -545,9 +550,6 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  /** Sets the run's iso values to those that were given, or to a usual one; `list` holds them. */
-  void SetIsoValues(
-    vtkRun& run, const vtkMarchingCorrectorsInput& input, std::vector<double>& list);
 
   vtkAhead Next;
   vtkTimeStamp LookTime; // when that was found

@@ -63,42 +63,10 @@ const char* vtkSPHAlgorithm::GetKernelName(int kernel)
   return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(kernel));
 }
 
-void vtkSPHAlgorithm::AddExcludedArray(const std::string& name)
-{
-  this->ExcludedArrays.push_back(name);
-  this->Modified();
-}
-
-void vtkSPHAlgorithm::ClearExcludedArrays()
-{
-  this->ExcludedArrays.clear();
-  this->Modified();
-}
-
-int vtkSPHAlgorithm::GetNumberOfExcludedArrays() const
-{
-  return static_cast<int>(this->ExcludedArrays.size());
-}
-
 const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
 {
   return i >= 0 && i < this->GetNumberOfExcludedArrays() ? this->ExcludedArrays[i].c_str()
                                                          : nullptr;
-}
-
-void vtkSPHAlgorithm::AddOnly(const char* name, double low, double high)
-{
-  this->Only.push_back({ name ? name : "", low, high });
-  this->Modified();
-}
-
-void vtkSPHAlgorithm::ClearOnly()
-{
-  if (!this->Only.empty())
-  {
-    this->Only.clear();
-    this->Modified();
-  }
 }
 
 std::string vtkSPHAlgorithm::ListDevices()
@@ -148,20 +116,14 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
+// Makes an output of the class that suits the input; blocks of that class if the input has blocks.
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  if (!request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
   {
-    return this->RequestDataObject(inputVector, outputVector);
+    return this->Superclass::ProcessRequest(request, inputVector, outputVector);
   }
-  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
-}
-
-// Makes an output of the class that suits the input; blocks of that class if the input has blocks.
-int vtkSPHAlgorithm::RequestDataObject(
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
   const bool isTree = vtkDataObjectTree::SafeDownCast(input) != nullptr;

@@ -51,9 +51,7 @@ class vtkDataObjectTree;
 class vtkFieldData;
 class vtkMultiProcessController;
 class vtkPointSet;
-class vtkPolyData;
 class vtkSPHParticles;
-struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
 ///@{
@@ -375,11 +373,21 @@ public:
    * Leave out particles whose value in this point array is not from `low` to `high`, likewise. Of
    * several arrays, all must agree; of several ranges of one array, any may hold. None by default.
    */
-  void AddOnly(const char* name, double low, double high);
-  void ClearOnly();
+  void AddOnly(const char* name, double low, double high)
+  {
+    this->Only.push_back({ name ? name : "", low, high });
+    this->Modified();
+  }
+  void ClearOnly()
+  {
+    if (!this->Only.empty())
+    {
+      this->Only.clear();
+      this->Modified();
+    }
+  }
   ///@}
 
-#ifndef __VTK_WRAP__
   /** Returns the particles within those limits: the set itself if all are. */
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
@@ -389,7 +397,6 @@ public:
    * particle is fluid.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
-#endif
 
   ///@{
   /**
@@ -397,21 +404,23 @@ public:
    * is processed by itself (APART), as the blocks of a probe's points always are.
    */
   vtkSPHClampMacro(Blocks, int, TOGETHER, TOGETHER, APART);
-  void SetBlocksToTogether()
-  {
-    this->SetBlocks(TOGETHER);
-  }
-  void SetBlocksToApart()
-  {
-    this->SetBlocks(APART);
-  }
+  void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
+  void SetBlocksToApart() { this->SetBlocks(APART); }
   ///@}
 
   ///@{
   /** Point arrays that are not interpolated, by name. None by default. */
-  void AddExcludedArray(const std::string& name);
-  void ClearExcludedArrays();
-  int GetNumberOfExcludedArrays() const;
+  void AddExcludedArray(const std::string& name)
+  {
+    this->ExcludedArrays.push_back(name);
+    this->Modified();
+  }
+  void ClearExcludedArrays()
+  {
+    this->ExcludedArrays.clear();
+    this->Modified();
+  }
+  int GetNumberOfExcludedArrays() const { return static_cast<int>(this->ExcludedArrays.size()); }
   const char* GetExcludedArray(int i) const;
   ///@}
 
@@ -511,10 +520,7 @@ protected:
    * Returns the class that Process() makes of a data object of this class, which is not
    * composite.
    */
-  virtual const char* GetOutputClassName(const char* inputClassName)
-  {
-    return inputClassName;
-  }
+  virtual const char* GetOutputClassName(const char* inputClassName) { return inputClassName; }
 
   /** Does the work, for the whole input or one of its blocks. */
   virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
@@ -522,14 +528,8 @@ protected:
   /**
    * Whether blocks at port 0 are taken together; and whether the output then has these blocks, too.
    */
-  virtual bool TakesTogether() const
-  {
-    return this->Blocks == TOGETHER;
-  }
-  virtual bool KeepsBlocks() const
-  {
-    return false;
-  }
+  virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
+  virtual bool KeepsBlocks() const { return false; }
 
   /**
    * Returns an input, or the particles in it, see vtkSPHTakeVertices(); kept while the input is
@@ -581,10 +581,7 @@ protected:
 
   /** Returns the input that has the particles, and its port. */
   vtkDataObject* GetParticles();
-  virtual int GetParticlesPort()
-  {
-    return 0;
-  }
+  virtual int GetParticlesPort() { return 0; }
 
   /** Names the fluid in the choice, if it is to be detected and is found. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
@@ -611,7 +608,6 @@ private:
   vtkSPHAlgorithm(const vtkSPHAlgorithm&) = delete;
   void operator=(const vtkSPHAlgorithm&) = delete;
 
-  int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   void ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output);

@@ -9,7 +9,6 @@
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
-#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -21,21 +20,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 VTK_ABI_NAMESPACE_BEGIN
-namespace
-{
-vtkIdType CountPoints(vtkDataObject* data)
-{
-  vtkIdType count = 0;
-  for (vtkPointSet* set : vtkSPHListPointSets(data))
-  {
-    count += set->GetNumberOfPoints();
-  }
-  return count;
-}
-}
-
 // All processes take part in the run of each block.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
@@ -98,7 +85,14 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 
 void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
 {
-  std::int64_t counts[2] = { CountPoints(data), CountPoints(taken) };
+  std::int64_t counts[2] = { 0, 0 };
+  for (int k = 0; k < 2; ++k)
+  {
+    for (vtkPointSet* set : vtkSPHListPointSets(k == 0 ? data : taken))
+    {
+      counts[k] += set->GetNumberOfPoints();
+    }
+  }
   const auto run = vtkRun::Make(this);
   run->Sum(counts, 2);
   if (run->IsFirst() && counts[1] < counts[0])
@@ -212,65 +206,67 @@ void vtkSPHAlgorithm::FindFluid(
   }
 }
 
+// Keeps the lowest values along each axis; every other of what is below 0 as above it.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
 {
-  using List = std::vector<double>;
   const auto run = vtkRun::Make(this);
   run->Begin(particles);
   run->Own = this->TakePresent(run->Own);
   const vtkSPHParticlesChoice choice = run->Choose();
   vtkPointSet* own = run->Own;
-  const auto gather = [&run](const List& mine)
-  {
-    List all;
-    for (const List& theirs : run->Gather(mine))
-    {
-      all.insert(all.end(), theirs.begin(), theirs.end());
-    }
-    return all;
-  };
   vtkDataArray* fluid = own->GetPointData()->GetArray(choice.FluidArrayName.c_str());
-  List coordinates[3];
+  double x[3];
+  const auto takeFluid = [own, fluid, &choice, &x](vtkIdType i)
+  {
+    own->GetPoint(i, x);
+    return (!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) && std::isfinite(x[0]) &&
+      std::isfinite(x[1]) && std::isfinite(x[2]);
+  };
+  std::int64_t total = 0;
   for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
   {
-    double x[3];
-    own->GetPoint(i, x);
-    if ((!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) && std::isfinite(x[0]) &&
-      std::isfinite(x[1]) && std::isfinite(x[2]))
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        coordinates[a].push_back(x[a]);
-      }
-    }
+    total += takeFluid(i) ? 1 : 0;
   }
-  auto total = static_cast<std::int64_t>(coordinates[0].size());
   run->Sum(&total, 1);
   if (total == 0)
   {
     return false;
   }
-  const std::int64_t far = std::min(std::max<std::int64_t>(8, total / 1000), (total - 1) / 4);
-  const auto takeLowest = [far](List list)
+  using Lowest = std::multiset<double>;
+  const std::size_t far = std::min(std::max<std::int64_t>(8, total / 1000), (total - 1) / 4);
+  const auto keep = [far](Lowest& lowest, double value)
   {
-    const auto count = std::min(static_cast<std::int64_t>(list.size()), far + 1);
-    std::partial_sort(list.begin(), list.begin() + count, list.end());
-    list.resize(count);
-    return list;
+    if (lowest.size() <= far || value < *lowest.rbegin())
+    {
+      lowest.insert(value);
+    }
+    if (lowest.size() > far + 1)
+    {
+      lowest.erase(std::prev(lowest.end()));
+    }
   };
-  List ends[6]; // along each axis; every other is that of what is below 0 as above it
+  Lowest ends[6];
+  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+  {
+    for (int e = takeFluid(i) ? 0 : 6; e < 6; ++e)
+    {
+      keep(ends[e], e % 2 ? -x[e / 2] : x[e / 2]);
+    }
+  }
   double longest = 0.0;
   for (int e = 0; e < 6; ++e)
   {
-    List& along = coordinates[e / 2];
-    ends[e] = takeLowest(gather(takeLowest(along)));
-    std::transform(along.begin(), along.end(), along.begin(), std::negate<double>());
-    longest = std::max(longest, e % 2 ? -ends[e].back() - ends[e - 1].back() : 0.0);
+    Lowest all;
+    for (const auto& theirs : run->Gather(std::vector<double>(ends[e].begin(), ends[e].end())))
+    {
+      std::for_each(theirs.begin(), theirs.end(), [&](double value) { keep(all, value); });
+    }
+    ends[e] = all;
+    longest = std::max(longest, e % 2 ? -*ends[e].rbegin() - *ends[e - 1].rbegin() : 0.0);
   }
   for (int e = 0; e < 6; ++e)
   {
-    const List& lowest = ends[e];
-    const double end = *std::lower_bound(lowest.begin(), lowest.end(), lowest.back() - longest);
+    const double end = *ends[e].lower_bound(*ends[e].rbegin() - longest);
     bounds[e] = e % 2 ? -end : end;
   }
   return true;

@@ -150,30 +150,6 @@ int vtkSPHComponents::FillOutputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
-{
-  vtkSPHParticlesChoice choice;
-  choice.FluidValue = this->FluidValue;
-  if (this->FluidArrayName != "(automatic)") // of a panel's list
-  {
-    choice.FluidArrayName = this->FluidArrayName;
-  }
-  if (this->DetectFluid || choice.IsBlock())
-  {
-    vtkSPHParticles::FindFluid(choice, particles);
-  }
-  vtkDataArray* types = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
-  std::vector<vtkIdType> fluid;
-  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
-  {
-    if (!types || types->GetComponent(i, 0) == choice.FluidValue)
-    {
-      fluid.push_back(i);
-    }
-  }
-  return fluid;
-}
-
 std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   const vtkSPHPieces& pieces, vtkPointSet* particles) const
 {
@@ -181,11 +157,24 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   vtkDataArray* masses =
     this->Mass > 0.0 ? nullptr : FindArray(particles, this->MassArrayName, MCOR_MASS, 1);
   vtkDataArray* velocities = FindArray(particles, this->VelocityArrayName, MCOR_VELOCITY, 3);
-  const std::vector<vtkIdType> fluid = this->ListFluid(particles);
-  std::vector<std::array<double, 3>> places(fluid.size());
-  for (size_t i = 0; i < fluid.size(); ++i)
+  vtkSPHParticlesChoice choice;
+  choice.FluidValue = this->FluidValue;
+  choice.FluidArrayName = vtkSPHRealName(this->FluidArrayName);
+  if (this->DetectFluid || choice.IsBlock())
   {
-    particles->GetPoint(fluid[i], places[i].data());
+    vtkSPHParticles::FindFluid(choice, particles);
+  }
+  vtkDataArray* types = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
+  std::vector<vtkIdType> fluid;
+  std::vector<std::array<double, 3>> places;
+  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  {
+    if (!types || types->GetComponent(i, 0) == choice.FluidValue)
+    {
+      fluid.push_back(i);
+      places.emplace_back();
+      particles->GetPoint(i, places.back().data());
+    }
   }
   const std::vector<vtkIdType> around = pieces.FindEnclosing(places);
   using Step = void (OrderlessSum::*)(double);
@@ -242,9 +231,13 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
   return number;
 }
 
-void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<Content>& contents,
-  const std::vector<vtkIdType>& number, vtkTable* table)
+vtkSPHComponents::Numbers vtkSPHComponents::Split(
+  vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
 {
+  const vtkSPHPieces pieces(mesh, this->PeriodicBounds);
+  const std::vector<Content> contents =
+    particles ? this->Count(pieces, particles) : std::vector<Content>();
+  const std::vector<vtkIdType> number = this->Choose(pieces, contents);
   const char* const names[] = { "component", "parent", "closed", "area", "volume", "x", "y", "z",
     "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
     "vz" };
@@ -282,16 +275,6 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
       columns[c]->InsertNextValue(row[c]);
     }
   }
-}
-
-vtkSPHComponents::Numbers vtkSPHComponents::Split(
-  vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
-{
-  const vtkSPHPieces pieces(mesh, this->PeriodicBounds);
-  const std::vector<Content> contents =
-    particles ? this->Count(pieces, particles) : std::vector<Content>();
-  const std::vector<vtkIdType> number = this->Choose(pieces, contents);
-  FillTable(pieces, contents, number, table);
   Numbers numbers = { pieces.PieceOfPoint, pieces.PieceOfTriangle };
   for (std::vector<vtkIdType>* of : { &numbers.OfPoint, &numbers.OfTriangle })
   {

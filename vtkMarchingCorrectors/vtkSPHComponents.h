@@ -138,12 +138,9 @@ private:
     std::vector<vtkIdType> OfPoint, OfTriangle;
   };
   Numbers Split(vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const;
-  std::vector<vtkIdType> ListFluid(vtkPointSet* particles) const;
   std::vector<Content> Count(const vtkSPHPieces& pieces, vtkPointSet* particles) const;
   std::vector<vtkIdType> Choose(
     const vtkSPHPieces& pieces, const std::vector<Content>& contents) const;
-  static void FillTable(const vtkSPHPieces& pieces, const std::vector<Content>& contents,
-    const std::vector<vtkIdType>& number, vtkTable* table);
   static void Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output);
   static std::string FindProblem(vtkPolyData* mesh);
 

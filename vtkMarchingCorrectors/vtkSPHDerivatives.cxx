@@ -19,12 +19,12 @@ namespace
 std::vector<double> InSpace(const mcor_derivatives& derivatives)
 {
   const double* extent = derivatives.statistics.fluid_extent;
-  const size_t normal = extent[2] == 0.0 ? 2 : extent[1] == 0.0 ? 1 : 0;
-  const size_t axes[2] = { normal == 0 ? 1U : 0U, normal == 2 ? 1U : 2U };
-  std::vector<double> gradients(9 * static_cast<size_t>(derivatives.count));
-  for (size_t i = 0; i < static_cast<size_t>(derivatives.count); ++i)
+  const int normal = extent[2] == 0.0 ? 2 : extent[1] == 0.0 ? 1 : 0;
+  const int axes[2] = { normal == 0 ? 1 : 0, normal == 2 ? 1 : 2 };
+  std::vector<double> gradients(9 * derivatives.count);
+  for (std::int64_t i = 0; i < derivatives.count; ++i)
   {
-    for (size_t c = 0; c < 2; ++c)
+    for (int c = 0; c < 2; ++c)
     {
       std::copy_n(
         derivatives.gradients[0] + 6 * i + 3 * c, 3, gradients.data() + 9 * i + 3 * axes[c]);
@@ -50,59 +50,52 @@ struct vtkSPHDerivatives::vtkWanted
    * Takes over memory of `derivatives`, which were made from the array `from`. Returns false if
    * memory ran out.
    */
-  bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const;
+  bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
+  {
+    const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
+    const bool isPlane = derivatives.statistics.dimension == 2;
+    const std::vector<double> inSpace =
+      isPlane && from.Components == 2 ? InSpace(derivatives) : std::vector<double>();
+    const double* gradients = inSpace.empty() ? derivatives.gradients[0] : inSpace.data();
+    for (const Quantity& quantity : this->Quantities)
+    {
+      const bool exists = // two dimensions have no middle eigenvalue
+        !isPlane || quantity.Values != &mcor_flow::lambda2;
+      if (!quantity.IsWanted || !exists || from.Components != (inSpace.empty() ? 3 : 2))
+      {
+        continue;
+      }
+      const std::int64_t values = derivatives.count * quantity.Components;
+      auto* made = static_cast<double*>(std::malloc((values + 1) * sizeof(double)));
+      if (!made)
+      {
+        return false;
+      }
+      mcor_flow flow = {};
+      flow.*quantity.Values = made;
+      mcor_decompose_gradients(gradients, derivatives.count, &flow);
+      vtkSPHAddArray(data, quantity.Name.c_str(),
+        vtkSPHAdoptReal(made, quantity.Components, derivatives.count, asFloat));
+      std::free(made); // where there are no particles
+      if (quantity.Values == &mcor_flow::vorticity && from.Components == 3)
+      {
+        data->SetActiveScalars(quantity.Name.c_str()); // the array that most users want to see
+      }
+    }
+    if (this->Gradient)
+    {
+      vtkSPHAddArray(data, this->GradientName.c_str(),
+        vtkSPHAdoptReal(derivatives.gradients[0], 3 * from.Components, derivatives.count, asFloat));
+    }
+    vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
+      vtkSPHAdopt(derivatives.corrected, 1, derivatives.count));
+    return true;
+  }
 
   std::vector<Quantity> Quantities;
   bool Gradient;
   std::string GradientName;
 };
-
-bool vtkSPHDerivatives::vtkWanted::AddTo(
-  vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
-{
-  const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
-  const bool isPlane = derivatives.statistics.dimension == 2;
-  const std::vector<double> inSpace =
-    isPlane && from.Components == 2 ? InSpace(derivatives) : std::vector<double>();
-  const double* gradients = inSpace.empty() ? derivatives.gradients[0] : inSpace.data();
-  for (const Quantity& quantity : this->Quantities)
-  {
-    const bool exists = // two dimensions have no middle eigenvalue
-      !isPlane || quantity.Values != &mcor_flow::lambda2;
-    if (!quantity.IsWanted || !exists || from.Components != (inSpace.empty() ? 3 : 2))
-    {
-      continue;
-    }
-    const auto values =
-      static_cast<size_t>(derivatives.count) * static_cast<size_t>(quantity.Components);
-    auto* made = static_cast<double*>(std::malloc((values + 1) * sizeof(double)));
-    if (!made)
-    {
-      return false;
-    }
-    mcor_flow flow = {};
-    flow.*quantity.Values = made;
-    mcor_decompose_gradients(gradients, derivatives.count, &flow);
-    vtkSPHAddArray(data, quantity.Name.c_str(),
-      vtkSPHAdoptReal(made, quantity.Components, derivatives.count, asFloat));
-    std::free(made); // where there are no particles
-  }
-  if (this->Gradient)
-  {
-    vtkSPHAddArray(data, this->GradientName.c_str(),
-      vtkSPHAdoptReal(derivatives.gradients[0], 3 * from.Components, derivatives.count, asFloat));
-  }
-  vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
-    vtkSPHAdopt(derivatives.corrected, 1, derivatives.count));
-  for (const Quantity& quantity : this->Quantities)
-  {
-    if (quantity.Values == &mcor_flow::vorticity && quantity.IsWanted && from.Components == 3)
-    {
-      data->SetActiveScalars(quantity.Name.c_str()); // the array that most users want to see
-    }
-  }
-  return true;
-}
 
 vtkStandardNewMacro(vtkSPHDerivatives);
 

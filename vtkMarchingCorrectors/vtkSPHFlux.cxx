@@ -18,6 +18,8 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -28,20 +30,6 @@ struct Shapes
   std::string Name;
   std::vector<double> Triangles;
   std::vector<double> Lines;
-
-  void Add(vtkCell* cell)
-  {
-    std::vector<double>& to = cell->GetCellDimension() == 1 ? this->Lines : this->Triangles;
-    vtkNew<vtkIdList> ids;
-    vtkNew<vtkPoints> points;
-    cell->Triangulate(0, ids, points);
-    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-    {
-      double at[3];
-      points->GetPoint(i, at);
-      to.insert(to.end(), at, at + 3);
-    }
-  }
 };
 
 /** Lists sections: the cells with one name each, in the order of their first cells. */
@@ -60,15 +48,19 @@ std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
     const std::string name = names
       ? std::string(names->GetVariantValue(i * names->GetNumberOfComponents()).ToString())
       : usual;
-    const auto known =
+    auto shapes =
       std::find_if(all.begin(), all.end(), [&name](const Shapes& s) { return s.Name == name; });
-    if (known != all.end())
+    shapes = shapes == all.end() ? all.insert(shapes, { name, {}, {} }) : shapes;
+    vtkNew<vtkIdList> ids;
+    vtkNew<vtkPoints> points;
+    cell->Triangulate(0, ids, points);
+    for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
     {
-      known->Add(cell);
-      continue;
+      double at[3];
+      points->GetPoint(p, at);
+      std::vector<double>& to = dimension == 1 ? shapes->Lines : shapes->Triangles;
+      to.insert(to.end(), at, at + 3);
     }
-    all.push_back({ name, {}, {} });
-    all.back().Add(cell);
   }
   return all;
 }
@@ -77,19 +69,15 @@ std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
 vtkStandardNewMacro(vtkSPHFlux);
 
 void vtkSPHFlux::AddRectangle(
-  const char* name, const double corner[3], const double end1[3], const double end2[3])
+  const char* name, const double a[3], const double b[3], const double c[3])
 {
-  std::vector<double> points(corner, corner + 3);
-  points.insert(points.end(), end1, end1 + 3);
-  points.insert(points.end(), end2, end2 + 3);
-  this->AddPlace(name, MCOR_SECTION_RECTANGLE, points);
+  this->AddPlace(
+    name, MCOR_SECTION_RECTANGLE, { a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2] });
 }
 
-void vtkSPHFlux::AddDisc(
-  const char* name, const double center[3], const double normal[3], double radius)
+void vtkSPHFlux::AddDisc(const char* name, const double c[3], const double n[3], double radius)
 {
-  this->AddPlace(name, MCOR_SECTION_DISC,
-    { center[0], center[1], center[2], normal[0], normal[1], normal[2], radius });
+  this->AddPlace(name, MCOR_SECTION_DISC, { c[0], c[1], c[2], n[0], n[1], n[2], radius });
 }
 
 void vtkSPHFlux::AddBox(const char* name, const double b[6])
@@ -97,10 +85,9 @@ void vtkSPHFlux::AddBox(const char* name, const double b[6])
   this->AddPlace(name, MCOR_SECTION_BOX, { b[0], b[2], b[4], b[1], b[3], b[5] });
 }
 
-void vtkSPHFlux::AddLine(const char* name, const double point1[3], const double point2[3])
+void vtkSPHFlux::AddLine(const char* name, const double a[3], const double b[3])
 {
-  this->AddPlace(
-    name, MCOR_SECTION_LINES, { point1[0], point1[1], point1[2], point2[0], point2[1], point2[2] });
+  this->AddPlace(name, MCOR_SECTION_LINES, { a[0], a[1], a[2], b[0], b[1], b[2] });
 }
 
 void vtkSPHFlux::AddSurface(const char* name, vtkDataSet* surface)
@@ -171,20 +158,19 @@ int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,
   {
     return status;
   }
-  const auto count = static_cast<vtkIdType>(fluxes.count);
-  auto* area = vtkSPHAddColumn<vtkDoubleArray>(table, "area", count);
-  auto* volume = vtkSPHAddColumn<vtkDoubleArray>(table, "volume_flux", count);
-  auto* mass = vtkSPHAddColumn<vtkDoubleArray>(table, "mass_flux", count);
-  auto* velocity = vtkSPHAddColumn<vtkDoubleArray>(table, "velocity", count);
-  for (vtkIdType i = 0; i < count; ++i)
+  const vtkIdType count = fluxes.count;
+  const mcor_flux_reading* readings = fluxes.readings;
+  const std::pair<const char*, double mcor_flux_reading::*> columns[] = {
+    { "area", &mcor_flux_reading::area }, { "volume_flux", &mcor_flux_reading::volume_flux },
+    { "mass_flux", &mcor_flux_reading::mass_flux }, { "velocity", &mcor_flux_reading::velocity }
+  };
+  for (const auto& column : columns)
   {
-    const mcor_flux_reading& reading = fluxes.readings[i];
-    outside.push_back(reading.outside != 0);
-    area->SetValue(i, reading.area);
-    volume->SetValue(i, reading.volume_flux);
-    mass->SetValue(i, reading.mass_flux);
-    velocity->SetValue(i, reading.velocity);
+    vtkSPHAddColumn<vtkDoubleArray>(
+      table, column.first, count, [=](vtkIdType i) { return readings[i].*column.second; });
   }
+  std::transform(readings, readings + count, std::back_inserter(outside),
+    [](const mcor_flux_reading& reading) { return reading.outside != 0; });
   statistics = fluxes.statistics;
   mcor_free_fluxes(&fluxes);
   return status;

@@ -16,20 +16,17 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
+#include <iterator>
 
 VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSPHGauge);
 
-void vtkSPHGauge::AddGauge(
-  const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
+std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
 {
-  this->AddPlace(name, 0, { x0, y0, z0, x1, y1, z1 });
-}
-
-void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Place>& gauges)
-{
-  vtkAbstractArray* names = lines->GetCellData()->GetAbstractArray("Name");
-  for (vtkIdType i = 0; i < lines->GetNumberOfCells(); ++i)
+  std::vector<Place> gauges = this->Places;
+  auto* lines = vtkDataSet::SafeDownCast(more);
+  vtkAbstractArray* names = lines ? lines->GetCellData()->GetAbstractArray("Name") : nullptr;
+  for (vtkIdType i = 0; lines && i < lines->GetNumberOfCells(); ++i)
   {
     vtkCell* cell = lines->GetCell(i);
     if (cell->GetCellDimension() != 1)
@@ -44,15 +41,6 @@ void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Place>& gauges)
     lines->GetPoint(
       cell->GetPointId(static_cast<int>(cell->GetNumberOfPoints()) - 1), gauge.Numbers.data() + 3);
     gauges.push_back(gauge);
-  }
-}
-
-std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
-{
-  std::vector<Place> gauges = this->Places;
-  if (auto* lines = vtkDataSet::SafeDownCast(more))
-  {
-    AddLines(lines, gauges);
   }
   if (gauges.empty() && !more)
   {
@@ -82,29 +70,23 @@ int vtkSPHGauge::Measure(mcor_context* context, const mcor_input& input,
   {
     return status;
   }
-  const auto count = static_cast<vtkIdType>(gauges.count);
-  auto* states = vtkSPHAddColumn<vtkStringArray>(table, "state", count);
-  auto* first = vtkSPHAddColumn<vtkDoubleArray>(table, "first", count);
-  auto* last = vtkSPHAddColumn<vtkDoubleArray>(table, "last", count);
-  auto* depth = vtkSPHAddColumn<vtkDoubleArray>(table, "depth", count);
-  auto* crossings = vtkSPHAddColumn<vtkIdTypeArray>(table, "crossings", count);
-  vtkDoubleArray* place[3] = { vtkSPHAddColumn<vtkDoubleArray>(table, "x", count),
-    vtkSPHAddColumn<vtkDoubleArray>(table, "y", count),
-    vtkSPHAddColumn<vtkDoubleArray>(table, "z", count) };
-  for (vtkIdType i = 0; i < count; ++i)
+  const vtkIdType count = gauges.count;
+  const mcor_gauge_reading* readings = gauges.readings;
+  using Doubles = vtkDoubleArray;
+  vtkSPHAddColumn<vtkStringArray>(
+    table, "state", count, [=](vtkIdType i) { return mcor_gauge_state_name(readings[i].state); });
+  vtkSPHAddColumn<Doubles>(table, "first", count, [=](vtkIdType i) { return readings[i].first; });
+  vtkSPHAddColumn<Doubles>(table, "last", count, [=](vtkIdType i) { return readings[i].last; });
+  vtkSPHAddColumn<Doubles>(table, "depth", count, [=](vtkIdType i) { return readings[i].depth; });
+  vtkSPHAddColumn<vtkIdTypeArray>(
+    table, "crossings", count, [=](vtkIdType i) { return readings[i].crossing_count; });
+  for (int a = 0; a < 3; ++a)
   {
-    const mcor_gauge_reading& reading = gauges.readings[i];
-    outside.push_back(reading.outside != 0);
-    states->SetValue(i, mcor_gauge_state_name(reading.state));
-    first->SetValue(i, reading.first);
-    last->SetValue(i, reading.last);
-    depth->SetValue(i, reading.depth);
-    crossings->SetValue(i, reading.crossing_count);
-    for (int a = 0; a < 3; ++a)
-    {
-      place[a]->SetValue(i, reading.place[a]);
-    }
+    vtkSPHAddColumn<Doubles>(table, std::string(1, "xyz"[a]).c_str(), count,
+      [=](vtkIdType i) { return readings[i].place[a]; });
   }
+  std::transform(readings, readings + count, std::back_inserter(outside),
+    [](const mcor_gauge_reading& reading) { return reading.outside != 0; });
   statistics = gauges.statistics;
   mcor_free_gauges(&gauges);
   return status;

@@ -37,8 +37,6 @@
 #include "vtkSPHMeter.h"
 
 VTK_ABI_NAMESPACE_BEGIN
-class vtkDataSet;
-
 class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHGauge : public vtkSPHMeter
 {
 public:
@@ -55,7 +53,10 @@ public:
    * Gauges by name, each from one place to another. Names must differ. Lengths have the unit of the
    * positions.
    */
-  void AddGauge(const char* name, double x0, double y0, double z0, double x1, double y1, double z1);
+  void AddGauge(const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
+  {
+    this->AddPlace(name, 0, { x0, y0, z0, x1, y1, z1 });
+  }
   void ClearGauges() { this->ClearPlaces(); }
   int GetNumberOfGauges() const { return static_cast<int>(this->Places.size()); }
   ///@}
@@ -80,8 +81,6 @@ protected:
 private:
   vtkSPHGauge(const vtkSPHGauge&) = delete;
   void operator=(const vtkSPHGauge&) = delete;
-
-  static void AddLines(vtkDataSet* lines, std::vector<Place>& gauges);
 };
 VTK_ABI_NAMESPACE_END
 

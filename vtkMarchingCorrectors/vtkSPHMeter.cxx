@@ -84,12 +84,6 @@ void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numb
   this->Modified();
 }
 
-void vtkSPHMeter::ClearPlaces()
-{
-  this->Places.clear();
-  this->Modified();
-}
-
 bool vtkSPHMeter::Collect(vtkSPHParticles& particles)
 {
   return particles.CollectParticles();
@@ -160,13 +154,10 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   run->PlaceBox(low, high);
   vtkSPHParticles* input = run->Share(mine, collect);
   const auto count = static_cast<vtkIdType>(places.size());
-  auto* times = vtkSPHAddColumn<vtkDoubleArray>(table, "time", count);
-  auto* names = vtkSPHAddColumn<vtkStringArray>(table, this->GetNoun(), count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    times->SetValue(i, this->InputTime);
-    names->SetValue(i, places[i].Name);
-  }
+  vtkSPHAddColumn<vtkDoubleArray>(
+    table, "time", count, [this](vtkIdType) { return this->InputTime; });
+  vtkSPHAddColumn<vtkStringArray>(
+    table, this->GetNoun(), count, [&places](vtkIdType i) { return places[i].Name; });
   std::vector<bool> outside;
   mcor_statistics statistics = {};
   if (!input ||

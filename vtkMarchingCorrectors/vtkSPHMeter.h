@@ -75,7 +75,11 @@ protected:
   };
 
   void AddPlace(const char* name, int shape, std::vector<double> numbers);
-  void ClearPlaces();
+  void ClearPlaces()
+  {
+    this->Places.clear();
+    this->Modified();
+  }
 
   std::vector<Place> Places; // that were added
 

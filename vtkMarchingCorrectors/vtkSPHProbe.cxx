@@ -157,14 +157,89 @@ public:
    * their weight.
    */
   Samples(const vtkSPHParticles& particles, const mcor_options& options,
-    const std::string& maskName, vtkIdType count, double null);
+    const std::string& maskName, vtkIdType count, double null)
+    : NotFinite(particles.Interpolated.size(), -1)
+    , Null(null)
+  {
+    const bool gradients = (options.outputs & MCOR_OUT_GRADIENTS) != 0;
+    const auto make = [=](const std::string& name, int components, bool asFloat, double fill)
+    {
+      Pair pair;
+      for (int i = 0; i < (gradients ? 2 : 1); ++i)
+      {
+        auto array = vtkSmartPointer<vtkDataArray>::Take(
+          vtkDataArray::CreateDataArray(asFloat ? VTK_FLOAT : VTK_DOUBLE));
+        array->SetName((name + (i == 0 ? "" : "_Gradient")).c_str());
+        array->SetNumberOfComponents(i == 0 ? components : 3 * components);
+        array->SetNumberOfTuples(count);
+        array->Fill(fill);
+        (i == 0 ? pair.Values : pair.Gradient) = array;
+      }
+      return pair;
+    };
+    for (const vtkSPHAttribute& from : particles.Interpolated)
+    {
+      this->Arrays.push_back(
+        make(from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, null));
+      this->Arrays.back().Values->CopyComponentNames(from.Array);
+    }
+    this->Weight = make("WeightSum", 1, options.precision == MCOR_FLOAT32, 0.0);
+    this->Mask->SetName(maskName.c_str());
+    this->Mask->SetNumberOfTuples(count);
+    this->Mask->FillValue(0);
+  }
 
   /** Calls the core for some points at a time. Returns a mcor_status. */
   int Evaluate(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
-    mcor_options options, vtkFieldData* statistics);
+    mcor_options options, vtkFieldData* statistics)
+  {
+    const vtkIdType total = points->GetNumberOfPoints();
+    mcor_input input = particles;
+    if (input.particles_version == 0 && total > ChunkSize)
+    {
+      input.particles_version = input.scalar_version = input.attributes_version = VersionOfOneRun;
+    }
+    PointReader reader(points);
+    ChunkProgress progress = { options.progress, options.progress_user, 0.0, 0.0 };
+    options.progress = ChunkProgress::Run;
+    options.progress_user = &progress;
+    for (vtkIdType first = 0; first < total; first += ChunkSize)
+    {
+      const vtkIdType count = std::min(ChunkSize, total - first);
+      progress.Begin = static_cast<double>(first) / static_cast<double>(total);
+      progress.Share = static_cast<double>(count) / static_cast<double>(total);
+      const mcor_array view = reader.View(first, count);
+      mcor_samples samples = {};
+      const mcor_status status = mcor_probe(context, &input, &options, &view, count, &samples);
+      if (status != MCOR_OK)
+      {
+        return status;
+      }
+      this->Put(first, samples);
+      this->Statistics = samples.statistics;
+      vtkSPHAddRunStatistics(statistics, samples.statistics);
+      mcor_free_samples(&samples);
+    }
+    return MCOR_OK;
+  }
 
   /** Adds the arrays to the output, without those that the core has left out. */
-  void AddTo(vtkFieldData* data) const;
+  void AddTo(vtkFieldData* data) const
+  {
+    for (size_t a = 0; a <= this->Arrays.size(); ++a)
+    {
+      const bool isWeight = a == this->Arrays.size();
+      const Pair& pair = isWeight ? this->Weight : this->Arrays[a];
+      for (vtkDataArray* array : { pair.Values.Get(), pair.Gradient.Get() })
+      {
+        if (array && (isWeight || this->NotFinite[a] < 0))
+        {
+          data->AddArray(array);
+        }
+      }
+    }
+    data->AddArray(this->Mask);
+  }
 
   std::vector<std::int64_t> NotFinite; // of the interpolated arrays, as in mcor_samples
   mcor_statistics Statistics = {};     // of the last points
@@ -177,142 +252,41 @@ private:
   };
 
   /** Takes over what the core has found at the points from `first` on. */
-  void Put(vtkIdType first, const mcor_samples& samples);
-  Pair Make(
-    const std::string& name, int components, bool asFloat, bool gradient, double fill) const;
+  void Put(vtkIdType first, const mcor_samples& samples)
+  {
+    const auto copy = [&](const double* from, const std::uint8_t* valid, vtkDataArray* to)
+    {
+      const int components = to ? to->GetNumberOfComponents() : 0;
+      void* out = to ? to->GetVoidPointer(first * components) : nullptr;
+      if (to && to->GetDataType() == VTK_FLOAT)
+      {
+        Copy(from, valid, this->Null, samples.count, components, static_cast<float*>(out));
+      }
+      else if (to)
+      {
+        Copy(from, valid, this->Null, samples.count, components, static_cast<double*>(out));
+      }
+    };
+    for (size_t a = 0; a < this->Arrays.size(); ++a)
+    {
+      this->NotFinite[a] = samples.attribute_not_finite[a];
+      if (samples.values[a])
+      {
+        copy(samples.values[a], samples.valid, this->Arrays[a].Values);
+        copy(samples.gradients ? samples.gradients[a] : nullptr, samples.valid,
+          this->Arrays[a].Gradient);
+      }
+    }
+    copy(samples.weight_sum, nullptr, this->Weight.Values);
+    copy(samples.weight_gradient, nullptr, this->Weight.Gradient);
+    std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
+  }
 
-  const vtkIdType Count;
   const double Null;        // the value at points that are not valid
   std::vector<Pair> Arrays; // in the order of the core's attributes
   Pair Weight;
   vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter
 };
-
-Samples::Samples(const vtkSPHParticles& particles, const mcor_options& options,
-  const std::string& maskName, vtkIdType count, double null)
-  : NotFinite(particles.Interpolated.size(), -1)
-  , Count(count)
-  , Null(null)
-{
-  const bool gradients = (options.outputs & MCOR_OUT_GRADIENTS) != 0;
-  for (const vtkSPHAttribute& from : particles.Interpolated)
-  {
-    this->Arrays.push_back(this->Make(
-      from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, gradients, null));
-    this->Arrays.back().Values->CopyComponentNames(from.Array);
-  }
-  this->Weight = this->Make("WeightSum", 1, options.precision == MCOR_FLOAT32, gradients, 0.0);
-  this->Mask->SetName(maskName.c_str());
-  this->Mask->SetNumberOfTuples(count);
-  this->Mask->FillValue(0);
-}
-
-Samples::Pair Samples::Make(
-  const std::string& name, int components, bool asFloat, bool gradient, double fill) const
-{
-  const auto make = [&](const std::string& itsName, int itsComponents)
-  {
-    auto array = vtkSmartPointer<vtkDataArray>::Take(
-      vtkDataArray::CreateDataArray(asFloat ? VTK_FLOAT : VTK_DOUBLE));
-    array->SetName(itsName.c_str());
-    array->SetNumberOfComponents(itsComponents);
-    array->SetNumberOfTuples(this->Count);
-    array->Fill(fill);
-    return array;
-  };
-  Pair pair;
-  pair.Values = make(name, components);
-  if (gradient)
-  {
-    pair.Gradient = make(name + "_Gradient", 3 * components);
-  }
-  return pair;
-}
-
-void Samples::Put(vtkIdType first, const mcor_samples& samples)
-{
-  const auto copy =
-    [&](const double* from, const std::uint8_t* valid, const vtkSmartPointer<vtkDataArray>& to)
-  {
-    const int components = to ? to->GetNumberOfComponents() : 0;
-    void* out = to ? to->GetVoidPointer(first * components) : nullptr;
-    if (to && to->GetDataType() == VTK_FLOAT)
-    {
-      Copy(from, valid, this->Null, samples.count, components, static_cast<float*>(out));
-    }
-    else if (to)
-    {
-      Copy(from, valid, this->Null, samples.count, components, static_cast<double*>(out));
-    }
-  };
-  for (size_t a = 0; a < this->Arrays.size(); ++a)
-  {
-    this->NotFinite[a] = samples.attribute_not_finite[a];
-    if (samples.values[a])
-    {
-      copy(samples.values[a], samples.valid, this->Arrays[a].Values);
-      copy(samples.gradients ? samples.gradients[a] : nullptr, samples.valid,
-        this->Arrays[a].Gradient);
-    }
-  }
-  copy(samples.weight_sum, nullptr, this->Weight.Values);
-  copy(samples.weight_gradient, nullptr, this->Weight.Gradient);
-  std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
-}
-
-void Samples::AddTo(vtkFieldData* data) const
-{
-  const auto add = [data](const Pair& pair)
-  {
-    data->AddArray(pair.Values);
-    if (pair.Gradient)
-    {
-      data->AddArray(pair.Gradient);
-    }
-  };
-  for (size_t a = 0; a < this->Arrays.size(); ++a)
-  {
-    if (this->NotFinite[a] < 0)
-    {
-      add(this->Arrays[a]);
-    }
-  }
-  add(this->Weight);
-  data->AddArray(this->Mask);
-}
-
-int Samples::Evaluate(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
-  mcor_options options, vtkFieldData* statistics)
-{
-  const vtkIdType total = points->GetNumberOfPoints();
-  mcor_input input = particles;
-  if (input.particles_version == 0 && total > ChunkSize)
-  {
-    input.particles_version = input.scalar_version = input.attributes_version = VersionOfOneRun;
-  }
-  PointReader reader(points);
-  ChunkProgress progress = { options.progress, options.progress_user, 0.0, 0.0 };
-  options.progress = ChunkProgress::Run;
-  options.progress_user = &progress;
-  for (vtkIdType first = 0; first < total; first += ChunkSize)
-  {
-    const vtkIdType count = std::min(ChunkSize, total - first);
-    progress.Begin = static_cast<double>(first) / static_cast<double>(total);
-    progress.Share = static_cast<double>(count) / static_cast<double>(total);
-    const mcor_array view = reader.View(first, count);
-    mcor_samples samples = {};
-    const mcor_status status = mcor_probe(context, &input, &options, &view, count, &samples);
-    if (status != MCOR_OK)
-    {
-      return status;
-    }
-    this->Put(first, samples);
-    this->Statistics = samples.statistics;
-    vtkSPHAddRunStatistics(statistics, samples.statistics);
-    mcor_free_samples(&samples);
-  }
-  return MCOR_OK;
-}
 }
 
 vtkStandardNewMacro(vtkSPHProbe);
@@ -320,11 +294,6 @@ vtkStandardNewMacro(vtkSPHProbe);
 vtkSPHProbe::vtkSPHProbe()
 {
   this->SetNumberOfInputPorts(2);
-}
-
-vtkDataObject* vtkSPHProbe::GetSource()
-{
-  return this->GetNumberOfInputConnections(1) > 0 ? this->GetInputDataObject(1, 0) : nullptr;
 }
 
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
@@ -445,9 +414,9 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     run->AddShares();
   }
   run->WarnOfParticles(input->Core, samples.Statistics);
-  for (const std::string& sentence : input->ListLeftOut(samples.NotFinite.data(), "the output"))
+  if (run->IsFirst())
   {
-    if (run->IsFirst())
+    for (const std::string& sentence : input->ListLeftOut(samples.NotFinite.data(), "the output"))
     {
       this->Warn(sentence);
     }

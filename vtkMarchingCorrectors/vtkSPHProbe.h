@@ -60,7 +60,7 @@ public:
   /** The particles, port 1: a point set, or blocks of them. */
   void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   void SetSourceData(vtkDataObject* source) { this->SetInputDataObject(1, source); }
-  vtkDataObject* GetSource();
+  vtkDataObject* GetSource() { return this->GetParticles(); }
   ///@}
 
   /** Also leave solid particles out when volumes are computed from positions. Off by default. */

@@ -54,43 +54,37 @@ mcor_view vtkSPHProjection::MakeView() const
   return view;
 }
 
-// Origin and spacing come with the data.
+// Places the image without values, and leaves errors to the run. Origin and spacing come with the
+// data.
 int vtkSPHProjection::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
-  const mcor_projection placed =
-    this->Place(this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0])));
+  const vtkSmartPointer<vtkPointSet> particles =
+    this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0]));
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
-  if (placed.size[0] > 0)
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  run->IsQuiet = true;
+  if (run->Begin(particles) && run->Particles > 0)
   {
-    FindExtent(placed, extent);
+    vtkSPHParticles mine(run->Choose(), run->Own);
+    mcor_projection placed = {};
+    this->FillOptions(run->Options);
+    const mcor_view view = this->MakeView();
+    if (run->Agree(mine.CollectParticles() ? "" : mine.Error) && run->MeasureLengths(mine))
+    {
+      run->Call(mine,
+        [&](mcor_context* context)
+        { return mcor_place_view(context, &mine.Core, &run->Options, &view, &placed); });
+    }
+    if (placed.size[0] > 0)
+    {
+      FindExtent(placed, extent);
+    }
   }
   info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   return 1;
-}
-
-// Finds the image without values. Errors are left to the run.
-mcor_projection vtkSPHProjection::Place(vtkPointSet* particles)
-{
-  mcor_projection placed = {};
-  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
-  run->IsQuiet = true;
-  if (!run->Begin(particles) || run->Particles == 0)
-  {
-    return placed;
-  }
-  vtkSPHParticles mine(run->Choose(), run->Own);
-  this->FillOptions(run->Options);
-  const mcor_view view = this->MakeView();
-  if (run->Agree(mine.CollectParticles() ? "" : mine.Error) && run->MeasureLengths(mine))
-  {
-    run->Call(mine,
-      [&](mcor_context* context)
-      { return mcor_place_view(context, &mine.Core, &run->Options, &view, &placed); });
-  }
-  return placed;
 }
 
 int vtkSPHProjection::RequestData(

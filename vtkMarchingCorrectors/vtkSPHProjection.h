@@ -112,7 +112,6 @@ private:
 
   mcor_view MakeView() const;
   bool Collect(vtkSPHParticles& particles, mcor_view& view);
-  mcor_projection Place(vtkPointSet* particles);
   void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
 
   int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // asked of this process

@@ -37,19 +37,6 @@ constexpr double Margin = 0.03;
 /** Points of a volume whose dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
-/** Returns the axis along which the fluid is flat, or -1. */
-int FindFlatAxis(const double bounds[6])
-{
-  int axis = -1, count = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool flat = bounds[2 * a] == bounds[2 * a + 1];
-    axis = flat ? a : axis;
-    count += flat ? 1 : 0;
-  }
-  return count == 1 ? axis : -1;
-}
-
 /** The range of a plane in a box, along the plane's axes u and v; empty if it misses the box. */
 struct Rectangle
 {
@@ -192,28 +179,6 @@ void MakeLine(const double from[3], const double to[3], int resolution, vtkPolyD
   line->GetPointData()->AddArray(along);
 }
 
-/** Removes the quads that have a corner where the point array of this name is 0. */
-void CropSlice(vtkPolyData* slice, const char* mask)
-{
-  vtkDataArray* isValid = slice->GetPointData()->GetArray(mask);
-  vtkNew<vtkCellArray> kept;
-  vtkCellArray* quads = slice->GetPolys();
-  vtkIdType size;
-  const vtkIdType* corners;
-  for (vtkIdType cell = 0; isValid && cell < quads->GetNumberOfCells(); ++cell)
-  {
-    quads->GetCellAtId(cell, size, corners);
-    if (std::all_of(corners, corners + size,
-          [isValid](vtkIdType point) { return isValid->GetComponent(point, 0) != 0.0; }))
-    {
-      kept->InsertNextCell(size, corners);
-    }
-  }
-  if (isValid)
-  {
-    slice->SetPolys(kept);
-  }
-}
 }
 
 vtkStandardNewMacro(vtkSPHResample);
@@ -309,7 +274,13 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   {
     return false;
   }
-  this->FlatAxis = this->Dimension == DIMENSION_3 ? -1 : FindFlatAxis(bounds);
+  int flat[3], count = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    flat[count] = a;
+    count += bounds[2 * a] == bounds[2 * a + 1] ? 1 : 0;
+  }
+  this->FlatAxis = this->Dimension == DIMENSION_3 || count != 1 ? -1 : flat[0];
   const double longest =
     std::max({ bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] });
   for (int a = 0; a < 3; ++a)
@@ -381,11 +352,27 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   this->Superclass::Process(this->MakePoints(bounds), output);
-  auto* slice = vtkPolyData::SafeDownCast(output);
-  if (slice && this->Shape == SLICE && this->OnlyFluid)
+  auto* slice =
+    this->Shape == SLICE && this->OnlyFluid ? vtkPolyData::SafeDownCast(output) : nullptr;
+  vtkDataArray* isValid =
+    slice ? slice->GetPointData()->GetArray(this->ValidPointMaskArrayName.c_str()) : nullptr;
+  if (!isValid)
   {
-    CropSlice(slice, this->ValidPointMaskArrayName.c_str());
+    return;
   }
+  vtkNew<vtkCellArray> kept; // the quads without a corner that is not valid
+  vtkIdType size;
+  const vtkIdType* corners;
+  for (vtkIdType cell = 0; cell < slice->GetNumberOfPolys(); ++cell)
+  {
+    slice->GetPolys()->GetCellAtId(cell, size, corners);
+    if (std::all_of(corners, corners + size,
+          [isValid](vtkIdType point) { return isValid->GetComponent(point, 0) != 0.0; }))
+    {
+      kept->InsertNextCell(size, corners);
+    }
+  }
+  slice->SetPolys(kept);
 }
 
 void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)

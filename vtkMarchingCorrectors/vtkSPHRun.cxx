@@ -36,26 +36,6 @@ std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, in
   return why;
 }
 
-bool vtkSPHAlgorithm::vtkInternals::Kept::Take(
-  const std::vector<std::uint64_t>& signature, bool isOther)
-{
-  isOther = isOther || signature != this->Signature;
-  this->Version += isOther ? 1 : 0;
-  this->Signature = signature;
-  return isOther;
-}
-
-// The scalar is kept in the order of the particles: new particles make a new scalar.
-void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
-{
-  const bool areOthers = this->Particles.Take(input.ParticlesSignature);
-  this->Scalar.Take(input.ScalarSignature, areOthers);
-  this->Attributes.Take(input.AttributesSignature);
-  input.Core.particles_version = this->Particles.Version;
-  input.Core.scalar_version = this->Scalar.Version;
-  input.Core.attributes_version = this->Attributes.Version;
-}
-
 void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
 {
   this->Particles.Signature.clear();
@@ -78,12 +58,6 @@ void vtkSPHAlgorithm::vtkInternals::Release()
   {
     mcor_release_memory(this->Context);
   }
-}
-
-void vtkSPHAlgorithm::vtkInternals::BeginRun()
-{
-  this->InRun = true;
-  this->ReleaseAfterRun = false;
 }
 
 void vtkSPHAlgorithm::vtkInternals::EndRun()
@@ -214,7 +188,13 @@ int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
   }
   if (keep)
   {
-    internals.SetVersions(particles);
+    // The scalar is kept in the order of the particles: new particles make a new scalar.
+    const bool areOthers = internals.Particles.Take(particles.ParticlesSignature);
+    internals.Scalar.Take(particles.ScalarSignature, areOthers);
+    internals.Attributes.Take(particles.AttributesSignature);
+    particles.Core.particles_version = internals.Particles.Version;
+    particles.Core.scalar_version = internals.Scalar.Version;
+    particles.Core.attributes_version = internals.Attributes.Version;
   }
   this->Options.progress_user = this->Filter;
   this->Options.progress = [](void* user, double fraction, const char* phase)

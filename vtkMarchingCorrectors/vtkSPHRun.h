@@ -41,15 +41,16 @@ public:
    */
   std::string Prepare(const std::string& device, int place, int count);
 
-  /** Tells the core which data are the same as in the last run. */
-  void SetVersions(vtkSPHParticles& input);
-
   /** Forgets the data on the device, and the device itself, after a failure. */
   void Forget(mcor_status status);
 
   /** Gives memory back. Between BeginRun() and EndRun() it is in use, so this waits for the end. */
   void Release();
-  void BeginRun();
+  void BeginRun()
+  {
+    this->InRun = true;
+    this->ReleaseAfterRun = false;
+  }
   void EndRun();
 
   mcor_context* Context = nullptr;
@@ -62,21 +63,28 @@ public:
   std::string JoinedFluid; // the fluid array, which may be a block
   vtkTimeStamp JoinedTime;
 
-private:
-  std::string Device; // settings that the context was created for
-  int Place = 0, Count = 0;
-  bool InRun = false;
-  bool ReleaseAfterRun = false;
-  /** A value of the last run, and how often it has changed. */
+  /** A value of the last run, and how often it has changed: equal versions are equal data. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
     /** Keeps this value. Returns whether it is another one. */
-    bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false);
+    bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false)
+    {
+      isOther = isOther || signature != this->Signature;
+      this->Version += isOther ? 1 : 0;
+      this->Signature = signature;
+      return isOther;
+    }
   };
   Kept Particles, Scalar, Attributes;
+
+private:
+  std::string Device; // settings that the context was created for
+  int Place = 0, Count = 0;
+  bool InRun = false;
+  bool ReleaseAfterRun = false;
 };
 
 /** Whether the core computes the particles' volumes. */
@@ -179,6 +187,7 @@ public:
   std::int64_t Particles = 0;       ///< of all processes
   bool HasFluid = false;            ///< any process
   mcor_options Options = {};
+  std::vector<double> IsoValues;      ///< of the options
   vtkSmartPointer<vtkDataSet> Points; ///< those that this process evaluates
 
 protected:

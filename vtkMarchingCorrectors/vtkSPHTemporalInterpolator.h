@@ -50,7 +50,6 @@
 
 #include <memory> // For the pairs of blocks
 #include <string> // For members
-#include <vector> // For members
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;

@@ -47,6 +47,7 @@ def describe_unused_type(name, values):
     kinds, counts = np.unique(np.asarray(values), return_counts=True)
     if not 2 <= len(kinds) <= 8:  # the core's limit, before arrays are made for it
         return ""
+    kinds = np.where(np.isnan(kinds), np.nan, kinds)  # not -nan, which C would print as such
     return take_text(lib.mcor_describe_unused_type(
         name.encode(errors="replace"), (ctypes.c_double * len(kinds))(*kinds.tolist()),
         (ctypes.c_int64 * len(kinds))(*counts.tolist()), len(kinds)))

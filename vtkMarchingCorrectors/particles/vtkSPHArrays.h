@@ -124,15 +124,18 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 
-/** Adds a column, without values, to a table. */
-template <typename ArrayT>
-ArrayT* vtkSPHAddColumn(vtkTable* table, const char* name, vtkIdType rows)
+/** Adds a column of values(row) to a table. */
+template <typename ArrayT, typename ValuesT>
+void vtkSPHAddColumn(vtkTable* table, const char* name, vtkIdType rows, const ValuesT& values)
 {
   vtkNew<ArrayT> column;
   column->SetName(name);
   column->SetNumberOfTuples(rows);
+  for (vtkIdType row = 0; row < rows; ++row)
+  {
+    column->SetValue(row, values(row));
+  }
   table->AddColumn(column);
-  return column;
 }
 
 /** The ways in which a statistic of several parts or runs becomes one, see mcor_statistics.def. */

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-
+// Particles among the cells of a mesh.
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"

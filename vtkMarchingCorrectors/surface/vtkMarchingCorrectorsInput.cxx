@@ -2,22 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsInput.h"
 
+#include "vtkPointData.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHRun.h"
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
-  const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
-  : vtkSPHParticles(choice, points)
-  , Choice(choice)
-{
-}
-
-bool vtkMarchingCorrectorsInput::CollectContoured()
-{
-  return this->CollectScalar() && this->CollectSolids();
-}
-
 bool vtkMarchingCorrectorsInput::Collect()
 {
   if ((!this->Choice.FreeSurface && !this->CollectScalar()) || !this->CollectParticles())
@@ -135,13 +123,4 @@ void vtkMarchingCorrectorsInput::NameScalar()
   }
 }
 
-void vtkSPHAddWidening(
-  vtkPointData* found, const mcor_input& core, mcor_widening& widening, vtkIdType count)
-{
-  vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, count));
-  if (vtkSPHComputesVolumes(core))
-  {
-    vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, count));
-  }
-}
 VTK_ABI_NAMESPACE_END

@@ -25,7 +25,11 @@ struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
 class vtkMarchingCorrectorsInput : public vtkSPHParticles
 {
 public:
-  vtkMarchingCorrectorsInput(const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points);
+  vtkMarchingCorrectorsInput(const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
+    : vtkSPHParticles(choice, points)
+    , Choice(choice)
+  {
+  }
 
   /**
    * Fills all members. Returns false if something is missing or not usable; Error then says why.
@@ -33,7 +37,7 @@ public:
   bool Collect();
 
   /** Finds the scalar and the fluid particles alone: the range of values depends on these. */
-  bool CollectContoured();
+  bool CollectContoured() { return this->CollectScalar() && this->CollectSolids(); }
 
   const vtkMarchingCorrectorsChoice Choice;
   vtkSmartPointer<vtkDataArray> Scalar;
@@ -46,9 +50,6 @@ private:
   void NameScalar();
 };
 
-/** Adds the arrays Widening and, where volumes are computed, WideningVolume, for `count` particles. */
-void vtkSPHAddWidening(
-  vtkPointData* found, const mcor_input& core, mcor_widening& widening, vtkIdType count);
 VTK_ABI_NAMESPACE_END
 
 #endif

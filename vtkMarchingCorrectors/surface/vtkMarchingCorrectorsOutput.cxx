@@ -32,19 +32,15 @@ namespace
 /// Least variation on a surface, as a share of an array's range among the particles; less is noise.
 constexpr double LeastShare = 0.03;
 
-// Adds the array's name, as it was when the run began.
-void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)
+// Adds the array's name, as it was when the run began, and the value if one was used for all
+// particles.
+void AddQuantity(
+  vtkFieldData* data, const char* arrayName, const char* name, const mcor_array& array)
 {
-  vtkSPHAddText(data, name, array.name ? array.name : "");
-}
-
-// Adds the array's name, or the value if one was used for all particles.
-void AddQuantity(vtkFieldData* data, const std::string& name, const mcor_array& array)
-{
-  AddArrayName(data, (name + "Array").c_str(), array);
-  if (!array.data && mcor_is_given(&array))
+  vtkSPHAddText(data, arrayName, array.name ? array.name : "");
+  if (name && !array.data && mcor_is_given(&array))
   {
-    vtkSPHAddReal(data, name.c_str(), { array.constant });
+    vtkSPHAddReal(data, name, { array.constant });
   }
 }
 }
@@ -97,16 +93,38 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   output->SetPoints(points);
   BuildCells(this->Surface, output);
   this->BuildInterpolatedArrays(output);
-  this->BuildComputedArrays(output);
+  vtkPointData* pointData = output->GetPointData();
+  mcor_surface& s = this->Surface;
+  const auto add = [&](const char* name, auto*& values, int components)
+  {
+    if (values)
+    {
+      vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
+    }
+  };
+  // VTK would draw lines dark by them.
+  const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
+#define ADD(bit, member, components, name, flag) add(name, s.member, components);
+  vtkMarchingCorrectorsArrays(ADD)
+#undef ADD
+    add("Widening", s.widening, 1);
+  if (areActive)
+  {
+    pointData->SetActiveNormals("Normals");
+  }
+  if (s.iso_value)
+  {
+    const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
+    vtkSPHAddArray(pointData, this->Input.IsoValueName.c_str(),
+      vtkSPHAdoptReal(s.iso_value, 1, s.point_count, asFloat));
+  }
   this->AddIsoValues(output->GetFieldData());
   this->ChooseActive(output, merge);
 }
 
-namespace
-{
-/// Makes cells with ids of VTK's own type, as vtkContourFilter does: with others, some filters take
-/// a mesh for non-manifold.
-void BuildTriangles(mcor_surface& s, vtkPolyData* output)
+// Ids are of VTK's own type, as vtkContourFilter makes them: with others, some filters take a mesh
+// for non-manifold. The bands of lines come before those of triangles, as lines do.
+void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& s, vtkPolyData* output)
 {
   vtkNew<vtkIdTypeArray> corners;
   corners->SetNumberOfValues(3 * s.triangle_count);
@@ -116,52 +134,30 @@ void BuildTriangles(mcor_surface& s, vtkPolyData* output)
     [=](vtkIdType begin, vtkIdType end) { std::copy(from + begin, from + end, to + begin); });
   std::free(s.triangles);
   s.triangles = nullptr;
-  vtkNew<vtkCellArray> triangles;
+  vtkNew<vtkCellArray> triangles, lines;
   triangles->SetData(3, corners);
   output->SetPolys(triangles);
-}
-
-/// Builds the cells of two dimensions.
-void BuildLines(const mcor_surface& s, vtkPolyData* output)
-{
-  if (!s.line_offsets)
+  if (s.line_offsets) // in two dimensions
   {
-    output->SetLines(nullptr);
-    return;
+    vtkNew<vtkIdTypeArray> points, offsets;
+    points->SetNumberOfValues(s.line_offsets[s.line_count]);
+    offsets->SetNumberOfValues(s.line_count + 1);
+    std::copy_n(s.line_points, s.line_offsets[s.line_count], points->GetPointer(0));
+    std::copy_n(s.line_offsets, s.line_count + 1, offsets->GetPointer(0));
+    lines->SetData(offsets, points);
   }
-  vtkNew<vtkIdTypeArray> points, offsets;
-  points->SetNumberOfValues(s.line_offsets[s.line_count]);
-  offsets->SetNumberOfValues(s.line_count + 1);
-  std::copy_n(s.line_points, s.line_offsets[s.line_count], points->GetPointer(0));
-  std::copy_n(s.line_offsets, s.line_count + 1, offsets->GetPointer(0));
-  vtkNew<vtkCellArray> lines;
-  lines->SetData(offsets, points);
-  output->SetLines(lines);
-}
-
-/// Builds the bands of lines, which come first, and of triangles.
-void BuildBands(const mcor_surface& s, vtkPolyData* output)
-{
-  if (!s.band_value)
+  output->SetLines(s.line_offsets ? lines.Get() : nullptr);
+  if (s.band_value)
   {
-    return;
+    vtkNew<vtkDoubleArray> values;
+    values->SetNumberOfValues(s.line_count + s.triangle_count);
+    for (vtkIdType i = 0; i < s.line_count; ++i)
+    {
+      values->SetValue(i, s.iso_value[s.line_points[s.line_offsets[i]]]);
+    }
+    std::copy_n(s.band_value, s.triangle_count, values->GetPointer(0) + s.line_count);
+    vtkSPHAddArray(output->GetCellData(), "BandValue", values);
   }
-  vtkNew<vtkDoubleArray> values;
-  values->SetNumberOfValues(s.line_count + s.triangle_count);
-  for (vtkIdType i = 0; i < s.line_count; ++i)
-  {
-    values->SetValue(i, s.iso_value[s.line_points[s.line_offsets[i]]]);
-  }
-  std::copy_n(s.band_value, s.triangle_count, values->GetPointer(0) + s.line_count);
-  vtkSPHAddArray(output->GetCellData(), "BandValue", values);
-}
-}
-
-void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& surface, vtkPolyData* output)
-{
-  BuildTriangles(surface, output);
-  BuildLines(surface, output);
-  BuildBands(surface, output);
 }
 
 void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
@@ -198,35 +194,6 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
     to->SetNumberOfTuples(count);
     from.Array->GetTuples(nearest, to);
     add(from, to);
-  }
-}
-
-void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
-{
-  vtkPointData* pointData = output->GetPointData();
-  mcor_surface& s = this->Surface;
-  const auto add = [&](const char* name, auto*& values, int components)
-  {
-    if (values)
-    {
-      vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
-    }
-  };
-  // VTK would draw lines dark by them.
-  const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
-#define ADD(bit, member, components, name, flag) add(name, s.member, components);
-  vtkMarchingCorrectorsArrays(ADD)
-#undef ADD
-    add("Widening", s.widening, 1);
-  if (areActive)
-  {
-    pointData->SetActiveNormals("Normals");
-  }
-  if (s.iso_value)
-  {
-    const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
-    vtkSPHAddArray(pointData, this->Input.IsoValueName.c_str(),
-      vtkSPHAdoptReal(s.iso_value, 1, s.point_count, asFloat));
   }
 }
 
@@ -275,16 +242,6 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   }
 }
 
-void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
-{
-  vtkSPHAddText(run, "Device", this->Surface.statistics.device);
-  vtkSPHAddText(run, "Platform", this->Surface.statistics.platform);
-  this->AddStatistics(run);
-  this->AddIsoValues(run);
-  this->AddParameters(run);
-  vtkSPHAddRunStatistics(run, this->Surface.statistics);
-}
-
 void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
 {
   auto isoValues = vtkSmartPointer<vtkDoubleArray>::New();
@@ -295,9 +252,11 @@ void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
   vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }
 
-void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
+void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
 {
   const mcor_statistics& s = this->Surface.statistics;
+  vtkSPHAddText(run, "Device", s.device);
+  vtkSPHAddText(run, "Platform", s.platform);
   const bool always = true, is_run = false, is_plane = s.dimension == 2;
   const bool has_scalar = this->Options.field != MCOR_WEIGHT_SUM,
              has_caps = this->Options.capping != 0;
@@ -307,21 +266,23 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 #define STATISTIC(how, when, member, name)                                                         \
   if ((when) && *(name))                                                                           \
   {                                                                                                \
-    vtkSPHAdd(fieldData, name, s.member);                                                          \
+    vtkSPHAdd(run, name, s.member);                                                                \
   }
 #include "mcor_statistics.def"
-  vtkSPHAddReal(
-    fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
+  vtkSPHAddReal(run, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
   if (has_scalar)
   {
-    vtkSPHAddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
+    vtkSPHAddReal(run, "ScalarRange", { s.scalar_min, s.scalar_max });
   }
-  vtkSPHAddCount(fieldData, "Points", { this->Surface.point_count });
-  vtkSPHAddCount(fieldData, "Triangles", { this->Surface.triangle_count });
+  vtkSPHAddCount(run, "Points", { this->Surface.point_count });
+  vtkSPHAddCount(run, "Triangles", { this->Surface.triangle_count });
   if (is_plane)
   {
-    vtkSPHAddCount(fieldData, "Lines", { this->Surface.line_count });
+    vtkSPHAddCount(run, "Lines", { this->Surface.line_count });
   }
+  this->AddIsoValues(run);
+  this->AddParameters(run);
+  vtkSPHAddRunStatistics(run, s);
 }
 
 namespace
@@ -357,18 +318,14 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   const char* const fields[] = { "shepard", "sum", "weight_sum" };
   vtkSPHAddText(fieldData, "Field", fields[o.field]);
   vtkSPHAddText(fieldData, "Scalar", this->Input.ScalarName);
-  AddArrayName(fieldData, "SmoothingLengthArray", this->Input.Core.smoothing_length);
+  AddQuantity(fieldData, "SmoothingLengthArray", nullptr, this->Input.Core.smoothing_length);
   vtkSPHAddCount(fieldData, "SmoothingLengthIsSupportRadius",
     { this->Input.Core.smoothing_length_is_support_radius });
   vtkSPHAddCount(
     fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
-  AddArrayName(fieldData, "VolumeArray", this->Input.Core.volume);
-  if (!this->Input.Core.volume.data && mcor_is_given(&this->Input.Core.volume))
-  {
-    vtkSPHAddReal(fieldData, "ParticleVolume", { this->Input.Core.volume.constant });
-  }
-  AddQuantity(fieldData, "Mass", this->Input.Core.mass);
-  AddQuantity(fieldData, "Density", this->Input.Core.density);
+  AddQuantity(fieldData, "VolumeArray", "ParticleVolume", this->Input.Core.volume);
+  AddQuantity(fieldData, "MassArray", "Mass", this->Input.Core.mass);
+  AddQuantity(fieldData, "DensityArray", "Density", this->Input.Core.density);
   vtkSPHAddText(
     fieldData, "FluidArray", this->Input.Fluid ? this->Input.Choice.FluidArrayName : "");
   if (this->Input.Fluid)
@@ -377,7 +334,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
     vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }
-  // Values in use are statistics, see AddStatistics.
+  // Values in use are statistics, see AddRun.
 #define WORD true
 #define FLAG false
 #define AT_LEAST_0 false

@@ -63,11 +63,9 @@ public:
 
 private:
   bool StoresFloats(int precision) const;
-  void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void ChooseActive(vtkPolyData* output, const vtkSPHMergeRanges& merge) const;
   void AddIsoValues(vtkFieldData* fieldData) const;
-  void AddStatistics(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
   const vtkMarchingCorrectorsInput& Input;

@@ -338,68 +338,61 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   }
 }
 
+// Finds each answer as far as it is known: the range needs no smoothing length, the number of cells
+// no scalar. With several blocks, the iso value is that of the first one.
 vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
+  vtkAhead& next = this->Next;
+  vtkDataObject* data = this->GetParticles();
+  if (!this->IsShared() && data &&
+    std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
+  {
+    return next;
+  }
+  next = {};
   if (this->IsShared())
   {
-    this->Next = {};
-    std::copy_n(this->FluidScalarRange, 2, this->Next.ScalarRange);
-    this->Next.Fluid = this->UsedFluid;
-    this->Next.Cells = this->EstimatedCells;
-    return this->Next;
-  }
-  vtkDataObject* data = this->GetParticles();
-  if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
-  {
-    return this->Next;
+    std::copy_n(this->FluidScalarRange, 2, next.ScalarRange);
+    next.Fluid = this->UsedFluid;
+    next.Cells = this->EstimatedCells;
+    return next;
   }
   mcor_options options;
   this->FillOptions(options);
-  this->Next = {};
-  const bool together = this->TakesTogether();
-  const vtkSmartPointer<vtkDataObject> taken = data ? this->TakeVertices(data) : nullptr;
-  const vtkSmartPointer<vtkPointSet> all = together ? this->JoinParticles(taken) : nullptr;
-  for (vtkPointSet* particles :
-    vtkSPHListPointSets(together ? static_cast<vtkDataObject*>(all) : taken.Get()))
+  vtkSmartPointer<vtkDataObject> taken = data ? this->TakeVertices(data) : nullptr;
+  taken = this->TakesTogether() ? this->JoinParticles(taken).Get() : taken.Get();
+  for (vtkPointSet* particles : vtkSPHListPointSets(taken))
   {
-    this->LookAhead(particles, options);
+    vtkMarchingCorrectorsChoice choice;
+    this->FillChoice(choice, particles);
+    choice.InterpolateAttributes = false;
+    vtkMarchingCorrectorsInput contoured(choice, particles);
+    const bool isJoined = contoured.JoinVelocity() != nullptr;
+    next.Array = !next.Array.empty() ? next.Array
+      : isJoined                     ? "Velocity"
+                                     : vtkSPHChooseArray(particles->GetPointData());
+    double range[2], value;
+    if (!choice.FreeSurface && contoured.CollectContoured() &&
+      mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
+    {
+      const bool isFirst = std::isnan(next.IsoValue);
+      next.ScalarRange[0] = isFirst ? range[0] : std::min(next.ScalarRange[0], range[0]);
+      next.ScalarRange[1] = isFirst ? range[1] : std::max(next.ScalarRange[1], range[1]);
+      next.IsoValue = isFirst ? value : next.IsoValue;
+      next.Components = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
+    }
+    choice.FreeSurface = true;
+    vtkMarchingCorrectorsInput input(choice, particles);
+    if (input.Collect())
+    {
+      next.Dimension = mcor_find_dimension(&input.Core, nullptr, this->Dimension);
+      next.Fluid = input.DescribeFluid();
+      next.Cells +=
+        mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
+    }
   }
   this->LookTime.Modified();
-  return this->Next;
-}
-
-// Finds each answer as far as it is known: the range needs no smoothing length, the number of cells
-// no scalar. With several blocks, the iso value is that of the first one.
-void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
-{
-  vtkAhead& next = this->Next;
-  vtkMarchingCorrectorsChoice choice;
-  this->FillChoice(choice, particles);
-  choice.InterpolateAttributes = false;
-  vtkMarchingCorrectorsInput contoured(choice, particles);
-  const bool isJoined = contoured.JoinVelocity() != nullptr;
-  next.Array = !next.Array.empty() ? next.Array
-    : isJoined                     ? "Velocity"
-                                   : vtkSPHChooseArray(particles->GetPointData());
-  double range[2], value;
-  if (!choice.FreeSurface && contoured.CollectContoured() &&
-    mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
-  {
-    const bool isFirst = std::isnan(next.IsoValue);
-    next.ScalarRange[0] = isFirst ? range[0] : std::min(next.ScalarRange[0], range[0]);
-    next.ScalarRange[1] = isFirst ? range[1] : std::max(next.ScalarRange[1], range[1]);
-    next.IsoValue = isFirst ? value : next.IsoValue;
-    next.Components = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
-  }
-  choice.FreeSurface = true;
-  vtkMarchingCorrectorsInput input(choice, particles);
-  if (input.Collect())
-  {
-    next.Dimension = mcor_find_dimension(&input.Core, nullptr, this->Dimension);
-    next.Fluid = input.DescribeFluid();
-    next.Cells +=
-      mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
-  }
+  return next;
 }
 
 void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,

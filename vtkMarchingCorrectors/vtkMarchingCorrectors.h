@@ -546,7 +546,6 @@ private:
     std::string Fluid, Array;
   };
   vtkAhead& LookAhead();
-  void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);

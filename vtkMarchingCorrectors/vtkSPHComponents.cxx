@@ -242,8 +242,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
     "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles =
-    15; // the other columns are about particles, which may be absent
+  constexpr size_t withoutParticles = 15; // the others are about particles, which may be absent
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
   for (size_t c = 0; c < used; ++c)

@@ -40,12 +40,6 @@ int vtkSPHMeter::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-int vtkSPHMeter::FillOutputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
-  return 1;
-}
-
 // Requests all of both inputs, whatever piece of the table is wanted; if processes share a run, all
 // of the places.
 int vtkSPHMeter::RequestUpdateExtent(

@@ -45,7 +45,23 @@ struct Rectangle
 
   Rectangle(const double box[6], const double origin[3], const double normal[3])
   {
-    this->ChooseAxes(normal);
+    // For a normal along an axis, u and v are the other two axes, in their order.
+    const double size[3] = { std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) };
+    const auto axis = std::min_element(size, size + 3) - size;
+    double unit[3] = { normal[0], normal[1], normal[2] };
+    vtkMath::Normalize(unit);
+    for (int a = 0; a < 3; ++a)
+    {
+      this->U[a] = (a == axis ? 1.0 : 0.0) - unit[axis] * unit[a];
+    }
+    vtkMath::Normalize(this->U);
+    vtkMath::Cross(unit, this->U, this->V);
+    const double* largest = std::max_element(
+      this->V, this->V + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    if (*largest < 0.0)
+    {
+      std::transform(this->V, this->V + 3, this->V, [](double v) { return v == 0.0 ? 0.0 : -v; });
+    }
     std::fill_n(this->Low, 2, std::numeric_limits<double>::infinity());
     std::fill_n(this->High, 2, -std::numeric_limits<double>::infinity());
     double corners[8][3], heights[8];
@@ -80,27 +96,6 @@ struct Rectangle
   bool IsEmpty() const { return this->Low[0] > this->High[0]; }
 
 private:
-  /** For a normal along an axis, u and v are the other two axes, in their order. */
-  void ChooseAxes(const double normal[3])
-  {
-    const double size[3] = { std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) };
-    const auto axis = std::min_element(size, size + 3) - size;
-    double unit[3] = { normal[0], normal[1], normal[2] };
-    vtkMath::Normalize(unit);
-    for (int a = 0; a < 3; ++a)
-    {
-      this->U[a] = (a == axis ? 1.0 : 0.0) - unit[axis] * unit[a];
-    }
-    vtkMath::Normalize(this->U);
-    vtkMath::Cross(unit, this->U, this->V);
-    const double* largest = std::max_element(
-      this->V, this->V + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
-    if (*largest < 0.0)
-    {
-      std::transform(this->V, this->V + 3, this->V, [](double v) { return v == 0.0 ? 0.0 : -v; });
-    }
-  }
-
   void Add(const double x[3])
   {
     const double at[2] = { vtkMath::Dot(x, this->U), vtkMath::Dot(x, this->V) };
@@ -195,37 +190,25 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
 }
 
 // Origin and spacing depend on the particles, and come with the data. Dimensions that follow the
-// shape of the fluid are those of the particles as they are now.
+// shape of the fluid are those of the particles as they are now: cells are about cubes, in one layer
+// if the fluid is flat.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
-  if (this->Shape == VOLUME)
-  {
-    int* d = this->UsedDimensions;
-    std::copy_n(this->Dimensions, 3, d);
-    if (std::min({ d[0], d[1], d[2] }) == 0)
-    {
-      this->ChooseDimensions(vtkDataObject::GetData(inputVector[0]));
-    }
-    info->Set(Pipeline::WHOLE_EXTENT(), 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1);
-    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  }
-  else
+  if (this->Shape != VOLUME)
   {
     info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    return 1;
   }
-  return 1;
-}
-
-// Makes cells that are about cubes; one layer if the fluid is flat.
-void vtkSPHResample::ChooseDimensions(vtkDataObject* data)
-{
+  int* d = this->UsedDimensions;
+  std::copy_n(this->Dimensions, 3, d);
   double bounds[6];
   std::copy_n(this->Bounds, 6, bounds);
-  if (this->FitBounds)
+  const bool isGiven = std::min({ d[0], d[1], d[2] }) > 0;
+  if (!isGiven && this->FitBounds)
   {
-    this->Particles = this->TakeParticlesAhead(data);
+    this->Particles = this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0]));
     const bool isFound = (this->Particles || this->IsShared()) && this->FindBounds(bounds);
     this->Particles = nullptr;
     std::fill_n(bounds, isFound ? 0 : 6, 0.0);
@@ -243,8 +226,11 @@ void vtkSPHResample::ChooseDimensions(vtkDataObject* data)
   {
     const double count = (bounds[2 * a + 1] - bounds[2 * a]) / spacing;
     const int fitting = count > 0.0 ? static_cast<int>(std::min(count, UsualPoints)) + 2 : 1;
-    this->UsedDimensions[a] = this->Dimensions[a] > 0 ? this->Dimensions[a] : fitting;
+    d[a] = d[a] > 0 ? d[a] : fitting;
   }
+  info->Set(Pipeline::WHOLE_EXTENT(), 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1);
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  return 1;
 }
 
 int vtkSPHResample::RequestData(

@@ -103,7 +103,6 @@ private:
   void operator=(const vtkSPHResample&) = delete;
 
   bool FindBounds(double bounds[6]);
-  void ChooseDimensions(vtkDataObject* data);
   vtkSmartPointer<vtkDataSet> MakePoints(const double bounds[6]);
 
   int UsedDimensions[3] = { 1, 1, 1 };

@@ -51,16 +51,6 @@ public:
     return lacking == this->Times.end() ? nullptr : &*lacking;
   }
 
-  void ForgetOthers()
-  {
-    for (auto step = this->Kept.begin(); step != this->Kept.end();)
-    {
-      const bool used =
-        std::find(this->Times.begin(), this->Times.end(), step->first) != this->Times.end();
-      step = used ? std::next(step) : this->Kept.erase(step);
-    }
-  }
-
   double Time = 0.0;                                     // requested time
   std::vector<double> Times;                             // of its step, or of the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
@@ -206,7 +196,12 @@ bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
   {
     steps.Keep(*asked, vtkDataObject::GetData(input));
   }
-  steps.ForgetOthers();
+  for (auto step = steps.Kept.begin(); step != steps.Kept.end();)
+  {
+    const bool isUsed =
+      std::find(steps.Times.begin(), steps.Times.end(), step->first) != steps.Times.end();
+    step = isUsed ? std::next(step) : steps.Kept.erase(step);
+  }
   if (const double* lacking = steps.FirstLacking())
   {
     vtkAlgorithmOutput* from = this->GetInputConnection(0, 0);

@@ -75,12 +75,10 @@ int vtkSPHParticles::FindDimension(const mcor_ranks* ranks, int dimension)
 
 bool vtkSPHParticles::CollectSmoothingLength()
 {
-  this->Core.smoothing_length_is_support_radius =
-    this->Description.SmoothingLengthIsSupportRadius ? 1 : 0;
-  this->Core.estimate_smoothing_length = this->Description.EstimateSmoothingLength ? 1 : 0;
   const vtkSPHParticlesChoice& f = this->Description;
-  if (this->Core.estimate_smoothing_length &&
-    f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS)
+  this->Core.smoothing_length_is_support_radius = f.SmoothingLengthIsSupportRadius ? 1 : 0;
+  this->Core.estimate_smoothing_length = f.EstimateSmoothingLength ? 1 : 0;
+  if (f.EstimateSmoothingLength && f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS)
   {
     if (!this->SmoothingLength) // not from Take()
     {
@@ -96,13 +94,12 @@ bool vtkSPHParticles::CollectSmoothingLength()
       this->SmoothingLength ? this->View(this->SmoothingLength) : mcor_array();
     return this->Error.empty();
   }
-  if (this->Core.estimate_smoothing_length)
+  if (f.EstimateSmoothingLength)
   {
     return true;
   }
-  if (!this->CollectQuantity("smoothing length", this->Description.SmoothingLengthArrayName,
-        this->Description.SmoothingLength, MCOR_SMOOTHING_LENGTH, this->SmoothingLength,
-        this->Core.smoothing_length))
+  if (!this->CollectQuantity("smoothing length", f.SmoothingLengthArrayName, f.SmoothingLength,
+        MCOR_SMOOTHING_LENGTH, this->SmoothingLength, this->Core.smoothing_length))
   {
     return false;
   }

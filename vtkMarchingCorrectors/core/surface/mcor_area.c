@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What triangles give: normals, area and volume [III-D.4].
+/* Normals, area and volume of triangles [III-D.4].
  *
  * Area and volume are of the whole surface, or of parts of it that are added up later. Each term is
  * rounded to a unit in which the sums are exact. The sums are therefore the same to the last bit

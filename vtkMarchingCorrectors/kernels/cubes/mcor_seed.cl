@@ -380,8 +380,9 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   {
     const int m = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_around(d));
     const int state = m < 0 ? MCOR_VOID : states[m];
-    const ulong others = state == MCOR_ABOVE ? ~above[slot] : state == MCOR_BELOW ? above[slot] : 0;
-    if ((mcor_on_sides(d % 3, d / 3 % 3, d / 9) & valid[slot] & others) &&
+    if ((state == MCOR_ABOVE || state == MCOR_BELOW) &&
+      (mcor_on_sides(d % 3, d / 3 % 3, d / 9) & valid[slot] &
+        (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
       mcor_request_brick(brick_bits, m))
     {
       atomic_or(grown, 1);

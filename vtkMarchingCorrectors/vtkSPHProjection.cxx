@@ -100,19 +100,6 @@ int vtkSPHProjection::RequestData(
   return this->Superclass::RequestData(request, inputVector, outputVector);
 }
 
-bool vtkSPHProjection::Collect(vtkSPHParticles& particles, mcor_view& view)
-{
-  vtkPointSet* points = particles.Points;
-  vtkSPHRequest scalar = this->FindRequest(0, points);
-  if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
-  {
-    scalar = { points->GetPointData()->GetAbstractArray(this->ScalarArrayName.c_str()),
-      this->ScalarArrayName, true };
-  }
-  return particles.CollectProjection(
-    scalar, this->ScalarComponent, this->WeightArrayName, view.weight);
-}
-
 // Sums are exact, so each process projects its own particles, and the core adds up the images;
 // only where volumes are computed do particles go to the process that owns their place.
 void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
@@ -126,7 +113,18 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   vtkSPHParticles mine(run->Choose(), run->Own);
   mcor_view view = this->MakeView();
   this->FillOptions(run->Options);
-  const auto collect = [this, &view](vtkSPHParticles& near) { return this->Collect(near, view); };
+  const auto collect = [this, &view](vtkSPHParticles& near)
+  {
+    vtkSPHRequest scalar = this->FindRequest(0, near.Points);
+    if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
+    {
+      vtkPointData* arrays = near.Points->GetPointData();
+      scalar = { arrays->GetAbstractArray(this->ScalarArrayName.c_str()), this->ScalarArrayName,
+        true };
+    }
+    return near.CollectProjection(
+      scalar, this->ScalarComponent, this->WeightArrayName, view.weight);
+  };
   if (!run->Accept(mine, collect, "nothing is seen"))
   {
     return;

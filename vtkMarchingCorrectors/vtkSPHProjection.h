@@ -111,7 +111,6 @@ private:
   void operator=(const vtkSPHProjection&) = delete;
 
   mcor_view MakeView() const;
-  bool Collect(vtkSPHParticles& particles, mcor_view& view);
   void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
 
   int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // asked of this process

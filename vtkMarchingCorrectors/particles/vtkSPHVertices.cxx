@@ -16,7 +16,6 @@
 #include "vtkSPHBlocks.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <cstddef>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -58,29 +57,6 @@ struct Cells
   }
 };
 
-/** For each point the first vertex that uses it, or -1. */
-std::vector<vtkIdType> FindVertices(const Cells& cells, vtkIdType points)
-{
-  std::vector<vtkIdType> found(static_cast<std::size_t>(points), -1);
-  for (vtkIdType cell = 0; cell < cells.List->GetNumberOfCells(); ++cell)
-  {
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    if (!cells.Grid || IsVertex(cells.Grid->GetCellType(cell)))
-    {
-      cells.List->GetCellAtId(cell, count, ids);
-    }
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      if (ids[i] >= 0 && ids[i] < points && found[ids[i]] < 0)
-      {
-        found[ids[i]] = cell;
-      }
-    }
-  }
-  return found;
-}
-
 /** Adds these values of arrays that have `count`, unless there is one of that name. */
 void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkPointData* to)
 {
@@ -111,14 +87,29 @@ vtkSmartPointer<vtkDataObject> TakeOfSet(vtkPointSet* data, bool haveVertices)
   {
     return data;
   }
-  vtkNew<vtkIdList> taken, from; // points, and the vertices whose values are theirs
-  const std::vector<vtkIdType> vertexOf =
-    cells.HasVertices ? FindVertices(cells, count) : std::vector<vtkIdType>();
-  for (std::size_t point = 0; point < vertexOf.size(); ++point)
+  vtkNew<vtkIdList> taken, from;              // points, and the vertices whose values are theirs
+  std::vector<vtkIdType> vertexOf(count, -1); // for each point the first one that uses it
+  for (vtkIdType cell = 0; cells.HasVertices && cell < cells.List->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType corners = 0;
+    const vtkIdType* ids = nullptr;
+    if (!cells.Grid || IsVertex(cells.Grid->GetCellType(cell)))
+    {
+      cells.List->GetCellAtId(cell, corners, ids);
+    }
+    for (vtkIdType i = 0; i < corners; ++i)
+    {
+      if (ids[i] >= 0 && ids[i] < count && vertexOf[ids[i]] < 0)
+      {
+        vertexOf[ids[i]] = cell;
+      }
+    }
+  }
+  for (vtkIdType point = 0; point < count; ++point)
   {
     if (vertexOf[point] >= 0)
     {
-      taken->InsertNextId(static_cast<vtkIdType>(point));
+      taken->InsertNextId(point);
       from->InsertNextId(vertexOf[point]);
     }
   }

@@ -12,26 +12,6 @@
 
 /* ---- Cells ---- */
 
-/* Finds the used ones of the cells that touch finer leaves, and their edges. */
-static mcor_status mcor_find_hanging(mcor_context* context)
-{
-  mcor_adaptive* adaptive = &context->adaptive;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)context->bricks.now.count;
-  const mcor_buffer* owned;
-  cl_int flat = 0;
-  MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
-  MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, n * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
-  MCOR_TRY(mcor_write(context, &adaptive->flat, &flat, sizeof flat));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_hanging", MCOR_MEDIUM, adaptive->count,
-    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain), MCOR_BUFFER(owned),
-    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&adaptive->flat)));
-  MCOR_TRY(mcor_read(context, &adaptive->flat, 0, &flat, sizeof flat));
-  context->run.statistics->flat_loops += flat;
-  return MCOR_OK;
-}
-
 /* Reads element `at` of an array of ints. */
 static mcor_status mcor_read_int(
   mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
@@ -43,6 +23,7 @@ static mcor_status mcor_read_int(
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
+  mcor_adaptive* adaptive = &context->adaptive;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->run.statistics;
   const size_t n = (size_t)bricks->now.count;
@@ -54,7 +35,21 @@ static mcor_status mcor_find_used(mcor_context* context)
   MCOR_TRY(mcor_clip_near(context, &mesh->used));
   MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(context->adaptive.count > 0 ? mcor_find_hanging(context) : MCOR_OK);
+  if (adaptive->count > 0) /* cells that touch finer leaves, and their edges */
+  {
+    const mcor_buffer* owned;
+    cl_int flat = 0;
+    MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
+    MCOR_TRY(
+      mcor_fill(context, &adaptive->quadrants, 0, n * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
+    MCOR_TRY(mcor_write(context, &adaptive->flat, &flat, sizeof flat));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_hanging", MCOR_MEDIUM, adaptive->count,
+      MCOR_LEAF_ARGS(context), MCOR_BUFFER(&bricks->plain), MCOR_BUFFER(owned),
+      MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->used),
+      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat)));
+    MCOR_TRY(mcor_read(context, &adaptive->flat, 0, &flat, sizeof flat));
+    s->flat_loops += flat;
+  }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->plain),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used),

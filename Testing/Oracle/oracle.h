@@ -78,7 +78,7 @@ extern "C"
   /* One more particle; the arrays grow where they lack room. */
   void particle_set_add(
     particle_set* set, const double x[3], double h, double volume, double scalar);
-  /* The same as particle i of `from`, which may be the set itself. */
+  /* Adds particle i of `from`, which may be the set itself. */
   void particle_set_append(particle_set* set, const particle_set* from, int64_t i);
 
   double oracle_scalar_range(const particle_set* particles); /* over fluid particles */

@@ -251,7 +251,7 @@ static void lattice_link_cell(
   }
 }
 
-/* Of the cell that comes next. */
+/* The segment is one of the cell that comes next. */
 static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t to, int certain)
 {
   lattice->segments = oracle_grow(

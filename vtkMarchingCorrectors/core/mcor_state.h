@@ -257,7 +257,8 @@ enum
 /* The cells that a call owns, see mcor_box.c. */
 typedef struct mcor_box
 {
-  bool is_part, is_empty; /* is_part: not all cells of the lattice are owned, or there is a period; is_empty: none is */
+  /* is_part: not all cells of the lattice are owned, or there is a period; is_empty: none is. */
+  bool is_part, is_empty;
   int ring;               /* cells around the owned ones that are examined, too */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
   int

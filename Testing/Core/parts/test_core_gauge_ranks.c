@@ -188,7 +188,7 @@ static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
   return same;
 }
 
-/* What any number of ranks read is what one process reads. */
+/* Any number of ranks read the same as one process. */
 static void check_ranks(mcor_context* context, gauge_job* job, int kind)
 {
   const mcor_gauges* gauges = &job->gauges[CORE_MOST_RANKS];

@@ -104,7 +104,7 @@ static int compare_within_rounding(const compare_state* state, const lattice_nod
     oracle_rounding(&reference->field, p, reference->unit);
 }
 
-/* What a vertex that no open edge is left for lies on: a node, or an edge of any size. */
+/* A vertex that no open edge is left for lies on a node, or on an edge of any size. */
 typedef struct compare_place
 {
   int taken; /* a crossed edge that has its vertices */
@@ -314,7 +314,7 @@ static int64_t compare_edge_of(const compare_state* state, int32_t vertex)
   return edge >= 0 && edge / 3 < state->reference->lattice.edge_count ? edge / 3 : -1;
 }
 
-/* What the map of pairs says of two edges; -1: nothing. */
+/* Returns the value that the map of pairs has for two edges; -1: none. */
 static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
 {
   const int64_t pair[3] = { a < b ? a : b, a < b ? b : a, 0 };

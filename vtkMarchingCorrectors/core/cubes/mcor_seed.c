@@ -57,9 +57,9 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 }
 
 /* Requests the bricks that the regions leave uncertain, whose cells are the seeds, and lists these
- * regions. Places these bricks, and all bricks that are known from earlier iso values. Finds states of
- * the uncertain bricks, and evaluates most of them. In a plane, finds no states: bounds on bricks cost
- * more than their few nodes. */
+ * regions. Places these bricks, and all bricks that are known from earlier iso values. Finds states
+ * of the uncertain bricks, and evaluates most of them. In a plane, finds no states: bounds on
+ * bricks cost more than their few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

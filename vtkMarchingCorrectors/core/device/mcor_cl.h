@@ -93,7 +93,7 @@ typedef struct mcor_cl
     used_before; /* used_peak: bytes without kept buffers; used_before: that of the last call */
   double build_seconds;   /* in the call under way */
   mcor_observer observer; /* of the call under way; NULL: none */
-  double terms;           /* terms in the sum at a point, about; for mcor_is_cut */
+  double terms;           /* terms in the sum at a point, about; for mcor_enqueue_cut */
   bool compiles; /* the driver compiles at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
 } mcor_cl;

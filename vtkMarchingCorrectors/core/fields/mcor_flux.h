@@ -53,7 +53,7 @@ typedef struct mcor_flux_piece
   bool unclear;        /* the level may cross it in a way that its corners do not show */
   double corner[3][2]; /* u, v */
   double area;         /* of the cell's piece that this one came from */
-  double factor;       /* multiplies the integrals; 1 but for bulges, see mcor_append_bulge */
+  double factor;       /* multiplies the integrals; 1 but for bulges, see mcor_append_bulges */
   double bulge;        /* area between the level and the chord */
   double sum[MCOR_FLUX_SUMS]; /* over the part in fluid */
 } mcor_flux_piece;

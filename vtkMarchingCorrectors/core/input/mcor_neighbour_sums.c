@@ -20,8 +20,8 @@
 #define MCOR_LEAF 8 /* particles */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* of a length; of the extent, the least length */
-/* The extent reaches at most so many widths of the middle half of the particles beyond that half: one
- * particle that has left all others far behind would leave no digits for them. */
+/* The extent reaches at most so many widths of the middle half of the particles beyond that half:
+ * one particle that has left all others far behind would leave no digits for them. */
 #define MCOR_MOST_WIDTHS 1000.0
 #define MCOR_WIDTH_SAMPLE 4096 /* particles, about */
 

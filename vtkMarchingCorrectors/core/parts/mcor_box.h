@@ -83,8 +83,8 @@ static inline int mcor_level_ring(int ring)
 mcor_status mcor_void_cubes(mcor_context* context);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction. Keeps, of the marched bricks' cells, those of the box and its ring: beyond it the device
- * lacks particles, or has images of some. */
+/* Extraction. Keeps, of the marched bricks' cells, those of the box and its ring: beyond it the
+ * device lacks particles, or has images of some. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* Finds the owned ones among any cells, and counts those of them that are in other masks. */
 mcor_status mcor_find_owned(

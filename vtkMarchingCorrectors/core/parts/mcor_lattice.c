@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The virtual grid [III-B], and periodic boxes: one period, which images of the particles reach, see
- * mcor_box.c. */
+/* The virtual grid [III-B], and periodic boxes: one period, which images of the particles reach,
+ * see mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"

@@ -575,13 +575,18 @@ static void test_bad_input(void** state)
   }
   /* Nothing, and nothing in a box; solids and particles that do not count. */
   mcor_input input = input_of(&set);
-  const mcor_options options = project_options(MCOR_CUBIC_SPLINE);
+  mcor_options options = project_options(MCOR_CUBIC_SPLINE);
   mcor_view view = { .resolution = 8 };
   mcor_projection found;
   memset(set.solid, 1, 27);
   input.solid = set.solid;
-  CORE_OK(*state, mcor_project(*state, &input, &options, &view, &found));
-  assert_true(!found.values && found.size[0] == 0);
+  for (int side = 1; side < 8; side += 2) /* of a period along x, y and z; none */
+  {
+    memset(options.periodic, 0, sizeof options.periodic);
+    options.periodic[side % 7] = side < 7 ? 4 : 0;
+    CORE_OK(*state, mcor_project(*state, &input, &options, &view, &found));
+    assert_true(!found.values && found.size[0] == 0);
+  }
   input.count = 0;
   view.box[1] = view.box[3] = view.box[5] = 4;
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &found));

@@ -275,6 +275,39 @@ static void test_far_away(void** state)
   }
 }
 
+/* A body far beyond a corner of all others is as it is alone, in any order of the input. */
+static void test_far_body(void** state)
+{
+  (void)state;
+  enum
+  {
+    BODY = 100,
+    N = 5 * BODY
+  };
+  char* why;
+  double at[3 * N], turned[3 * N], lengths[3][N];
+  uint64_t seed = 9;
+  const mcor_options options = core_options(NULL);
+  for (int i = 0; i < 3 * N; ++i)
+  {
+    at[i] = random_unit(&seed) + (i < 3 * BODY ? 5000 : 0);
+    turned[3 * (N - 1 - i / 3) + i % 3] = at[i];
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    const mcor_input input = { .count = k == 0 ? BODY : N,
+      .positions = core_array(k == 2 ? turned : at, 3) };
+    assert_int_equal(
+      mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[k], &why), MCOR_OK);
+  }
+  for (int i = 0; i < N; ++i)
+  {
+    CORE_CHECK(i >= BODY || fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, "h %g, not %g",
+      lengths[1][i], lengths[0][i]);
+    assert_true(lengths[2][N - 1 - i] == lengths[1][i]);
+  }
+}
+
 static void expect_refusal(mcor_status status, mcor_status expected, char** why, const char* words)
 {
   CORE_CHECK(status == expected && *why && strstr(*why, words), "%d: %s", (int)status, *why);
@@ -323,6 +356,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_plummer),
     cmocka_unit_test(test_far_beyond_period), cmocka_unit_test(test_far_away),
-    cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_far_body), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -176,7 +176,7 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   const double extent[2] = { to[0] - from[0], to[1] - from[1] };
   *is_empty = !(extent[0] > 0 && extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]));
   const int longer = extent[1] > extent[0];
-  MCOR_RETURN_IF(!is_given && extent[longer] > MCOR_MOST_LENGTHS * high[6], context,
+  MCOR_RETURN_IF(!is_given && high[6] > 0 && extent[longer] > MCOR_MOST_LENGTHS * high[6], context,
     MCOR_INVALID_DATA,
     "The particles reach over %g in the image, %.3g times the largest smoothing length. Leave out "
     "those that are far away by a range of positions, or give a box.",

@@ -65,27 +65,39 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 
 /* ---- The tree ---- */
 
-/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at
- * one place have any order that does not depend on that of the input. */
-static int mcor_compare_neighbours(const void* a, const void* b)
+/* Compares along the curve: by the axis with the highest bit in which places differ. */
+static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
 {
-  const mcor_neighbour *p = a, *q = b;
   uint64_t most = 0;
   int axis = 0;
   for (int i = 0; i < 3; ++i)
   {
-    const uint64_t differs = p->place[i] ^ q->place[i];
+    const uint64_t differs = p[i] ^ q[i];
     if (most < differs && most < (most ^ differs))
     {
       most = differs;
       axis = i;
     }
   }
-  if (most > 0)
+  return most == 0 ? 0 : p[axis] < q[axis] ? -1 : 1;
+}
+
+/* Particles at one place, as all are that lie beyond a corner of the extent, are compared along the
+ * curve of their coordinates' bits, which grow as the numbers do. Those left have any order that
+ * does not depend on that of the input. */
+static int mcor_compare_neighbours(const void* a, const void* b)
+{
+  const mcor_neighbour *p = a, *q = b;
+  uint64_t bits[2][3];
+  int order = mcor_compare_places(p->place, q->place);
+  for (int i = 0; i < 6 && order == 0; ++i)
   {
-    return p->place[axis] < q->place[axis] ? -1 : 1;
+    uint64_t* to = &bits[i / 3][i % 3];
+    memcpy(to, (i < 3 ? p : q)->x + i % 3, sizeof *to);
+    *to = *to >> 63 ? ~*to : *to | UINT64_C(1) << 63;
   }
-  return memcmp(p, q, offsetof(mcor_neighbour, place));
+  order = order == 0 ? mcor_compare_places(bits[0], bits[1]) : order;
+  return order == 0 ? memcmp(p, q, offsetof(mcor_neighbour, place)) : order;
 }
 
 /* Quartiles are those of the particles with the least hashes, whatever the order of the input. */

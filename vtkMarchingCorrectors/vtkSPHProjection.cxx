@@ -137,9 +137,7 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  const std::string name = mine.Core.scalar.data ? mine.Interpolated[0].Name
-    : view.weight.data                           ? "Density"
-                                                 : "ColumnDensity";
+  const std::string name = mine.Core.scalar.data ? mine.Interpolated[0].Name : "ColumnDensity";
   vtkSPHParticles* input = &mine;
   if (computes)
   {

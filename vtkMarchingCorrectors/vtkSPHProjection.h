@@ -12,8 +12,8 @@
  * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
  * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
  * over the lines of sight, which needs masses, or densities and volumes. Otherwise the array has
- * the scalar's name. With WeightArrayName it is the mean of the scalar along the line of sight, of
- * the density "Density"; NaN where there is nothing.
+ * the scalar's name. With WeightArrayName it is the mean of the scalar along the line of sight; NaN
+ * where there is nothing.
  *
  * One looks along Direction: by default along the constant axis of particles in a plane, else along
  * z. Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower

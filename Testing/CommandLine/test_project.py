@@ -64,7 +64,7 @@ class Project(CommandLineTest):
         values = self.project("--project", "z", "--scalar", "Radius", "--weighted-by", "Mass", "--box=-2,2,-2,2,-2,2", "--resolution", "20")[3]
         self.assertTrue(math.isnan(values[0]))
         name, *_, values = self.project("--project", "z", "--weighted-by", "Mass", "--box=-.2,.2,-.2,.2,-2,2", "--resolution", "5")
-        self.assertEqual(name, "Density")
+        self.assertEqual(name, "ColumnDensity")
         self.assertAlmostEqual(values[12], 1000, delta=1e-6)
         self.assertAlmostEqual(self.mass("--project", "z", "--periodic", "1,1,1", "--resolution", "32"), 1000, delta=1e-6)
         self.assertAlmostEqual(self.mass("--project", "z", "--box=-2,2,-2,2,-1,0", "--resolution", "40"), 500, delta=1e-3)

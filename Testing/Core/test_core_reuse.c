@@ -403,9 +403,32 @@ static void test_release(void** state)
   end_call(&call);
 }
 
+/* Globals are parameters, too. */
+static void test_globals(void** state)
+{
+  reuse_call call;
+  mcor_globals globals;
+  start_call(&call);
+  set_base(&call, REUSE_MASS_ONLY);
+  call.options.wall_share = MCOR_WALL_SHARE_MEASURED;
+  CORE_OK(*state, mcor_measure_globals(*state, &call.input, &call.options, &globals));
+  call.options.globals = &globals;
+  uint64_t last = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    globals.measured.wall_share = k == 1 ? 0.3 : 0.6;
+    const uint64_t hash = hash_of(*state, &call, "wall share");
+    CORE_CHECK(hash == fresh_hash(&call, "fresh") && hash != last, "wall share %d", k);
+    last = hash;
+  }
+  mcor_free_globals(&globals);
+  end_call(&call);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_one_change_at_a_time),
-    cmocka_unit_test(test_failed_calls), cmocka_unit_test(test_release) };
+    cmocka_unit_test(test_failed_calls), cmocka_unit_test(test_release),
+    cmocka_unit_test(test_globals) };
   return cmocka_run_group_tests_name("reuse", tests, core_set_up, core_tear_down);
 }

@@ -229,6 +229,56 @@ static void test_surface(void** state)
   }
 }
 
+/* Boxes have the factors of the whole, which do not depend on where a period begins. */
+static void test_parts(void** state)
+{
+  mcor_context* context = *state;
+  const double iso = 0.5;
+  CORE_SET set = make_scene(8, 0.24, 5);
+  CORE_SET moved = make_scene(8, 0.24, 5);
+  const mcor_input input = core_input(&set), other = core_input(&moved);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.widen = WIDEST;
+  for (int periodic = 0; periodic < 2; ++periodic)
+  {
+    for (int a = 0; a < 3 && periodic; ++a)
+    {
+      options.periodic[2 * a] = -2.25;
+      options.periodic[2 * a + 1] = a == 1 ? 38 : 16 + 2 * a;
+    }
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      const double* side = options.periodic + i % 3 * 2;
+      moved.position[i] = set.position[i] + 0.5 * (side[1] - side[0]);
+    }
+    mcor_globals globals;
+    CORE_WIDENING whole, shifted;
+    CORE_OK(context, mcor_widen(context, &input, &options, &whole));
+    CORE_OK(context, mcor_widen(context, &other, &options, &shifted));
+    CORE_OK(context, mcor_measure_probe_globals(context, &input, &options, &globals));
+    for (int side = 0; side < 2; ++side)
+    {
+      const double box[6] = { side ? 4.1 : -INFINITY, side ? INFINITY : 4.1, -INFINITY, INFINITY,
+        -INFINITY, INFINITY };
+      mcor_options part = options;
+      part.globals = &globals;
+      memcpy(part.box, box, sizeof box);
+      CORE_WIDENING w;
+      CORE_OK(context, mcor_widen(context, &input, &part, &w));
+      for (int64_t j = 0; j < set.count - 20; ++j) /* without the thread and the drops */
+      {
+        const double x = set.position[3 * j];
+        CORE_CHECK(x < box[0] + 0.6 || x > box[1] - 0.6 || w.factor[j] == whole.factor[j],
+          "particle %lld at %g: %g, not %g", (long long)j, x, w.factor[j], whole.factor[j]);
+        CORE_CHECK(fabs(shifted.factor[j] - whole.factor[j]) < 2e-4,
+          "particle %lld moves from %g to %g", (long long)j, whole.factor[j], shifted.factor[j]);
+      }
+    }
+    mcor_free_globals(&globals);
+  }
+}
+
 /* Cubes follow the lengths themselves; and a call with the same particles has the same result, whatever is kept. */
 static void test_levels_and_reuse(void** state)
 {
@@ -285,7 +335,7 @@ static void test_refused(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_factors),
-    cmocka_unit_test(test_surface), cmocka_unit_test(test_levels_and_reuse),
-    cmocka_unit_test(test_refused) };
+    cmocka_unit_test(test_surface), cmocka_unit_test(test_parts),
+    cmocka_unit_test(test_levels_and_reuse), cmocka_unit_test(test_refused) };
   return cmocka_run_group_tests_name("widen", tests, core_set_up, core_tear_down);
 }

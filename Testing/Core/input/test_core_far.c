@@ -5,7 +5,7 @@
  * not stop a run: with a box, or at points, they do not matter; else a few of them are left out, with a warning. */
 
 #include "core_fixture.h"
-#include "mcor_parallel.h"
+#include "mcor_input.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -122,6 +122,84 @@ static void test_absent(void** state)
   check_same(*state, &block, &set, input_without_solids, &options);
 }
 
+static int compare_hashes(const void* a, const void* b)
+{
+  const uint64_t *p = a, *q = b;
+  return (p[0] > q[0]) - (p[0] < q[0]);
+}
+
+/* Medians are those of the 32 fluid particles with the least hashes. Those absent are sampled by nothing. */
+static void test_measures(void** state)
+{
+  enum
+  {
+    WATCHED = 32,
+    N = 32 * 32 * 32
+  };
+  const double iso = 0;
+  CORE_SET set = core_make_block(32, 0.2, 3, core_ball);
+  CORE_FREED uint64_t(*hash)[2] = malloc(N * sizeof *hash);
+  assert_true(hash && set.count >= 4 * MCOR_HEAVY_GRAIN);
+  for (int way = 0; way < 4; ++way)
+  {
+    const bool ignored = way & 1, estimated = way & 2;
+    CORE_SET present = particle_set_make(N);
+    int fluid = 0;
+    present.count = 0;
+    for (int64_t i = 0; i < N; ++i)
+    {
+      set.smoothing_length[i] = 1.2 + 0.1 * (double)(i % 3);
+      set.solid[i] = i % 11 == 0 ? MCOR_ABSENT : i % 3 == 0;
+      hash[fluid][0] = mcor_hash_position(set.position + 3 * i);
+      hash[fluid][1] = (uint64_t)i;
+      fluid += set.solid[i] == 0;
+      set.solid[i] != MCOR_ABSENT ? particle_set_append(&present, &set, i) : (void)0;
+    }
+    qsort(hash, (size_t)fluid, sizeof *hash, compare_hashes);
+    mcor_measure measured[2];
+    for (int k = 0; k < 2; ++k)
+    {
+      mcor_input input = input_with_solids(k ? &present : &set);
+      mcor_options options = core_options(&iso);
+      options.wall_share = MCOR_WALL_SHARE_MEASURED;
+      input.ignore_solids = ignored;
+      input.estimate_smoothing_length = estimated;
+      mcor_globals globals;
+      CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+      measured[k] = globals.measured;
+      mcor_free_globals(&globals);
+    }
+    const mcor_measure *m = &measured[0], *same = &measured[1];
+    assert_true(m->h_estimate == same->h_estimate && m->wall_share == same->wall_share);
+    CORE_CHECK((m->h_estimate > 0) == estimated && (m->wall_share > 0) == !ignored,
+      "way %d: h %g, wall share %g", way, m->h_estimate, m->wall_share);
+    double count[WATCHED], spacing[WATCHED], h[WATCHED];
+    for (int s = 0; s < WATCHED; ++s)
+    {
+      const double* x = set.position + 3 * hash[s][1];
+      double nearest = INFINITY;
+      count[s] = 0;
+      h[s] = estimated ? m->h_estimate : set.smoothing_length[hash[s][1]];
+      for (int64_t i = 0; i < N; ++i)
+      {
+        const double *at = set.position + 3 * i,
+                     d[3] = { at[0] - x[0], at[1] - x[1], at[2] - x[2] };
+        const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (set.solid[i] == 0 || (set.solid[i] == 1 && !ignored))
+        {
+          count[s] += square < 4 * h[s] * h[s];
+          nearest = square > 0 ? fmin(nearest, square) : nearest;
+        }
+      }
+      spacing[s] = sqrt(nearest);
+    }
+    CORE_CHECK(m->neighbours == mcor_median_of(count, WATCHED) &&
+        fabs(m->spacing / mcor_median_of(spacing, WATCHED) - 1) < 1e-12 &&
+        m->h_median == mcor_median_of(h, WATCHED),
+      "way %d: %g neighbours, spacing %g, h %g", way, m->neighbours, m->spacing, m->h_median);
+  }
+}
+
 /* `far` particles at great distances behind the block, else like its first one. */
 static particle_set add_far(const particle_set* block, int far)
 {
@@ -186,6 +264,18 @@ static void test_region(void** state)
   {
     options.widen = widest;
     check_same(*state, &block, &set, core_input, &options);
+  }
+  options.box[0] =
+    3; /* volumes, and sums, at particles that reach it are made of some that do not */
+  for (int widest = 0; widest <= 4; ++widest)
+  {
+    const mcor_input one = widest == 0 ? input_of_masses(&block) : near,
+                     other = widest == 0 ? input_of_masses(&set) : input;
+    options.widen = widest == 0 ? 1 : widest;
+    CORE_SURFACE expected = core_extract(*state, &one, &options);
+    CORE_SURFACE surface = core_extract(*state, &other, &options);
+    CORE_CHECK(surface.triangle_count > 0 && core_hash(&surface) == core_hash(&expected),
+      "widened by %d", widest);
   }
   options.widen = 1;
   options.periodic[0] = -5; /* images reach the box from there */
@@ -264,7 +354,8 @@ static void test_zoom(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_absent), cmocka_unit_test(test_few),
-    cmocka_unit_test(test_region), cmocka_unit_test(test_zoom) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_absent),
+    cmocka_unit_test(test_measures), cmocka_unit_test(test_few), cmocka_unit_test(test_region),
+    cmocka_unit_test(test_zoom) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -4,6 +4,7 @@
 /* Normals by triangles, attributes and nearest particles; the oracle compares normals by the field, and gradients. */
 
 #include "core_fixture.h"
+#include "mcor_parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -193,9 +194,42 @@ static void test_nearest(void** state)
   check_nearest(*state, 4, 0);
 }
 
+/* The greatest terms are found wherever they are among slices. */
+static void test_greatest_terms(void** state)
+{
+  (void)state;
+  enum
+  {
+    N = 4 * MCOR_HEAVY_GRAIN
+  };
+  double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 100, 3 };
+  CORE_FREED int32_t* triangles = oracle_allocate(3 * N, sizeof *triangles);
+  const mcor_surface surface = {
+    .points = points, .point_count = 4, .triangles = triangles, .triangle_count = N
+  };
+  mcor_measures none = { 0 }, found;
+  for (int64_t large = -1; large < N; large += N / 2)
+  {
+    for (int64_t t = 0; t < N; ++t)
+    {
+      triangles[3 * t + 1] = 1;
+      triangles[3 * t + 2] = t == large ? 3 : 2;
+    }
+    found = (mcor_measures){ .origin = { 1, 1, 1 } };
+    mcor_measure_terms(&surface, &found);
+    none = large < 0 ? found : none;
+    CORE_CHECK(large < 0 ||
+        (found.area_most > 50 * none.area_most && found.volume_most > 50 * none.volume_most),
+      "%g %g", found.area_most, found.volume_most);
+    mcor_measure_sums(&surface, NULL, &found);
+    CORE_CHECK(fabs(found.area - 0.5 * N - (large < 0 ? 0 : 49.5)) < 0.1, "area %g", found.area);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_triangle_normals),
-    cmocka_unit_test(test_attributes), cmocka_unit_test(test_nearest) };
+    cmocka_unit_test(test_attributes), cmocka_unit_test(test_nearest),
+    cmocka_unit_test(test_greatest_terms) };
   return cmocka_run_group_tests_name("normal", tests, core_set_up, core_tear_down);
 }

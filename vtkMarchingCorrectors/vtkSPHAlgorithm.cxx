@@ -116,6 +116,15 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
+// By its name alone, VTK 9.1 makes no vtkPointSet.
+vtkSmartPointer<vtkDataObject> vtkSPHAlgorithm::NewOutput(
+  const std::string& className, vtkDataObject* like)
+{
+  const bool isLike = like && className == like->GetClassName();
+  return vtkSmartPointer<vtkDataObject>::Take(
+    isLike ? like->NewInstance() : vtkDataObjectTypes::NewDataObject(className.c_str()));
+}
+
 // Makes an output of the class that suits the input; blocks of that class if the input has blocks.
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
@@ -133,8 +142,7 @@ vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
     : this->GetOutputClassName(isTree || !input ? "vtkPolyData" : input->GetClassName());
   if (!output || name != output->GetClassName())
   {
-    auto made = vtkSmartPointer<vtkDataObject>::Take(
-      blocks ? input->NewInstance() : vtkDataObjectTypes::NewDataObject(name.c_str()));
+    const auto made = NewOutput(name, input);
     outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
   }
   return 1;

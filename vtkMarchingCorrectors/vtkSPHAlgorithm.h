@@ -608,6 +608,9 @@ private:
   vtkSPHAlgorithm(const vtkSPHAlgorithm&) = delete;
   void operator=(const vtkSPHAlgorithm&) = delete;
 
+  /** Makes a data object of this class, which may be that of another one. */
+  static vtkSmartPointer<vtkDataObject> NewOutput(
+    const std::string& className, vtkDataObject* like);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   void ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output);

@@ -6,7 +6,6 @@
 
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
-#include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
@@ -70,8 +69,7 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
     this->SetProgressShiftScale(static_cast<double>(i) * share, share);
     this->BlockName = names[i] + ": ";
     vtkDataObject* block = taken[i];
-    auto made = vtkSmartPointer<vtkDataObject>::Take(
-      vtkDataObjectTypes::NewDataObject(this->GetOutputClassName(block->GetClassName())));
+    const auto made = NewOutput(this->GetOutputClassName(block->GetClassName()), block);
     made->GetFieldData()->PassData(block->GetFieldData());
     this->Process(block, made);
     output->SetDataSetFrom(iterator, made);

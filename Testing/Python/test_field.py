@@ -7,7 +7,7 @@ import unittest
 
 import numpy
 from vtkmodules.vtkCommonDataModel import (
-    VTK_TRIANGLE, VTK_VERTEX, vtkImageData, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid)
+    VTK_TRIANGLE, VTK_VERTEX, vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
@@ -263,6 +263,18 @@ class TestProbe(unittest.TestCase):
             results.append([values_of(found, name).tobytes() for name in ("WeightSum", "Velocity")])
             self.assertEqual(set(values_of(found, "vtkValidPointMask")), {0, 1})
         self.assertTrue(results[0] == results[1])
+
+    def test_point_sets(self):
+        """What VTK 9.1 cannot make by its name: points without a class of cells, alone and as a block."""
+        points = vtkPointSet()
+        points.ShallowCopy(self.make().GetSource())
+        for filter_ in (self.make(), vtkSPHDerivatives()):
+            filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Velocity")
+            expected = bytes_of(run(filter_, self.make().GetSource())[0])
+            blocks, _ = run(filter_, blocks_of(points), Blocks=vtkSPHProbe.APART)
+            for found in (run(filter_, points)[0], blocks.GetBlock(0)):
+                self.assertEqual(found.GetClassName(), "vtkPointSet")
+                self.assertTrue(bytes_of(found) == expected)
 
     def test_changed_arrays(self):
         """Arrays that a probe keeps are not taken for others."""

@@ -468,7 +468,7 @@ class Program(unittest.TestCase):
         self.check_fails(picture, "--screenshot")
 
     def test_components(self):
-        """The table of pieces, and the numbers that points have, are those of one process, byte for byte."""
+        """The table of pieces, and the surface with their numbers, are those of one process, byte for byte."""
         walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping"]
         for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
                                (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),
@@ -483,11 +483,7 @@ class Program(unittest.TestCase):
             table[1] = self.path("ranks.csv")
             self.assertIn(line, self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *table)).stdout.splitlines())
             self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
-            ranks = read(self.path("ranks.vtp"))
-            np.testing.assert_array_equal(corners(whole), corners(ranks))
-            for data in (lambda surface: surface.GetPointData(), lambda surface: surface.GetCellData()):
-                np.testing.assert_array_equal(vtk_to_numpy(data(whole).GetArray("ComponentId")),
-                                              vtk_to_numpy(data(ranks).GetArray("ComponentId")))
+            self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False))
             self.good(self.run_ranks(pieces, self.path("out.pvtp"), *table))
             self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
             self.assertEqual(difference(read(self.path("out.pvtp")), whole), "")

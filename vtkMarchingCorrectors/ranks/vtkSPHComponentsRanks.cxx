@@ -69,9 +69,9 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
   cells->SetData(3, wholeCorners);
   whole->SetPolys(cells);
   arrays.pop_back();
-  for (const auto& array : arrays)
+  for (int i = 0; i < static_cast<int>(arrays.size()); ++i)
   {
-    whole->GetCellData()->AddArray(array);
+    vtkSPHAddLike(arrays[i], own->GetCellData(), i, whole->GetCellData());
   }
   whole->GetFieldData()->ShallowCopy(part->GetFieldData());
   return ranks.GetRank() == 0 ? whole : nullptr;

@@ -98,6 +98,17 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points)
   return arrays;
 }
 
+void vtkSPHAddLike(
+  vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to)
+{
+  const int at = to->AddArray(array);
+  const int attribute = like->IsArrayAnAttribute(i);
+  if (attribute >= 0)
+  {
+    to->SetActiveAttribute(at, attribute);
+  }
+}
+
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like)
 {
   auto made = vtkSmartPointer<vtkPolyData>::New();
@@ -106,12 +117,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
   made->SetPoints(points);
   for (int i = 0; i + 1 < static_cast<int>(arrays.size()); ++i)
   {
-    const int at = made->GetPointData()->AddArray(arrays[static_cast<std::size_t>(i) + 1]);
-    const int attribute = like->GetPointData()->IsArrayAnAttribute(i);
-    if (attribute >= 0)
-    {
-      made->GetPointData()->SetActiveAttribute(at, attribute);
-    }
+    vtkSPHAddLike(arrays[i + 1], like->GetPointData(), i, made->GetPointData());
   }
   return made;
 }

@@ -27,10 +27,10 @@ using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
 vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data);
 /** Lists the positions, then the point arrays. */
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
-/**
- * Makes points of such arrays; each array gets the role (scalars, vectors, ...) that it has in
- * `like`.
- */
+/** Adds an array, which gets the role (scalars, vectors, ...) that array i has in `like`. */
+void vtkSPHAddLike(
+  vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to);
+/** Makes points of such arrays, with the roles that they have in `like`. */
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 
 /**

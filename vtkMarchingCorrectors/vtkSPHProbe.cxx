@@ -426,25 +426,33 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   {
     probed->ShallowCopy(points);
     vtkSPHAddArrays(found, probed->GetPointData());
-    this->FinishOutput(probed);
   }
+  FinishOutput(*run, points ? probed : nullptr);
 }
 
-// Makes the best array active. The values of the particles decide: points that are not valid have a
+// Makes the best array active. The values of all particles decide: points that are not valid have a
 // value of their own.
-void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
+void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
 {
-  vtkNew<vtkPointData> found;
-  vtkPointData* from = this->Particles ? this->Particles->GetPointData() : nullptr;
-  for (int i = 0; from && i < from->GetNumberOfArrays(); ++i)
+  vtkPointData* from = run.Own->GetPointData();
+  std::vector<std::int64_t> uses(from->GetNumberOfArrays(), 0); // by processes
+  for (int i = 0; output && i < from->GetNumberOfArrays(); ++i)
   {
-    if (from->GetArray(i) && output->GetPointData()->HasArray(from->GetArrayName(i)))
+    const bool isUsed =
+      from->GetArray(i) && output->GetPointData()->HasArray(from->GetArrayName(i));
+    uses[i] = isUsed ? 1 : 0;
+  }
+  run.Sum(uses.data(), from->GetNumberOfArrays());
+  vtkNew<vtkPointData> found;
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    if (uses[i] > 0)
     {
       found->AddArray(from->GetArray(i));
     }
   }
-  const std::string best = vtkSPHChooseArray(found);
-  if (!best.empty())
+  const std::string best = vtkSPHChooseArray(found, run.MergeRanges());
+  if (output && output->GetPointData()->HasArray(best.c_str()))
   {
     output->GetPointData()->SetActiveScalars(best.c_str());
   }

@@ -111,7 +111,7 @@ private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
   void operator=(const vtkSPHProbe&) = delete;
 
-  void FinishOutput(vtkDataSet* output) const;
+  static void FinishOutput(vtkRun& run, vtkDataSet* output);
 };
 VTK_ABI_NAMESPACE_END
 

@@ -127,9 +127,11 @@ bool vtkSPHAlgorithm::vtkRun::Accept(
   std::int64_t fluid = particles.FluidCount;
   this->Sum(&fluid, 1);
   this->HasFluid = fluid > 0;
+  const auto gather = [this](const std::vector<double>& mine) { return this->Gather(mine); };
+  const std::string unused = this->HasFluid ? particles.DescribeUnusedType(gather) : "";
   if (this->IsFirst() && this->HasFluid)
   {
-    this->Filter->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+    this->Filter->WarnOnce(WARN_TYPE_ARRAY, unused);
   }
   else if (this->IsFirst())
   {

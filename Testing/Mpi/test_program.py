@@ -565,6 +565,22 @@ class Program(unittest.TestCase):
         self.check_same("slice.vti", PARTICLES, 3, "--slice", "y=0.1", "--resolution", "100")
         self.assertGreater(np.count_nonzero(self.image_arrays(self.path("slice.vti"))["vtkValidPointMask"]), 100)
 
+    def test_first_without_particles(self):
+        """What is said of all particles, and which array is active, does not depend on who has them."""
+        particles = read(PARTICLES)
+        kinds = numpy_to_vtk((np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32), deep=1)
+        kinds.SetName("Type")
+        particles.GetPointData().AddArray(kinds)
+        write(particles, self.path("in.vtp"))
+        pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
+        write(take(particles, []), self.path("piece_0.vtp"))
+        for name, *how in (("s.vti", "--slice", "z=0", "--resolution", "64"), ("s.vtp", "--free-surface")):
+            said = [self.sentences(self.good(run(pieces, self.path(who + name), *how)))
+                    for who, run in (("alone", self.run_alone), ("ranks", self.run_ranks))]
+            self.assertIn("Type", said[0][0])
+            self.assertEqual(said[0], said[1])
+            self.assertTrue(filecmp.cmp(self.path("alone" + name), self.path("ranks" + name), shallow=False), name)
+
     def test_missing_array(self):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--scalar", "Nope", "--iso", "1"), "Nope")
 

@@ -123,9 +123,9 @@ public:
 
   /**
    * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else
-   * empty.
+   * empty. `gather` returns the lists of all processes, this one's among them.
    */
-  std::string DescribeUnusedType();
+  std::string DescribeUnusedType(const vtkSPHGather& gather);
 
   const vtkSPHParticlesChoice Description;
   const vtkSmartPointer<vtkPointSet> Points;

@@ -228,20 +228,39 @@ std::string vtkSPHParticles::DescribeFluid() const
   return text.str();
 }
 
-std::string vtkSPHParticles::DescribeUnusedType()
+// Each process tells its values, each followed by how often it occurs; one number where there are too
+// many to be kinds.
+std::string vtkSPHParticles::DescribeUnusedType(const vtkSPHGather& gather)
 {
   vtkPointData* data = this->Points->GetPointData();
   for (const std::string& name : ListTypes(this->Description, data))
   {
+    vtkDataArray* array = data->GetArray(name.c_str());
+    std::vector<double> mine;
+    for (const auto& count : CountValues(array))
+    {
+      mine.insert(mine.end(), { count.first, static_cast<double>(count.second) });
+    }
+    mine.resize(mine.empty() && array->GetNumberOfTuples() > 0 ? 1 : mine.size());
+    bool areKinds = true;
+    std::map<double, std::int64_t, NaNLast> all;
+    for (const std::vector<double>& theirs : gather(mine))
+    {
+      areKinds = areKinds && theirs.size() != 1;
+      for (std::size_t i = 0; i + 1 < theirs.size(); i += 2)
+      {
+        all[theirs[i]] += static_cast<std::int64_t>(theirs[i + 1]);
+      }
+    }
     std::vector<double> values;
     std::vector<std::int64_t> counts;
-    for (const auto& count : CountValues(data->GetArray(name.c_str())))
+    for (const auto& count : all)
     {
       values.push_back(count.first);
       counts.push_back(count.second);
     }
     const std::string text = vtkSPHTakeText(mcor_describe_unused_type(
-      name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())));
+      name.c_str(), values.data(), counts.data(), areKinds ? static_cast<int>(values.size()) : 0));
     if (!text.empty())
     {
       return text;

@@ -334,17 +334,16 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);
   this->SetUsedNames(nullptr);
-  if (this->GetNumberOfInputConnections(0) == 0)
-  {
-    this->Fail("Choose the points, the first input: there are none to probe at.");
-    return;
-  }
-  if (this->GetNumberOfInputConnections(this->GetParticlesPort()) == 0)
-  {
-    this->Fail("Choose the particles, the second input: there are none to probe.");
-    return;
-  }
   const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  const char* const problem = this->GetNumberOfInputConnections(0) == 0
+    ? "Choose the points, the first input: there are none to probe at."
+    : this->GetNumberOfInputConnections(this->GetParticlesPort()) == 0
+    ? "Choose the particles, the second input: there are none to probe."
+    : "";
+  if (!run->Agree(problem))
+  {
+    return;
+  }
   if (data && !points && !run->IsShared())
   {
     this->Warn(std::string("A ") + data->GetClassName() + " has no points to probe at.");

@@ -261,6 +261,23 @@ int Check(int number, bool some, const std::string& folder, vtkMPIController* co
   return failures;
 }
 
+/// A probe without points on the last rank fails on all: no rank waits for it.
+int CheckWithoutPoints(vtkMPIController* controller)
+{
+  vtkNew<vtkPolyData> nothing;
+  vtkNew<vtkSPHProbe> probe;
+  probe->SetController(controller);
+  probe->SetSourceData(nothing);
+  if (controller->GetLocalProcessId() + 1 < controller->GetNumberOfProcesses())
+  {
+    probe->SetInputData(nothing);
+  }
+  probe->Update();
+  const std::string said = probe->GetErrorMessage();
+  std::printf("without points: %s\n", said.c_str());
+  return said.find("Choose the points") == std::string::npos ? 1 : 0;
+}
+
 }
 
 int main(int argc, char* argv[])
@@ -268,7 +285,7 @@ int main(int argc, char* argv[])
   return RunRanks(argc, argv,
     [=](vtkMPIController* controller)
     {
-      int failures = 0;
+      int failures = CheckWithoutPoints(controller);
       for (int number = 0; number < static_cast<int>(Cases.size()); ++number)
       {
         failures += Check(number, argc > 2, argv[1], controller);

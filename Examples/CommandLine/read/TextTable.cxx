@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TextTable.h"
+
+#include "FileName.h"
+#include "SafeText.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <set>
+
+View Trimmed(View text)
+{
+  const std::size_t begin = text.find_first_not_of(" \t\r\"");
+  return begin == View::npos ? View()
+                             : text.substr(begin, text.find_last_not_of(" \t\r\"") + 1 - begin);
+}
+
+std::string Small(View text)
+{
+  std::string small(text);
+  std::transform(small.begin(), small.end(), small.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return small;
+}
+
+bool ToNumber(View text, double& value)
+{
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+  {
+    text.remove_prefix(1);
+  }
+  std::string copy;
+  auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc::result_out_of_range && end.ptr != text.data() + text.size())
+  {
+    copy = std::string(text);
+    for (char& c : copy)
+    {
+      c = c == 'd' || c == 'D' ? 'e' : c == ',' ? '.' : c;
+    }
+    text = copy;
+    end = std::from_chars(text.data(), text.data() + text.size(), value);
+  }
+  if (end.ec == std::errc::result_out_of_range)
+  {
+    value = std::strtod(std::string(text).c_str(), nullptr); // infinite, or 0
+  }
+  return end.ec != std::errc::invalid_argument && end.ptr == text.data() + text.size();
+}
+
+bool ToInteger(View text, vtkTypeInt64& value)
+{
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc() && end.ptr == text.data() + text.size();
+}
+
+void Split(View line, char separator, std::vector<View>& cells)
+{
+  cells.clear();
+  const bool isBlank = separator == ' ';
+  std::size_t begin = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i <= line.size(); ++i)
+  {
+    const char c = i < line.size() ? line[i] : separator;
+    quoted = quoted != (c == '"' && i < line.size());
+    const bool ends =
+      i == line.size() || (!quoted && (c == separator || (isBlank && (c == '\t' || c == '\r'))));
+    if (!ends)
+    {
+      continue;
+    }
+    if (!isBlank || i > begin)
+    {
+      cells.push_back(Trimmed(line.substr(begin, i - begin)));
+    }
+    begin = i + 1;
+  }
+}
+
+bool Lines::Next()
+{
+  if (!std::getline(this->Stream, this->Line))
+  {
+    return false;
+  }
+  if (++this->Number == 1 && this->Line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+  {
+    this->Line.erase(0, 3); // a mark of UTF-8
+  }
+  if (this->Line.find('\0') != std::string::npos)
+  {
+    FailToRead(this->File,
+      "line " + std::to_string(this->Number) + " is no text; if it is UTF-16, save it as UTF-8");
+  }
+  if (!this->Line.empty() && this->Line.back() == '\r')
+  {
+    this->Line.pop_back();
+  }
+  if (this->Line.find('\r') != std::string::npos)
+  {
+    FailToRead(this->File, "its lines end in carriage returns alone; save it with line feeds");
+  }
+  return true;
+}
+
+void Lines::Need(const char* what)
+{
+  if (!this->Next())
+  {
+    FailToRead(this->File, std::string("it ends before ") + what);
+  }
+}
+
+void Column::Add(View cell)
+{
+  double number = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t rows = this->Numbers.size();
+  const bool isNumber = cell.empty() || ToNumber(cell, number);
+  vtkTypeInt64 whole = 0;
+  if (this->Whole.size() == rows && ToInteger(cell, whole))
+  {
+    this->Whole.push_back(whole);
+  }
+  else
+  {
+    this->Whole.clear();
+  }
+  if (!this->Words.empty() || (!isNumber && rows == 0))
+  {
+    this->Words.emplace_back(cell);
+  }
+  // One word among numbers is no number; a column of words has words from its beginning on.
+  this->Numbers.push_back(isNumber ? number : std::numeric_limits<double>::quiet_NaN());
+}
+
+Table TableOf(const std::vector<std::string>& names)
+{
+  return { names.begin(), names.end() };
+}
+
+void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
+{
+  if (cells.size() != table.size())
+  {
+    FailToRead(lines.File,
+      lines.Where() + " has " + std::to_string(cells.size()) + " values for " +
+        std::to_string(table.size()) + " columns");
+  }
+  for (std::size_t c = 0; c < cells.size(); ++c)
+  {
+    table[c].Add(cells[c]);
+  }
+}
+
+namespace
+{
+
+/// A name without what makes it a component (v:0, v_x, v.x, v[0], v(0), VelX), and which one it is;
+/// below 0: it is none.
+int ComponentOf(const std::string& name, std::string& base)
+{
+  const std::size_t n = name.size();
+  const bool isInBrackets = n > 3 && (name[n - 3] == '[' || name[n - 3] == '(');
+  const bool isMarked = n > 2 && (name[n - 2] == ':' || name[n - 2] == '_' || name[n - 2] == '.');
+  const bool isCapital = n > 3 && std::islower(static_cast<unsigned char>(name[n - 2])) &&
+    std::isupper(static_cast<unsigned char>(name[n - 1]));
+  if (!isInBrackets && !isMarked && !isCapital)
+  {
+    return -1;
+  }
+  base = name.substr(0, n - (isInBrackets ? 3 : isMarked ? 2 : 1));
+  const std::size_t axis = View("xyzXYZ").find(name[n - 1]);
+  const char digit = name[isInBrackets ? n - 2 : n - 1];
+  return digit >= '0' && digit <= '8'    ? digit - '0'
+    : isInBrackets || axis == View::npos ? -1
+                                         : static_cast<int>(axis % 3);
+}
+
+/// An array, and the columns of its components.
+struct Array
+{
+  std::string Name;
+  std::vector<std::size_t> Columns; ///< none: they are positions, or belong to another array
+};
+
+/// Lists arrays, each at its first column: columns alone, and vectors, whose names tell components.
+std::vector<Array> FindArrays(const Table& table, const std::vector<std::size_t>& positions = {})
+{
+  std::vector<Array> arrays;
+  std::map<std::string, std::map<int, std::size_t>> vectors; // columns by name and component
+  for (const Column& column : table)
+  {
+    std::string base;
+    const int component = ComponentOf(column.Name, base);
+    const std::size_t c = arrays.size();
+    const bool isFree = std::find(positions.begin(), positions.end(), c) == positions.end();
+    if (component >= 0 && isFree)
+    {
+      vectors[base].emplace(component, c);
+    }
+    arrays.push_back({ column.Name, std::vector<std::size_t>(isFree ? 1 : 0, c) });
+  }
+  for (const Column& column : table)
+  {
+    vectors.erase(column.Name);
+  }
+  for (const auto& [base, components] : vectors)
+  {
+    const std::size_t count = components.size();
+    const bool isUsual = count == 2 || count == 3 || count == 6 || count == 9;
+    if (isUsual && components.rbegin()->first == static_cast<int>(count) - 1)
+    {
+      Array vector = { base, {} };
+      for (const auto& component : components)
+      {
+        vector.Columns.push_back(component.second);
+        arrays[component.second].Columns.clear();
+      }
+      arrays[*std::min_element(vector.Columns.begin(), vector.Columns.end())] = vector;
+    }
+  }
+  return arrays;
+}
+
+vtkSmartPointer<vtkDoubleArray> JoinColumns(
+  const Table& table, const std::vector<std::size_t>& columns, int components)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  const std::size_t rows = table[columns[0]].Numbers.size();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(rows));
+  array->Fill(0.0);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+  {
+    for (std::size_t row = 0; row < rows; ++row)
+    {
+      array->SetTypedComponent(
+        static_cast<vtkIdType>(row), static_cast<int>(k), table[columns[k]].Numbers[row]);
+    }
+  }
+  return array;
+}
+
+template <typename ArrayT, typename ValueT>
+vtkSmartPointer<ArrayT> ArrayWith(const std::vector<ValueT>& values)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+vtkSmartPointer<vtkAbstractArray> ArrayOf(
+  const Table& table, const std::vector<std::size_t>& columns)
+{
+  const Column& first = table[columns[0]];
+  if (columns.size() == 1 && !first.Words.empty())
+  {
+    return ArrayWith<vtkStringArray>(first.Words);
+  }
+  std::string letters = Small(first.Name);
+  letters.erase(std::remove_if(
+                  letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
+    letters.end());
+  const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
+  if (columns.size() == 1 && !first.Whole.empty() &&
+    std::any_of(ends.begin(), ends.end(),
+      [&letters](const char* end) { return letters == end || EndsWith(letters, end); }))
+  {
+    return ArrayWith<vtkTypeInt64Array>(first.Whole); // which tells particles, or kinds, apart
+  }
+  return JoinColumns(table, columns, static_cast<int>(columns.size()));
+}
+
+}
+
+std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
+{
+  std::vector<std::size_t> found;
+  for (const char axis : { 'x', 'y', 'z' })
+  {
+    const auto at = std::find_if(table.begin(), table.end(),
+      [name = axis + behind](const Column& column) { return Small(column.Name) == name; });
+    if (at != table.end())
+    {
+      found.push_back(static_cast<std::size_t>(at - table.begin()));
+    }
+  }
+  return found.size() >= 2 ? found : std::vector<std::size_t>();
+}
+
+std::vector<std::size_t> FindPositions(const Table& table)
+{
+  const std::vector<Array> arrays = FindArrays(table);
+  for (const char* usual : { "points", "point", "position", "positions", "pos", "coordinates",
+         "coordinate", "coords", "coord", "xyz", "r" })
+  {
+    for (const Array& array : arrays)
+    {
+      const std::size_t count = array.Columns.size();
+      if ((count == 2 || count == 3) && Small(array.Name) == usual)
+      {
+        return array.Columns;
+      }
+    }
+  }
+  return FindAxes(table, "");
+}
+
+vtkSmartPointer<vtkPolyData> ParticlesOf(
+  const std::string& file, const Table& table, std::vector<std::size_t> positions)
+{
+  positions = positions.empty() ? FindPositions(table) : positions;
+  if (positions.empty())
+  {
+    std::string list;
+    for (std::size_t c = 0; c < table.size() && list.size() < 200; ++c)
+    {
+      list += (c ? ", " : "") + table[c].Name;
+    }
+    FailToRead(file,
+      "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+      "Points:2; there are " +
+        list);
+  }
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(JoinColumns(table, positions, 3));
+  particles->SetPoints(points);
+  for (const Array& each : FindArrays(table, positions))
+  {
+    if (!each.Columns.empty())
+    {
+      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(table, each.Columns);
+      array->SetName(each.Name.c_str());
+      particles->GetPointData()->AddArray(array);
+    }
+  }
+  return particles;
+}
+
+std::vector<std::string> NamesOf(const std::vector<View>& cells)
+{
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const View cell : cells)
+  {
+    const std::size_t bracket = cell.find(" (");
+    const View inside = bracket == View::npos ? View() : cell.substr(bracket + 2);
+    const bool isUnit = // and not a component, as in "v (x)"
+      inside.size() != 2 || View("012345678xyzXYZ").find(inside[0]) == View::npos;
+    std::string name(
+      Trimmed(cell.substr(0, std::min(cell.find(" ["), isUnit ? bracket : View::npos))));
+    name = name.empty() ? "Column" + std::to_string(names.size() + 1) : name;
+    while (!taken.insert(name).second)
+    {
+      name += "_";
+    }
+    names.push_back(name);
+  }
+  return names;
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/// Tables in text files: lines, their cells, columns, and the particles that these are.
+#ifndef TextTable_h
+#define TextTable_h
+
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstddef>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+using View = std::string_view;
+
+View Trimmed(View text);
+std::string Small(View text);
+
+/// A number as it stands in tables: with a leading plus, a D of Fortran, or a comma; nan, inf.
+bool ToNumber(View text, double& value);
+bool ToInteger(View text, vtkTypeInt64& value);
+
+/// The cells of a line: between separators, of which blanks count as one, unless they are in
+/// quotes.
+void Split(View line, char separator, std::vector<View>& cells);
+
+/// The lines of a file, one at a time.
+class Lines
+{
+public:
+  explicit Lines(const std::string& file)
+    : File(file)
+    , Stream(file, std::ios::binary)
+  {
+  }
+
+  /// Reads the next line. Returns false at the end.
+  bool Next();
+
+  /// Reads the next line, which holds this; fails at the end.
+  void Need(const char* what);
+
+  /// Where the next line begins.
+  struct Place
+  {
+    std::streamoff Offset;
+    std::size_t Number;
+  };
+  Place Here() { return { this->Stream.tellg(), this->Number }; }
+  void GoTo(const Place& place)
+  {
+    this->Stream.seekg(place.Offset);
+    this->Number = place.Number;
+  }
+
+  View Get() const { return this->Line; }
+  std::string Where() const { return "line " + std::to_string(this->Number); }
+
+  const std::string File;
+
+private:
+  std::ifstream Stream;
+  std::string Line;
+  std::size_t Number = 0;
+};
+
+struct Column
+{
+  explicit Column(const std::string& name)
+    : Name(name)
+  {
+  }
+
+  std::string Name;
+  std::vector<double> Numbers;
+  std::vector<std::string> Words;  ///< of one that is not of numbers; else empty
+  std::vector<vtkTypeInt64> Whole; ///< of one that may have identifiers; else empty
+
+  void Add(View cell);
+};
+
+using Table = std::vector<Column>;
+
+Table TableOf(const std::vector<std::string>& names);
+void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells);
+
+/// The columns called x, y and z, with these letters behind; one of them is none.
+std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
+
+/// The columns of positions, two or three; none where no name tells.
+std::vector<std::size_t> FindPositions(const Table& table);
+
+/// `positions`: the columns of positions; where there are none, names tell.
+vtkSmartPointer<vtkPolyData> ParticlesOf(
+  const std::string& file, const Table& table, std::vector<std::size_t> positions);
+
+/// Returns names of columns, without units in brackets; no two are the same.
+std::vector<std::string> NamesOf(const std::vector<View>& cells);
+
+#endif

@@ -50,13 +50,12 @@ std::string ToRowName(Text option, Text noun, Text text)
   return name;
 }
 
-/// The places, followed by those of a file, if there is one: one in each line that is not empty and
-/// does not begin with #.
-std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
-  Text form, Place (*parse)(Text option, Text text))
+/// Adds the places of a file: one in each line that is not empty and does not begin with #.
+void AddOfFile(Text option, Text file, Text nouns, Text form,
+  Place (*parse)(Text option, Text text), std::vector<Place>& places)
 {
   const std::size_t most = std::size_t(64) << 20; // a device has no end
-  std::ifstream source(file.empty() ? "/dev/null" : file, std::ios::binary);
+  std::ifstream source(file, std::ios::binary);
   std::string text;
   for (char part[1 << 16]; source && text.size() <= most;)
   {
@@ -79,9 +78,19 @@ std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, T
       places.push_back(parse(option + " " + file, line.substr(first, last + 1 - first)));
     }
   }
-  if (!file.empty() && places.size() == before)
+  if (places.size() == before)
   {
     throw UsageError(option + " " + file + " has no " + nouns + "; it needs lines " + form);
+  }
+}
+
+/// The places, followed by those of a file, if there is one.
+std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
+  Text form, Place (*parse)(Text option, Text text))
+{
+  if (!file.empty())
+  {
+    AddOfFile(option, file, nouns, form, parse, places);
   }
   std::set<std::string> known;
   for (const Place& place : places)

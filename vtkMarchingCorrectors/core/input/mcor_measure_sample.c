@@ -161,7 +161,7 @@ typedef struct mcor_spacing
   const mcor_input* input;
   double scale;             /* a power of 2 that brings all coordinates below 1 */
   mcor_sample_list samples; /* of fluid and solids */
-  mcor_neighbours nearest[MCOR_SAMPLES];
+  mcor_neighbours nearest[MCOR_SAMPLES], merged[MCOR_SAMPLES]; /* of this rank, of all */
 } mcor_spacing;
 
 /* Finds, for each sample of a slice, the nearest of this rank's particles. */
@@ -217,19 +217,17 @@ double mcor_cube_root(double value)
 
 /* Takes 1.3 times the median spacing: that of a lattice with as many particles within the distance
  * of the 32nd neighbour. */
-mcor_status mcor_estimate_smoothing_length(
-  mcor_context* context, const mcor_input* input, double* estimate)
+static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, double* estimate)
 {
-  mcor_spacing job = { .input = input, .samples = context->samples[0] };
   double spacing[MCOR_SAMPLES], largest[3];
   int exponent = 0, most = INT_MIN;
   for (int i = 0; i < context->samples[1].count; ++i)
   {
-    mcor_add_sample(&job.samples, &context->samples[1].of[i]);
+    mcor_add_sample(&job->samples, &context->samples[1].of[i]);
   }
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(context, input, &input->positions, a);
+    largest[a] = mcor_largest(context, job->input, &job->input->positions, a);
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
   for (int a = 0; a < 3; ++a)
@@ -237,31 +235,30 @@ mcor_status mcor_estimate_smoothing_length(
     frexp(largest[a], &exponent);
     most = exponent > most ? exponent : most;
   }
-  job.scale = ldexp(1, most > -1000 ? -most : 1000);
-  const int samples = job.samples.count;
-  MCOR_TRY(mcor_parallel_run(context, samples, 1, mcor_near_slice, &job, NULL));
-  /* Merges the nearest neighbours that all ranks have found. */
-  mcor_neighbours merged[MCOR_SAMPLES] = { { 0 } };
+  job->scale = ldexp(1, most > -1000 ? -most : 1000);
+  const int samples = job->samples.count;
+  MCOR_TRY(mcor_parallel_run(context, samples, 1, mcor_near_slice, job, NULL));
   const void* found;
   int64_t count;
   for (int s = 0; s < samples; ++s)
   {
-    job.nearest[s].sample = s;
+    job->nearest[s].sample = s;
   }
   MCOR_TRY(
-    mcor_gather_records(context, job.nearest, samples, sizeof job.nearest[0], &found, &count));
+    mcor_gather_records(context, job->nearest, samples, sizeof job->nearest[0], &found, &count));
   for (int64_t i = 0; i < count; ++i)
   {
     const mcor_neighbours* of = (const mcor_neighbours*)found + i;
-    mcor_add_neighbours(&merged[of->sample], of->d2, of->count);
+    mcor_add_neighbours(&job->merged[of->sample], of->d2, of->count);
   }
   for (int s = 0; s < samples; ++s)
   {
-    const double share = context->space.ball / (double)merged[s].count;
-    spacing[s] = sqrt(merged[s].d2[merged[s].count - 1]) *
+    const mcor_neighbours* merged = &job->merged[s];
+    const double share = context->space.ball / (double)merged->count;
+    spacing[s] = sqrt(merged->d2[merged->count - 1]) *
       (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
   }
-  *estimate = 1.3 * mcor_median_of(spacing, samples) / job.scale;
+  *estimate = 1.3 * mcor_median_of(spacing, samples) / job->scale;
   MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
     "The smoothing length cannot be estimated: most particles lie at one point.");
   for (int s = 0; s < context->samples[0].count; ++s)
@@ -269,4 +266,16 @@ mcor_status mcor_estimate_smoothing_length(
     context->samples[0].of[s].h = *estimate;
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_estimate_smoothing_length(
+  mcor_context* context, const mcor_input* input, double* estimate)
+{
+  mcor_spacing* job = calloc(1, sizeof *job); /* too large for the stack of some threads */
+  MCOR_TRY(mcor_allocated(context, job));
+  job->input = input;
+  job->samples = context->samples[0];
+  const mcor_status status = mcor_find_spacing(context, job, estimate);
+  free(job);
+  return status;
 }

@@ -248,16 +248,13 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     missed = limit > 0 ? missed : (fixv)0;
     count += 1;
   }
-  if (attribute_count > 0)
-  {
-    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
-  }
+  mcor_points_store(&grid, &query, &points, iso, &reach, &at, offset, value, gradient, weight,
+    MCOR_ATTRIBUTE_ARGS);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
       linear[v] =
         MCOR_GET_FIX(missed, lane) ? (real)1 : MCOR_GET(linear_t, lane) - MCOR_GET(t, lane);
       evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);

@@ -78,19 +78,32 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   at->fluid = w;
 }
 
-/* Writes lane `lane` of a group as point v: position, value, gradient and trimming weight. With
- * solids, the fluid's part of the weight goes with the gradient. */
-MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* points,
-  const mcor_field_at* at, int lane, int v, __global real4* offset, __global real* value,
-  __global real4* gradient, __global real* weight)
+/* Writes the points of a group: attributes, if there are any, position, value, gradient and trimming
+ * weight. With solids, the fluid's part of the weight goes with the gradient. at: made by
+ * mcor_evaluate, which was last called for these points. */
+MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, mcor_query* query,
+  const mcor_points* points, real iso, mcor_reach* reach, const mcor_field_at* at,
+  __global real4* offset, __global real* value, __global real4* gradient, __global real* weight,
+  MCOR_ATTRIBUTE_PARAMS)
 {
-  offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
-    MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
-  value[v] = MCOR_GET(at->field.value, lane);
-  gradient[v] =
-    (real4)(MCOR_GET(at->field.gradient[0], lane), MCOR_GET(at->field.gradient[1], lane),
-      MCOR_GET(at->field.gradient[2], lane), MCOR_SOLIDS ? MCOR_GET(at->fluid.value, lane) : 0);
-  weight[v] = MCOR_GET(at->weight.value, lane);
+  if (attribute_count > 0)
+  {
+    mcor_attribute_group(grid, query, points, iso, reach, true, MCOR_ATTRIBUTE_ARGS);
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = points->index[lane];
+    if (v >= 0)
+    {
+      offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
+        MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
+      value[v] = MCOR_GET(at->field.value, lane);
+      gradient[v] =
+        (real4)(MCOR_GET(at->field.gradient[0], lane), MCOR_GET(at->field.gradient[1], lane),
+          MCOR_GET(at->field.gradient[2], lane), MCOR_SOLIDS ? MCOR_GET(at->fluid.value, lane) : 0);
+      weight[v] = MCOR_GET(at->weight.value, lane);
+    }
+  }
 }
 
 /* One work-item = one group of points that no edge has: of caps, and where the field decides on the
@@ -101,16 +114,6 @@ __kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real
   MCOR_GROUP_ITEM(0);
   mcor_field_at at;
   mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
-  if (attribute_count > 0)
-  {
-    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
-  }
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const int v = points.index[lane];
-    if (v >= 0)
-    {
-      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
-    }
-  }
+  mcor_points_store(&grid, &query, &points, iso, &reach, &at, offset, value, gradient, weight,
+    MCOR_ATTRIBUTE_ARGS);
 }

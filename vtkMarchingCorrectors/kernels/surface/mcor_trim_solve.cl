@@ -316,16 +316,13 @@ __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tole
   }
   limits.lacking = lacks != 0;
   const fixv linear = mcor_trim_group(&grid, &query, &limits, &points, &reach, &at);
-  if (attribute_count > 0)
-  {
-    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
-  }
+  mcor_points_store(&grid, &query, &points, iso, &reach, &at, offset, value, gradient, weight,
+    MCOR_ATTRIBUTE_ARGS);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
       flag[v] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
     }
   }

@@ -144,7 +144,12 @@ void MakeSurface(Sharing& sharing)
     outputs.insert(outputs.end(),
       { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
   }
-  sharing.OnAll([&] { CheckOutputs(ListFiles(job.InputFiles()), outputs); });
+  sharing.OnAll(
+    [&]
+    {
+      OpenSources(job.InputFiles());
+      CheckOutputs(outputs);
+    });
   const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
   sharing.OnAll([&] { SetUpSurface(job, particles); });
   std::vector<vtkSmartPointer<vtkFieldData>> runs;

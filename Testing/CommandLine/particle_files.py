@@ -139,6 +139,29 @@ def all_forms(points, arrays):
     return {**forms, "ascii.vtk": legacy(points, arrays), "binary.vtk": legacy(points, arrays, "BINARY", len(arrays) - 2)}
 
 
+def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
+    """A file of a snapshot that has `count` files: gas of the chosen numbers, and three stars."""
+    def record(data):
+        return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
+
+    def reals(values):
+        return struct.pack(f"{order}{len(values)}d", *values)
+
+    n, stars = len(chosen), 3
+    header = struct.pack(order + "6i6d2d2i6I2i4d", n, 0, 0, 0, stars, 0, *[0] * 6, 0.25, 3, 0, 0, n, 0, 0, 0, stars, 0, 0,
+                         count, 8, 0.3, 0.7, 0.7)
+    blocks = [("HEAD", header.ljust(256, b"\0")), ("POS", reals([x for i in chosen for x in points[i]] + [9.0] * 3 * stars)),
+              ("VEL", reals([0.0] * 3 * (n + stars))), ("ID", struct.pack(f"{order}{n + stars}I", *range(n + stars))),
+              ("MASS", reals([arrays["Mass"][i] for i in chosen] + [1.0] * stars)), ("U", reals([1.0] * n)),
+              ("RHO", reals([arrays["Density"][i] for i in chosen])),
+              ("HSML", reals([2 * arrays["SmoothingLength"][i] for i in chosen]))]
+    data = b""
+    for label, block in blocks:
+        data += record(label.ljust(4).encode() + struct.pack(order + "I", len(block) + 8)) if named else b""
+        data += record(block)
+    path.write_bytes(data)
+
+
 def write_pvd(path, entries):
     """entries: (time, file) each; those of one time are parts of one set."""
     entries = list(entries)

@@ -176,27 +176,8 @@ class Formats(CommandLineTest):
         self.succeed("--free-surface", "--no-attributes")
         expected = re.search('Name="Points".*?</DataArray>', self.output.read_text(), re.DOTALL)[0]
 
-        def write(name, chosen, order, named, count):
-            def record(data):
-                return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
-
-            def reals(values):
-                return struct.pack(f"{order}{len(values)}d", *values)
-
-            n, stars = len(chosen), 3
-            header = struct.pack(order + "6i6d2d2i6I2i4d", n, 0, 0, 0, stars, 0, *[0] * 6, 0.25, 3, 0, 0, n, 0, 0, 0, stars, 0, 0,
-                                 count, 8, 0.3, 0.7, 0.7)
-            blocks = [("HEAD", header.ljust(256, b"\0")),
-                      ("POS", reals([x for i in chosen for x in points[i]] + [9.0] * 3 * stars)),
-                      ("VEL", reals([0.0] * 3 * (n + stars))), ("ID", struct.pack(f"{order}{n + stars}I", *range(n + stars))),
-                      ("MASS", reals([arrays["Mass"][i] for i in chosen] + [1.0] * stars)), ("U", reals([1.0] * n)),
-                      ("RHO", reals([arrays["Density"][i] for i in chosen])),
-                      ("HSML", reals([2 * arrays["SmoothingLength"][i] for i in chosen]))]
-            data = b""
-            for label, block in blocks:
-                data += record(label.ljust(4).encode() + struct.pack(order + "I", len(block) + 8)) if named else b""
-                data += record(block)
-            (self.directory / name).write_bytes(data)
+        def write(name, *how):
+            files.write_gadget(self.directory / name, points, arrays, *how)
             return self.directory / name
 
         whole = range(len(points))

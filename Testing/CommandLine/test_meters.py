@@ -3,6 +3,7 @@
 """Gauges and fluxes by the program marching-correctors, and the volumes of particles that these tell of:
 test_meters.py PROGRAM PRELOAD GROUP."""
 import math
+import os
 import subprocess
 import time
 import xml.etree.ElementTree
@@ -48,8 +49,9 @@ class Meter(CommandLineTest):
             (["--iso", "0"], "--iso value above 0"), (["--solids", "wall"], "leave out --solids wall"),
             (["--weighted-by", "Mass"], "is for --project"), (["--least-volume", "1"], "no pieces"), (["--view", "0,0,1"], "no picture"),
             (["--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"))), *usage]
-        failures = [([many, "none.txt"], "none.txt cannot be read"), ([many, "."], "cannot be read"),
-                    ([many, "/dev/zero"], "/dev/zero is larger than 64 MiB"), *failures]
+        os.mkfifo(self.directory / "fifo")
+        failures = [([many, "none.txt"], "none.txt cannot be read"), ([many, "."], "cannot be read: it is a directory"),
+                    *[([many, name], f"{name} cannot be read: it is not a regular file") for name in ("/dev/zero", "fifo")], *failures]
         self.table.write_text("as it was")
         for status, cases in ((2, usage), (1, failures)):
             for options, sentence in cases:

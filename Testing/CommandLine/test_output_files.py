@@ -233,6 +233,59 @@ class OutputFiles(CommandLineTest):
         self.assertEqual(gauges.read_text(), "mast=0,0,-1:0,0,1\n")
         self.assertFalse((self.directory / "film.pvd").exists())
 
+    def test_no_output_replaces_an_input(self):
+        """Every option that names an output, with every way to name an input: what is read stays as it was."""
+        at = self.directory
+        files.write_gadget(at / "snap.0", self.points, self.arrays, range(500), count=2)
+        files.write_gadget(at / "snap.1", self.points, self.arrays, range(500, 1000), count=2)
+        files.write_pieces(at / "all.pvtp", ["particles.vtp"])
+        files.write_pieces(at / "steps.pvtp", ["particles.vtp#0"])
+        files.write_pvd(at / "plain.pvd", [(0, "particles.vtp")])
+        files.write_pvd(at / "marked.pvd", [(0, "particles.vtp#0")])
+        files.write_pvd(at / "pieces.pvd", [(0, "all.pvtp#0")])
+        (at / "many.xyz").write_text("1\n\n0 0 0\n1\n\n0 0 0\n")
+        (at / "gauges.txt").write_text("mast=0,0,-1:0,0,1\n")
+        (at / "sections.txt").write_text("side=particles.vtp\n")
+        (at / "link").symlink_to("particles.vtp")
+        gauge = ["--gauge", "a=0,0,-1:0,0,1"]
+        sources = [(name, "particles.vtp", []) for name in
+                   ("particles.vtp", "./particles.vtp#0", "particles.vtp#3", "link#0", "all.pvtp", "all.pvtp#0", "steps.pvtp", "plain.pvd",
+                    "marked.pvd", "pieces.pvd")]
+        sources += [("many.xyz#1", "many.xyz", []), ("snap.0", "snap.1", []), ("snap.0#0", "snap.1", []), ("marked.pvd", "marked.pvd", [])]
+        sources += [("other.vtp", read, [option, name]) for option, name, read in
+                    (("--walls", "particles.vtp", "particles.vtp"), ("--walls", "particles.vtp#0", "particles.vtp"), ("--walls", "snap.0#0", "snap.1"),
+                     ("--probe", "particles.vtp", "particles.vtp"), ("--gauges", "gauges.txt", "gauges.txt"),
+                     ("--fluxes", "sections.txt", "sections.txt"), ("--fluxes", "sections.txt", "particles.vtp"),
+                     ("--flux", "a=particles.vtp", "particles.vtp"))]
+        files.write_vtp(at / "other.vtp", self.points, self.arrays)
+        film = ["film.pvd", *FREE]
+        surfaces = [(".vtp", ["OUT", *FREE]), (".json", ["s.vtp", *FREE, "--stats", "OUT"]), (".csv", ["s.vtp", *FREE, "--components", "OUT"]),
+                    (".vtp", ["s.vtp", *FREE, "--widen", "2", "--widening", "OUT"]), (".png", ["s.vtp", *FREE, "--screenshot", "OUT"])]
+        films = [(".pvd", ["OUT", *FREE]), ("_0000.vtp", film), ("_0000.ply", ["film_%04d.ply", *FREE]), (".csv", [*film, "--numbers", "OUT"]),
+                 (".csv", [*film, "--components", "OUT"]), (".json", [*film, "--stats", "OUT"]), ("_0000.png", [*film, "--screenshot", "film_%04d.png"]),
+                 (".pvd", ["OUT", "--project", "z"])]
+        fields = [(".vti", ["OUT", "--slice", "z=0"]), (".vtp", ["OUT", "--line", "0,0,0,1,0,0"]), (".vti", ["OUT", "--project", "z"]),
+                  (".png", ["o.vti", "--project", "z", "--screenshot", "OUT"])]
+        tables = [(".csv", ["OUT", *gauge]), (".vti", ["OUT", "--gauge-grid", "2,2:0,1,0,1,0,1"]), (".csv", ["OUT", "--flux", "a=0,0,0:1,0,0:0,1,0"])]
+        own = {"--probe": [(".vtp", ["OUT"])], "--gauges": [(".csv", ["OUT"]), (".csv", [*film, "--numbers", "OUT"])],
+               "--fluxes": [(".csv", ["OUT"])], "--flux": [(".csv", ["OUT"])]}
+        number = 0
+        for source, read, more in sources:
+            is_list = source.endswith(".pvd")
+            outputs = own.get(more[0] if more else "", (films if is_list else surfaces + films + fields) + tables)
+            before = (at / read).read_bytes()
+            for ending, command in outputs:
+                with self.subTest(source, read=read, more=more, command=command):
+                    number += 1
+                    out = at / f"out{number}{ending}" if "OUT" in command else at / f"film{ending}"
+                    out.symlink_to(read)
+                    arguments = [str(out) if word == "OUT" else word for word in command]
+                    result = self.run_program(source, *arguments, *more)
+                    self.assertIn(f"{out.name} would overwrite the input", result.stderr)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertEqual((at / read).read_bytes(), before)
+                    out.unlink()
+
     def test_names_for_xml(self):
         """Names of files and arrays, those of field data, too, come back as they were."""
         name = "a<b>&\"c' d"

@@ -338,6 +338,7 @@ class RealFiles(CommandLineTest):
                           "film.xyz#3: .*film.xyz cannot be read: it ends before the second line of a step")
         self.assertEqual(len(read_table(self.directory / "levels.csv")), 3)
         self.refuse_texts("bad.xyz", [
+            ("2\n\nA 1 2 3\nA 1 2 4\n\nA 1 2 5\n", "line 6 is one more than the 2 particles that the step says it has"),
             ("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
             ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"), ("999999999999\nc\nA 1 2 3\n", "ends before")])
 
@@ -369,7 +370,7 @@ class RealFiles(CommandLineTest):
         self.one_sentence(result, 1, r"film_0003.vtp \(time 1200\): .*film.dump cannot be read: line \d+ is none")
         self.assertTrue((self.directory / "film_0002.vtp").exists())
         self.refuse_texts("bad.dump", [
-            ("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
+            (step(1, 2).replace("ATOMS\n50", "ATOMS\n49"), "line 59 is one more than the 49 particles"), ("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
             (step(1, 5)[:-200], "ends before|values for 6 columns"), ("hello\n", "none of a dump")])
 
 

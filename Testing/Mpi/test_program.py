@@ -542,14 +542,19 @@ class Program(unittest.TestCase):
         before = {name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}
         self.assertIn("piece_1.vtp", before)
         how = ["--free-surface"]
-        for arguments, words in [
-            ([self.path("piece.pvtp")], "piece_0.vtp would overwrite the input"),
-            ([self.path("o.pvtp"), "--stats", self.path("piece_1.vtp")], "piece_1.vtp would overwrite the input"),
-            ([self.path("piece_1.vtp")], "piece_1.vtp would overwrite the input"),
-            ([self.path("o.pvtp"), "--stats", self.path("o_1.vtp")], "o_1.vtp would be written twice"),
-            ([self.path("o.vti"), "--slice", "z=0", "--stats", self.path("o.vti")], "leave out --stats"),
+        first, second = self.path("piece_0.vtp"), self.path("piece_1.vtp")
+        for source, arguments, words in [
+            (pieces, [self.path("piece.pvtp")], "piece_0.vtp would overwrite the input"),
+            (pieces, [self.path("o.pvtp"), "--stats", second], "piece_1.vtp would overwrite the input"),
+            (pieces, [second], "piece_1.vtp would overwrite the input"),
+            (pieces + "#0", [second], "piece_1.vtp would overwrite the input"),
+            (second + "#0", [second], "piece_1.vtp would overwrite the input"),
+            (second + "#0", [self.path("piece.pvtp")], "piece_1.vtp would overwrite the input"),
+            (first, [self.path("o.vtp"), "--walls", second + "#0", "--stats", second], "piece_1.vtp would overwrite the input"),
+            (pieces, [self.path("o.pvtp"), "--stats", self.path("o_1.vtp")], "o_1.vtp would be written twice"),
+            (pieces, [self.path("o.vti"), "--slice", "z=0", "--stats", self.path("o.vti")], "leave out --stats"),
         ]:
-            done = self.run_ranks(pieces, *arguments, *([] if "--slice" in arguments else how))
+            done = self.run_ranks(source, *arguments, *([] if "--slice" in arguments else how))
             self.check_fails(done, words)
             self.assertEqual({name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}, before)
 

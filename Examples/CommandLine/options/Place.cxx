@@ -3,13 +3,13 @@
 #include "Job.h"
 
 #include "FileName.h"
+#include "Formats.h"
 #include "OptionValue.h"
 #include "SafeText.h"
 
 #include <algorithm>
 #include <fstream>
 #include <set>
-#include <stdexcept>
 
 namespace
 {
@@ -54,22 +54,10 @@ std::string ToRowName(Text option, Text noun, Text text)
 void AddOfFile(Text option, Text file, Text nouns, Text form,
   Place (*parse)(Text option, Text text), std::vector<Place>& places)
 {
-  const std::size_t most = std::size_t(64) << 20; // a device has no end
+  CheckRegularFile(file); // a pipe or a device may have no end
   std::ifstream source(file, std::ios::binary);
-  std::string text;
-  for (char part[1 << 16]; source && text.size() <= most;)
-  {
-    source.read(part, sizeof(part));
-    text.append(part, static_cast<std::size_t>(source.gcount()));
-  }
-  if (!source.eof()) // a folder opens, but does not read
-  {
-    throw std::runtime_error("the " + nouns + "' file " + file +
-      (text.size() > most ? " is larger than 64 MiB; give one of fewer " + nouns
-                          : " cannot be read"));
-  }
   const std::size_t before = places.size();
-  for (const std::string& line : ItemsOf(text, '\n'))
+  for (std::string line; std::getline(source, line);)
   {
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first != std::string::npos && line[first] != '#')

@@ -14,7 +14,8 @@ class vtkDataObject;
 
 // How files are read. All throw std::runtime_error with one sentence.
 
-/// Refuses what is no file, or one that cannot be opened or sought in.
+/// Opens what is to be read, so that IsSource() knows it. Refuses what is no file, or one that cannot
+/// be opened or sought in.
 void CheckRegularFile(const std::string& file);
 
 /// Lets libraries read a file: the sentence where they crash over it, ask for more memory than

@@ -17,20 +17,33 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHFound.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHFound.h"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <set>
 #include <stdexcept>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace
 {
 
 namespace fs = std::filesystem;
+
+/// The files that the run has opened to read.
+std::set<std::pair<dev_t, ino_t>>& Sources()
+{
+  static std::set<std::pair<dev_t, ino_t>> sources;
+  return sources;
+}
 
 /// All that is known of a format.
 struct Kind
@@ -185,20 +198,23 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   return particles;
 }
 
-/// Adds what a file holds, unless it has no points; NAME#N is step N of the file NAME, unless a file
-/// has that name. Throws std::runtime_error.
-void ReadSet(std::string file, ParticleSets& sets)
+/// The name of a file without the number of a step, and this number: NAME#N is step N of the file
+/// NAME, unless a file has that name.
+std::pair<std::string, std::size_t> StepOf(const std::string& name)
 {
-  std::size_t step = 0;
   std::error_code error;
-  const std::size_t at = file.rfind('#');
-  const bool isNumber = at != std::string::npos && at + 1 < file.size() && file.size() - at < 12 &&
-    file.find_first_not_of("0123456789", at + 1) == std::string::npos;
-  if (isNumber && !fs::exists(file, error))
-  {
-    step = std::strtoull(file.c_str() + at + 1, nullptr, 10);
-    file.resize(at);
-  }
+  const std::size_t at = name.rfind('#');
+  const bool isNumber = at != std::string::npos && at + 1 < name.size() && name.size() - at < 12 &&
+    name.find_first_not_of("0123456789", at + 1) == std::string::npos;
+  return isNumber && !fs::exists(name, error)
+    ? std::make_pair(name.substr(0, at), std::strtoull(name.c_str() + at + 1, nullptr, 10))
+    : std::make_pair(name, 0ull);
+}
+
+/// Adds what a file holds, unless it has no points. Throws std::runtime_error.
+void ReadSet(const std::string& name, ParticleSets& sets)
+{
+  const auto [file, step] = StepOf(name);
   const vtkSmartPointer<vtkDataObject> data = Read(file, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
@@ -220,19 +236,25 @@ void ReadSet(std::string file, ParticleSets& sets)
   }
 }
 
-bool IsList(const std::string& file)
+bool IsList(const std::string& name)
 {
+  const std::string file = StepOf(name).first;
   const FileFormat<Kind>* format = FindFormat(ParticleFormats, file);
   return format && format->Process.ListParts;
 }
 
 /// The pieces of a list of them, or the file itself.
-std::vector<std::string> ListParts(const std::string& file)
+std::vector<std::string> ListParts(const std::string& name)
 {
+  const auto [file, step] = StepOf(name);
   const Kind* kind = KindOf(ParticleFormats, file);
   if (!kind || !kind->ListParts)
   {
-    return { file };
+    return { name };
+  }
+  if (step > 0)
+  {
+    FailToRead(file, "it has no step " + std::to_string(step));
   }
   const std::vector<std::string> parts = kind->ListParts(file);
   for (const std::string& part : parts)
@@ -258,10 +280,14 @@ void CheckRegularFile(const std::string& file)
   {
     FailToRead(file, "it is not a regular file");
   }
-  if (!std::ifstream(file, std::ios::binary))
+  struct stat status = {};
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0 || fstat(descriptor, &status) != 0)
   {
     FailToRead(file, std::strerror(errno));
   }
+  close(descriptor);
+  Sources().emplace(status.st_dev, status.st_ino);
 }
 
 void ReadWithCare(const std::string& file, const std::function<void()>& read)
@@ -321,23 +347,25 @@ vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files)
   return files.empty() ? nullptr : ReadParticles(files);
 }
 
-std::vector<std::string> ListFiles(const std::vector<std::string>& files)
+void OpenSources(const std::vector<std::string>& files)
 {
-  std::vector<std::string> all = files;
   for (const std::string& file : files)
   {
-    try
-    {
-      const std::vector<std::string> parts =
-        IsList(file) ? ListParts(file) : std::vector<std::string>();
-      all.insert(all.end(), parts.begin(), parts.end());
-    }
-    catch (const std::runtime_error&)
-    {
-      // It is said where it is read.
-    }
+    FailureOf([&] { CheckRegularFile(StepOf(file).first); });
+    FailureOf(
+      [&]
+      {
+        for (const std::string& part : ListParts(file))
+        {
+          FailureOf([&] { CheckRegularFile(StepOf(part).first); });
+        }
+      });
   }
-  return all;
+}
+
+bool IsSource(const struct stat& file)
+{
+  return Sources().count({ file.st_dev, file.st_ino }) > 0;
 }
 
 ParticleSets ReadParticlesPart(const std::string& file, int rank, int count)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+struct stat;
 class vtkDataObject;
 class vtkDataSet;
 class vtkPointSet;
@@ -31,8 +32,13 @@ std::vector<double> ListTimes(const std::string& file);
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
-/// These files, and those that they list as pieces: all that is read, as far as lists can be.
-std::vector<std::string> ListFiles(const std::vector<std::string>& files);
+/// Opens these files, and those that hold their parts, before they are read, so that IsSource() knows
+/// them. What is wrong with one is told where it is read.
+void OpenSources(const std::vector<std::string>& files);
+
+/// Whether this is a file that the run has opened to read: by its device and inode, whatever its name
+/// is. Every writer asks.
+bool IsSource(const struct stat& file);
 
 /// Particles that files hold at one time. Where any of the data have vertices, points of meshes
 /// without vertices are no particles, so cells are kept until all is read.

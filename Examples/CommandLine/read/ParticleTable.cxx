@@ -393,6 +393,18 @@ vtkSmartPointer<vtkDataObject> ReadStep(
     }
     AddRow(table, lines, cells);
   }
+  bool isMore = number == 0 && lines.Next(); // what is behind later steps is told of the next one
+  while (isMore && Trimmed(lines.Get()).empty())
+  {
+    isMore = lines.Next();
+  }
+  if (isMore &&
+    !(find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(Trimmed(lines.Get()), "ITEM:")))
+  {
+    FailToRead(file,
+      lines.Where() + " is one more than the " + std::to_string(step.Count) +
+        " particles that the step says it has; correct that number");
+  }
   table = table.empty() ? TableOf({ "x", "y", "z" }) : table;
   const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(file, table, PositionsOf(table, step));
   std::vector<double> period(6);

@@ -197,7 +197,8 @@ void MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      CheckOutputs(ListFiles(job.InputFiles()), { job.Output, job.Picture.File });
+      OpenSources(job.InputFiles());
+      CheckOutputs({ job.Output, job.Picture.File });
       if (!job.ProbeFile.empty())
       {
         points = ReadDataSet(job.ProbeFile);

@@ -73,7 +73,8 @@ public:
         outputs.insert(outputs.end(),
           { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
             IsCollectionFile(job.Output) ? job.Output : "" });
-        this->Times.CheckOutputs(outputs);
+        this->Times.OpenFiles();
+        CheckOutputs(outputs);
         if (Printable(job.Output) != job.Output)
         {
           throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");

@@ -8,7 +8,6 @@
 #include "Job.h"
 #include "Messages.h"
 #include "OptionValue.h"
-#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "SafeText.h"
 
@@ -317,7 +316,7 @@ std::vector<std::string> ParticleTimes::ListFiles(double time) const
   return files;
 }
 
-void ParticleTimes::CheckOutputs(const std::vector<std::string>& outputs) const
+void ParticleTimes::OpenFiles() const
 {
   std::vector<std::string> inputs = this->Shared.Options.InputFiles();
   for (const Step& step : this->Steps)
@@ -325,7 +324,7 @@ void ParticleTimes::CheckOutputs(const std::vector<std::string>& outputs) const
     inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
     inputs.insert(inputs.end(), step.Walls.begin(), step.Walls.end());
   }
-  ::CheckOutputs(::ListFiles(inputs), outputs);
+  OpenSources(inputs);
 }
 
 void ParticleTimes::Reset()

@@ -40,9 +40,8 @@ public:
   /// Files that a time is made of, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
-  /// Throws UsageError or std::runtime_error where the outputs cannot be written, or would be
-  /// written over any file that is read.
-  void CheckOutputs(const std::vector<std::string>& outputs) const;
+  /// Opens all that is read, see OpenSources().
+  void OpenFiles() const;
 
   /// Returns the particles at a time. Throws std::runtime_error; call Reset() then, so that nothing
   /// is left of the failure.

@@ -72,7 +72,12 @@ public:
     , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
     , File(IsImage ? "" : this->Options.Output)
   {
-    sharing.OnFirst([this] { this->Times.CheckOutputs({ this->Options.Output }); });
+    sharing.OnFirst(
+      [this]
+      {
+        this->Times.OpenFiles();
+        CheckOutputs({ this->Options.Output });
+      });
     if (this->IsImage && this->Times.Get().size() > 1)
     {
       throw std::runtime_error(

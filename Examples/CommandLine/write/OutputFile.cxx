@@ -4,6 +4,7 @@
 
 #include "Ending.h"
 #include "OptionValue.h"
+#include "ParticleFile.h"
 #include "SafeText.h"
 
 #include <cerrno>
@@ -73,7 +74,7 @@ int DescriptorOf(const std::string& path)
 
 /// Follows symbolic links, also to a file that does not exist yet, and asks the system whether the
 /// file may be replaced, by the name as given: its rules for symbolic links, and for files that may
-/// not be written, hold for replacing, too.
+/// not be written, hold for replacing, too. Refuses what the run reads.
 Target Find(const std::string& name)
 {
   Target target;
@@ -100,6 +101,10 @@ Target Find(const std::string& name)
   if (target.Exists && S_ISDIR(target.Status.st_mode))
   {
     FailToWrite(name, "it is a directory");
+  }
+  if (target.Exists && IsSource(target.Status))
+  {
+    throw UsageError(name + " would overwrite the input");
   }
   if (!target.IsReplaced())
   {
@@ -184,17 +189,10 @@ struct OutputFiles::Output
   std::unique_ptr<TemporaryFile> File;
 };
 
-void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
+void CheckOutputs(const std::vector<std::string>& outputs)
 {
-  std::set<Identity> sources, streams, found;
+  std::set<Identity> streams, found;
   struct stat status = {};
-  for (const std::string& input : inputs)
-  {
-    if (stat(input.c_str(), &status) == 0)
-    {
-      sources.insert(Identify(status));
-    }
-  }
   for (const int stream : { STDOUT_FILENO, STDERR_FILENO })
   {
     if (fstat(stream, &status) == 0)
@@ -213,10 +211,6 @@ void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std:
     if (target.Exists && S_ISCHR(target.Status.st_mode))
     {
       continue; // nobody's own: /dev/null, a terminal
-    }
-    if (sources.count(identity))
-    {
-      throw UsageError(output + " would overwrite the input");
     }
     if (!found.insert(identity).second)
     {

@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
-/// Says before the work what would prevent writing after it. Throws UsageError if an
-/// output is the same file as an input or another output, by whatever name or link;
-/// std::runtime_error if one cannot be written. An empty name is an output that nobody asked for.
-void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+/// Says before the work what would prevent writing after it, where OpenSources() was told of all that
+/// is read. Throws UsageError if an output is the same file as an input or another output, by whatever
+/// name or link; std::runtime_error if one cannot be written. An empty name is an output that nobody
+/// asked for.
+void CheckOutputs(const std::vector<std::string>& outputs);
 
 /// Outputs that belong together. Each is written under a fresh name beside its target; Commit()
 /// lets them take their places. Without it, and where the program is ended, all is as it was. A

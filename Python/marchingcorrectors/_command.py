@@ -211,6 +211,7 @@ def attributes_of(given, particles):
 def run_surface(given, particles):
     names = FREE_SURFACE if given.scalar is None else ISOSURFACE
     words = {**find_words(given, names, particles), "attributes": attributes_of(given, particles)}
+    words.setdefault("iso_value", len(given.iso or ()) > 1)
     if given.scalar is None:
         surface = free_surface(particles, given.iso or 0.5, **words)
     elif given.iso is None or given.free_surface:

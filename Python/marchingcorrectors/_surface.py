@@ -3,6 +3,7 @@
 """Results of the functions: a surface, samples, derivatives, an image."""
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field as dataclass_field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
@@ -71,12 +72,12 @@ class Surface(Result):
     correction_length: Optional[np.ndarray] = None  #: (points,) float32, L
     residual: Optional[np.ndarray] = None  #: (points,) float32, field minus iso value, scalar unit
     boundary_flag: Optional[np.ndarray] = None  #: (points,) uint8, see isosurface()
-    iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
-    widening: Optional[np.ndarray] = None  #: (points,) float64, the factor of smoothing lengths, with widen
     nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
     mean_curvature: Optional[np.ndarray] = None  #: (points,) float64, 1 / L; 1 / R for a drop of radius R
     gauss_curvature: Optional[np.ndarray] = None  #: (points,) float64, 1 / L^2; not in two dimensions
     point_keys: Optional[np.ndarray] = None  #: (points, 3) uint64
+    widening: Optional[np.ndarray] = None  #: (points,) float64, the factor of smoothing lengths, with widen
+    iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
     triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
     line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
@@ -158,8 +159,8 @@ class Surface(Result):
         """Writes a file, whose name's end tells the format.
 
         .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of
-        numbers as properties of the points. .vtp, .vtk, .stl, .obj: by PyVista. All others: by
-        meshio. Formats that hold no arrays get the triangles alone; a warning says so.
+        numbers as properties of the points, as the program writes them. .vtp, .vtk, .stl, .obj: by
+        PyVista. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
         """
         path = Path(path)
         ending = path.suffix.lower()
@@ -198,27 +199,32 @@ PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "c
 
 
 def _save_ply(path, surface):
-    arrays, columns = surface.point_arrays(), []  # (property, values) of the points
-    arrays.pop("Normals", None)
-    named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], surface.normals)]
+    """The bytes that the program writes: a vector has the properties NAME_x, NAME_y and NAME_z."""
+    arrays, columns = surface.point_arrays(), {}  # {property: values} of the points
+    normals = arrays.pop("Normals", None)
+    named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], normals)]
     for name, array in arrays.items():
-        name, width = "_".join(name.split()), int(np.prod(array.shape[1:]))
-        named.append(([name] if array.ndim == 1 else [f"{name}_{i}" for i in range(width)], array))
+        width = int(np.prod(array.shape[1:]))
+        named.append(([name] if width == 1 else [f"{name}_{'xyz'[i] if width < 4 else i}" for i in range(width)], array))
     for names, array in named:
         if array is not None and array.dtype.kind in "fiub":
             array = array.astype(np.uint8) if array.dtype == bool else array
             array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)  # PLY has no int64
-            columns += zip(names, array.reshape(len(array), len(names)).T)
-    lines = ["ply", "format binary_little_endian 1.0", "comment marching-correctors", f"element vertex {len(surface.points)}",
-             *(f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns),
-             f"element face {len(surface.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
-    points = np.zeros(len(surface.points), [(str(i), "<" + column.dtype.str[1:]) for i, (_, column) in enumerate(columns)])
-    for i, (_, column) in enumerate(columns):
-        points[str(i)] = column
-    faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<i4", 3)])
+            for name, column in zip(names, array.reshape(len(array), len(names)).T):
+                name = re.sub("[\0- ]", "_", name)
+                while name in columns:
+                    name += "_"
+                columns[name] = column
+    lines = ["ply", "format binary_little_endian 1.0", "comment by marching-correctors", f"element vertex {len(surface.points)}",
+             *(f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns.items()),
+             f"element face {len(surface.triangles)}", "property list uchar uint vertex_indices", "end_header", ""]
+    points = np.zeros(len(surface.points), [(name, "<" + column.dtype.str[1:]) for name, column in columns.items()])
+    for name, column in columns.items():
+        points[name] = column
+    faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<u4", 3)])
     faces["count"], faces["corners"] = 3, surface.triangles
     with open(path, "wb") as file:
-        for part in ("\n".join(lines).encode(), points.tobytes(), faces.tobytes()):
+        for part in ("\n".join(lines).encode(errors="replace"), points.tobytes(), faces.tobytes()):
             file.write(part)
 
 

@@ -42,7 +42,7 @@ class Formats(CommandLineTest):
 
     def test_ply(self):
         points, triangles = self.counts()
-        data = self.extract_as(".ply")
+        data = self.extract_as(".ply", "--output-precision", "single", "--no-attributes")
         head, body = data.split(b"end_header\n", 1)
         self.assertIn(f"element vertex {points}\n".encode(), head)
         self.assertIn(f"element face {triangles}\n".encode(), head)
@@ -55,6 +55,27 @@ class Formats(CommandLineTest):
             n, *corners = struct.unpack_from("=B3i", body, 24 * points + 13 * i)
             self.assertEqual(n, 3)
             self.assertTrue(all(0 <= c < points for c in corners) and len(set(corners)) == 3)
+
+    def test_ply_arrays(self):
+        """Properties of the points' own types, as .vtp has the arrays; a name that is there already gets another one."""
+        self.arrays.update({"x": [1.5] * len(self.points), "a b": list(range(len(self.points)))})
+        files.write_vtp(self.input, self.points, self.arrays)
+        data = self.extract_as(".ply")
+        head, body = data.split(b"end_header\n", 1)
+        properties = [line.split()[1:] for line in head.decode().split("element face")[0].splitlines() if line[:8] == "property"]
+        names = [name for _, name in properties]
+        self.assertEqual(names[:6], ["x", "y", "z", "nx", "ny", "nz"])
+        self.assertTrue({"Velocity_x", "Velocity_y", "Velocity_z", "x_", "a_b"} < set(names), names)
+        self.assertNotIn("IsoValue", names)
+        row = struct.Struct("<" + "".join({"float": "f", "double": "d"}[kind] for kind, _ in properties))
+        points = int(head.split(b"element vertex ")[1].split()[0])
+        self.assertGreater(points, 100)
+        for i in range(points):
+            values = dict(zip(names, row.unpack_from(body, i * row.size)))
+            self.assertAlmostEqual(values["x_"], 1.5)
+            for axis in "xyz":  # the velocity is the place; at the surface the mean of one side
+                self.assertAlmostEqual(values["Velocity_" + axis], values[axis], delta=0.1)
+        self.assertIn(b"property double IsoValue\n", self.extract_as(".ply", "--iso", "0.4,0.5").split(b"end_header")[0])
 
     def test_obj(self):
         points, triangles = self.counts()
@@ -70,7 +91,7 @@ class Formats(CommandLineTest):
         files.write_vtp(self.input, self.points, self.arrays)
         self.extract_as(".obj", "--output-precision", "single")
         found = [tuple(map(float, line.split()[1:])) for line in self.output.read_text().splitlines() if line[:2] == "v "]
-        data = self.extract_as(".ply", "--output-precision", "single")
+        data = self.extract_as(".ply", "--output-precision", "single", "--no-attributes")
         start = data.index(b"end_header\n") + len(b"end_header\n")
         self.assertGreater(len(found), 100)
         for i, place in enumerate(found):
@@ -80,19 +101,19 @@ class Formats(CommandLineTest):
         """The array of --color-by is in a .ply file as colours; what others leave out is said."""
         points, triangles = self.counts()
         self.output = self.directory / "surface.ply"
-        self.extract_good("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7")
+        self.extract_good("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7",
+                          "--attributes", "Velocity", "--output-precision", "single")
         head, body = self.output.read_bytes().split(b"end_header\n", 1)
         self.assertIn(b"property uchar red\nproperty uchar green\nproperty uchar blue\n", head)
-        self.assertEqual(len(body), 27 * points + 13 * triangles)
+        self.assertEqual(len(body), 51 * points + 13 * triangles)
         speeds = []
         for i in range(points):
-            x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 27 * i)
+            x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 51 * i)
             speeds.append(((x * x + y * y + z * z) ** 0.5, green))
         speeds.sort()  # the speed is about the distance from the centre; the colours grow in green with it
         self.assertLess(speeds[0][1], 60)
         self.assertEqual(speeds[-1][1], 231)  # the last colour, beyond the range
-        for ending, hint in ((".ply", "--color-by NAME makes colours of one"), (".obj", "--no-attributes"),
-                             (".stl", ".vtp keeps all")):
+        for ending, hint in ((".obj", "--no-attributes"), (".stl", ".vtp keeps all, .ply those of numbers")):
             self.output = self.directory / ("surface" + ending)
             self.one_sentence(self.extract("--free-surface", "--quiet"), 0,
                               f"warning: {ending} files hold no arrays, so these are left out: .*Velocity.*{hint}")

@@ -40,6 +40,14 @@ class Command(unittest.TestCase):
             self.assertEqual((mine.points.tobytes(), mine.faces.tolist()), (its.points.tobytes(), its.faces.tolist()))
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
+    def test_ply(self):
+        """Byte for byte the program's, with every array."""
+        for words in (["--free-surface"], ["--free-surface", "--smooth", "--iso", "0.4,0.5", "--curvature"],
+                      ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"]):
+            mine, its = (Path(path).read_bytes() for path in self.run_it("surface", "a.ply", *FLUID, "--cube-factor", "2", *words))
+            self.assertEqual(b"property float Velocity_z\n" in mine, words[0] != "--no-attributes")
+            self.assertTrue(mine == its, words)
+
     def test_period_and_curvature(self):
         """The period of the file."""
         line = np.arange(12) * 0.1

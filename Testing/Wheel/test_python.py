@@ -382,7 +382,7 @@ class Files(unittest.TestCase):
                 mesh.cells_dict[5] if name == "a.vtu" else mesh.faces.reshape(-1, 4)[:, 1:]
             self.assertEqual(corners.tolist(), self.surface.triangles.tolist(), name)
             data = mesh.point_data
-            if name != "a.ply":  # of which PyVista reads the triangles alone
+            if name != "a.ply":  # of which PyVista reads triangles, normals and colours alone
                 np.testing.assert_allclose(data["speed"], self.surface.attributes["speed"], err_msg=name)
                 np.testing.assert_allclose(data["where"], self.surface.attributes["where"], err_msg=name)
             self.assertEqual(sentences, [])
@@ -393,7 +393,7 @@ class Files(unittest.TestCase):
         self.assertEqual(mesh.points.tobytes(), self.surface.points.tobytes())
         self.assertEqual(mesh.cells_dict["triangle"].tolist(), self.surface.triangles.tolist())
         np.testing.assert_array_equal(mesh.point_data["speed"], self.surface.attributes["speed"])
-        np.testing.assert_array_equal(mesh.point_data["where_1"], self.surface.attributes["where"][:, 1])
+        np.testing.assert_array_equal(mesh.point_data["where_y"], self.surface.attributes["where"][:, 1])
         np.testing.assert_array_equal(mesh.point_data["id"], self.surface.attributes["id"])
         np.testing.assert_array_equal(mesh.point_data["nz"], self.surface.normals[:, 2])
         loaded = trimesh.load(path, process=False)

@@ -6,6 +6,7 @@
 #include "DataFile.h"
 #include "Ending.h"
 #include "Extra.h"
+#include "FileName.h"
 #include "Job.h"
 #include "Messages.h"
 #include "OptionValue.h"
@@ -135,6 +136,10 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
   if (filter == job.Surface)
   {
+    // One iso value of all points tells nothing, unless it is their colour.
+    const std::string& color = job.Picture.ColorBy;
+    job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
+      job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !data->HasArray(color.c_str())));
     for (const std::string& name : ArraysWithoutPlace(job, particles))
     {
       filter->AddExcludedArray(name.c_str());
@@ -338,7 +343,7 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
   colors.Include(run.Surface);
   for (const std::string& sentence :
     { hasHints && job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "",
-      LostArrays(file, run.Surface, colors, ArraysWithoutPlace(job, particles)) })
+      LostArrays(file, run.Surface, ArraysWithoutPlace(job, particles)) })
   {
     run.Warnings.insert(run.Warnings.end(), sentence.empty() ? 0 : 1, sentence);
   }

@@ -30,8 +30,9 @@ bool IsSurfaceFile(const std::string& file);
 /// ".vtp, .stl, ... or .obj": the endings of these formats, for sentences and the help.
 std::string SurfaceFileEndings();
 
-/// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles
-/// and normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays.
+/// The bytes of a surface in the format of the file's ending. .stl and .obj have triangles
+/// and normals; .ply also colours, and all arrays of numbers; .csv the points of lines with all
+/// arrays.
 /// Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
@@ -46,8 +47,8 @@ bool HoldsArrays(const std::string& file);
 
 /// A sentence about the arrays that a file in this format does not hold, those of the surface and
 /// more; empty if it has all.
-std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
-  const std::vector<std::string>& more);
+std::string LostArrays(
+  const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more);
 
 /// Whether this is a .pvtp file, which lists one piece per process.
 bool IsInPieces(const std::string& file);

@@ -12,12 +12,14 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTriangle.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -141,39 +143,122 @@ void WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// Writes .ply without VTK's writer, which leaves the normals out.
+/// A type of .ply files: its name, its size, and how a value is put. Integers of 64 bits have none.
+struct PlyType
+{
+  const char* Name;
+  std::size_t Size;
+  void (*PutValue)(char*& next, double value);
+};
+
+template <typename T>
+PlyType MakePlyType(const char* name)
+{
+  return { name, sizeof(T), [](char*& next, double value) { Put(next, static_cast<T>(value)); } };
+}
+
+PlyType FindPlyType(vtkDataArray* array)
+{
+  switch (array->GetDataType())
+  {
+    case VTK_FLOAT:
+      return MakePlyType<float>("float");
+    case VTK_INT:
+      return MakePlyType<std::int32_t>("int");
+    case VTK_UNSIGNED_INT:
+      return MakePlyType<std::uint32_t>("uint");
+    case VTK_SHORT:
+      return MakePlyType<std::int16_t>("short");
+    case VTK_UNSIGNED_SHORT:
+      return MakePlyType<std::uint16_t>("ushort");
+    case VTK_CHAR:
+    case VTK_SIGNED_CHAR:
+      return MakePlyType<std::int8_t>("char");
+    case VTK_UNSIGNED_CHAR:
+    case VTK_BIT:
+      return MakePlyType<std::uint8_t>("uchar");
+    default:
+      return MakePlyType<double>("double");
+  }
+}
+
+/// Writes .ply, with a property for each component of each array of numbers: of a vector NAME_x,
+/// NAME_y and NAME_z, as Blender and splashsurf name them. VTK's writer leaves
+/// all of them out.
 void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
-  vtkDataArray* normals = surface->GetPointData()->GetNormals();
-  vtkDataArray* colored = scale.ArrayOf(surface);
-  const std::vector<unsigned char> colors =
-    colored ? scale.Map(colored) : std::vector<unsigned char>();
-  std::ostringstream head;
-  head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
-       << surface->GetNumberOfPoints() << "\nproperty float x\nproperty float y\nproperty float z";
-  head << (normals ? "\nproperty float nx\nproperty float ny\nproperty float nz" : "");
-  head << (colored ? "\nproperty uchar red\nproperty uchar green\nproperty uchar blue" : "");
-  head << "\nelement face " << surface->GetNumberOfPolys()
-       << "\nproperty list uchar int vertex_indices\nend_header\n";
-  bytes = head.str();
-  const auto points = static_cast<std::size_t>(surface->GetNumberOfPoints());
-  char* next = Grow(bytes,
-    points * (12u + (normals ? 12u : 0u) + (colored ? 3u : 0u)) +
-      13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
-  double vector[3];
-  for (std::size_t i = 0; i < points; ++i)
+  struct Property
   {
-    const auto id = static_cast<vtkIdType>(i);
-    surface->GetPoint(id, vector);
-    PutVector(next, vector);
-    if (normals)
+    PlyType Type;
+    vtkDataArray* Array;
+    int Component;
+  };
+  std::vector<Property> properties;
+  std::set<std::string> names;
+  std::ostringstream head;
+  std::size_t size = 0;
+  const auto add = [&](vtkDataArray* array, int component, std::string name)
+  {
+    std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    while (!names.insert(name).second)
     {
-      normals->GetTuple(id, vector);
-      PutVector(next, vector);
+      name += "_";
     }
-    for (std::size_t c = 0; colored && c < 3; ++c)
+    properties.push_back({ FindPlyType(array), array, component });
+    head << "\nproperty " << properties.back().Type.Name << " " << name;
+    size += properties.back().Type.Size;
+  };
+  const vtkIdType points = surface->GetNumberOfPoints();
+  head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
+       << points;
+  vtkPointData* data = surface->GetPointData();
+  vtkNew<vtkFloatArray> nowhere; // of a surface without points
+  nowhere->SetNumberOfComponents(3);
+  vtkDataArray* normals = data->GetNormals();
+  vtkNew<vtkUnsignedCharArray> colors;
+  vtkDataArray* colored = scale.ArrayOf(surface);
+  std::vector<unsigned char> mapped = colored ? scale.Map(colored) : std::vector<unsigned char>();
+  colors->SetNumberOfComponents(3);
+  colors->SetArray(mapped.data(), static_cast<vtkIdType>(mapped.size()), 1);
+  for (int c = 0; c < 3; ++c)
+  {
+    add(surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), c,
+      std::string(1, "xyz"[c]));
+  }
+  for (int c = 0; normals && c < 3; ++c)
+  {
+    add(normals, c, std::string("n") + "xyz"[c]);
+  }
+  const char* const colorNames[] = { "red", "green", "blue" };
+  for (int c = 0; colored && c < 3; ++c)
+  {
+    add(colors, c, colorNames[c]);
+  }
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i); // text has no place
+    const int components = array && array != normals ? array->GetNumberOfComponents() : 0;
+    for (int c = 0; c < components; ++c)
     {
-      Put(next, colors[3 * i + c]);
+      add(array, c,
+        array->GetName() +
+          (components == 1      ? ""
+              : components <= 3 ? std::string("_") + "xyz"[c]
+                                : "_" + std::to_string(c)));
+    }
+  }
+  head << "\nelement face " << surface->GetNumberOfPolys()
+       << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  bytes = head.str();
+  char* next = Grow(bytes,
+    size * static_cast<std::size_t>(points) +
+      13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
+  for (vtkIdType i = 0; i < points; ++i)
+  {
+    for (const Property& property : properties)
+    {
+      property.Type.PutValue(next, property.Array->GetComponent(i, property.Component));
     }
   }
   ForTriangles(surface,
@@ -182,7 +267,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
       Put(next, static_cast<std::uint8_t>(3));
       for (int k = 0; k < 3; ++k)
       {
-        Put(next, static_cast<std::int32_t>(corners[k]));
+        Put(next, static_cast<std::uint32_t>(corners[k]));
       }
     });
 }
@@ -339,11 +424,11 @@ bool IsFilmStep(const std::string& file)
 
 bool HoldsArrays(const std::string& file)
 {
-  return !EndsWith(file, ".ply") && !EndsWith(file, ".stl") && !EndsWith(file, ".obj");
+  return !EndsWith(file, ".stl") && !EndsWith(file, ".obj");
 }
 
-std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
-  const std::vector<std::string>& more)
+std::string LostArrays(
+  const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more)
 {
   const bool isPly = EndsWith(file, ".ply");
   std::string names;
@@ -354,21 +439,18 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
   vtkPointData* arrays = surface->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
-    vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    const std::string name = array->GetName();
-    const bool isHeld = name == "Normals" || name == "IsoValue" || name == "Widening" ||
-      (isPly && array == colors.ArrayOf(surface));
+    const std::string name = arrays->GetArrayName(i);
+    const bool isHeld = isPly ? arrays->GetArray(i) != nullptr
+                              : name == "Normals" || name == "IsoValue" || name == "Widening";
     names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
   }
-  if (HoldsArrays(file) || names.empty() || (isPly && !colors.GetName().empty()))
+  if ((HoldsArrays(file) && !isPly) || names.empty())
   {
     return "";
   }
-  return fs::path(file).extension().string() +
-    " files hold no arrays, so these are left out: " + names +
-    (isPly ? "; --color-by NAME makes colours of one"
-           : "; .vtp keeps all, .ply has colours by --color-by") +
-    ", --no-attributes makes none";
+  return fs::path(file).extension().string() + " files hold no " + (isPly ? "text" : "arrays") +
+    ", so these are left out: " + names + "; .vtp keeps all" +
+    (isPly ? "" : ", .ply those of numbers") + ", --no-attributes makes none";
 }
 
 bool IsInPieces(const std::string& file)

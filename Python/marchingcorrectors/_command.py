@@ -18,6 +18,7 @@ from ._functions import free_surface, isosurface, probe
 from ._library import InvalidArgument
 from ._meters import gauge
 from .io._outputs import Outputs
+from .io._particles import TILTED
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, Options, words_of
 
 
@@ -193,6 +194,8 @@ def find_words(given, names, particles):
     if solids in ("weight", "ignore"):
         words["wall_share"] = 0.0
     if words.get("periodic") == "auto":
+        if particles.cell is not None:
+            raise InvalidArgument(f"{particles.file}: {TILTED} Leave out --periodic.")
         if particles.period is None:
             raise InvalidArgument(f"{particles.file} tells no period. Give --periodic LX,LY,LZ.")
         del words["periodic"]  # which is taken

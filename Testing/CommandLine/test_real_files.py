@@ -299,6 +299,8 @@ class RealFiles(CommandLineTest):
         self.check_table("bare.tsv", "\n".join("\t".join(map(repr, p)) for p in points))
         self.extract_good("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
         self.refuse_texts("bad.csv", [
+            ("x,y,a\n1,2,3\n", "of the three columns of positions only x and y is found; there are x, y, a"),
+            ("x,y,z,id\n1,2,3,\"1,234\"\n", "line 2 has '1,234' in a table with commas"),
             ("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
             ("x|y|z\n1|2|3\n", "no columns of positions, .* there are x.y.z"),
             ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"), ("x,y,z\n", "holds no points"),
@@ -355,6 +357,12 @@ class RealFiles(CommandLineTest):
         self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
         self.check_table("scaled.dump", step(100, 5, "id type xs ys zs vx", True), volume=0.125, words="period")
         self.check_table("dump.txt", step(100, 5), volume=0.125, words="period")
+        tilted = "BOX BOUNDS xy xz yz pp pp pp\n-1 2 0.5\n0 3 0.5\n0 4 1\n"  # sides (2, 0, 0), (0.5, 2, 0), (0.5, 1, 4)
+        rows = [((x + 1 - 0.5 * s - 0.5 * z / 4) / 2, s, z / 4) for x, y, z in block((5, 5, 5)) for s in ((y - z / 4) / 2,)]
+        self.check_table("tilted.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n125\nITEM: " + tilted + "ITEM: ATOMS xs ys zs\n" +
+                         "\n".join(f"{x} {y} {z}" for x, y, z in rows) + "\n", volume=0.125, words="cell of the particles is tilted")
+        self.refuse(self.extract(*FREE, *H, "--periodic", "auto", source=self.directory / "tilted.dump"), 1,
+                    "cell of the particles is tilted, and periods here are along the axes.* Leave out --periodic")
         film = self.directory / "film.dump"
         film.write_text("".join(step(100 * n, n) for n in (4, 6, 9)))
         self.assertEqual([(t, round(level, 1)) for t, _, level in self.levels([film], *H)],

@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """marchingcorrectors.io: tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files against
 NumPy's own reading of the same bytes; damaged ones against a sentence."""
+import os
 import re
 import struct
+import subprocess
+import sys
 import unittest
 
 import h5py
@@ -223,9 +226,140 @@ class AgainstNumPy(Case):
                     self.assertEqual(particles.time, step / 4 if steps else None)
 
 
+BOX = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS "
+ROWS = "ITEM: ATOMS id type xs ys zs\n1 1 0.25 0.5 0.75\n2 1 0.5 0.5 0.5\n"
+TILTED = "0 26 4\n0 23 2\n0 20 3\n"  # a cell of 20 x 20 x 20 in a box of 26 x 23 x 20
+VECTORS = "20 0 0 1\n4 20 0 2\n2 3 20 3\n"
+XYZ = 'Properties=species:S:1:pos:R:3 Lattice="{}" pbc="{}"'
+TWO = 'A 1 2 3\nB 4 5 6\n'
+
+# The name of a file, its text, and what both readers must say of it: a sentence's words, or nothing and its period.
+CASES = {
+    "columns": ("a.csv", "x,y,z,Rhop,Vel:0,Vel:1,Vel:2\n1,2,3,1000,1,2,3\n4,5,6,1001,4,5,6\n", None),
+    "names that stand twice": ("a.csv", "x,y,z,a,a,a_\n1,2,3,4,5,6\n4,5,6,7,8,9\n", None),
+    "positions that stand twice": ("a.csv", "X,y,z,x\n1,2,3,4\n4,5,6,7\n", None),
+    "no third position": ("a.csv", "x,y,a\n1,2,3\n4,5,6\n", "positions only x and y is found; there are x, y, a"),
+    "a vector of two": ("a.csv", "Points:0,Points:1,Ponits:2\n1,2,3\n", "positions only Points:0 and Points:1 is found"),
+    "no third position in columns": ("a.txt", "# x y zz\n1 2 3\n", "positions only x and y is found; there are x, y, zz"),
+    "two columns": ("a.csv", "x,y\n1,2\n3,4\n", None),
+    "thousands": ("a.csv", 'x,y,z,a\n1,2,3,"1,234"\n', "has '1,234' in a table with commas between columns"),
+    "millions": ("a.csv", 'x,y,z,a\n1,2,3,5\n"1,234,567.5",2,3,4\n', "has '1,234,567.5' in a table"),
+    "quoted text": ("a.csv", 'x,y,z,who\n1,2,3,"a, b"\n', None),
+    "decimal commas": ("a.csv", "x;y;z;a\n1,5;2,25;3;1,234\n", None),
+    "large identifiers": ("a.csv", "x,y,z,id\n1,2,3,9007199254740993\n1,2,4,9007199254740992\n", None),
+    "large numbers of any name": ("a.csv", "x,y,z,n\n1,2,3,9007199254740993\n1,2,4,5\n", None),
+    "identifiers beyond 2^63": ("a.csv", "x,y,z,id\n1,2,3,18446744073709551615\n", "different ones would become equal"),
+    "an underscore": ("a.csv", "x,y,z,a\n1,2,3,4\n1,2,3,1_0.3\n", None),
+    "an underscore in a position": ("a.csv", "x,y,z\n1,2,1_0.3\n", "its positions are no numbers: '1_0.3'"),
+    "mixed positions": ("a.dump", BOX + "pp pp pp\n0 1\n0 1\n0 1\nITEM: ATOMS x ys z\n1 2 3\n4 5 6\n",
+                        "positions only x and z is found; there are x, ys, z"),
+    "a box": ("a.dump", BOX + "pp ff pp\n-1 1\n0 2\n0 4\n" + ROWS, None),
+    "a box without flags": ("a.dump", BOX.strip() + "\n-1 1\n0 2\n0 4\n" + ROWS, None),
+    "a tilted box": ("a.dump", BOX + "xy xz yz pp pp pp\n" + TILTED + ROWS, None),
+    "a tilted box of one period": ("a.dump", BOX + "xy xz yz pp ff fs\n" + TILTED + ROWS, None),
+    "a box tilted backwards": ("a.dump", BOX + "xy xz yz ff ff ff\n-6 20 -4\n-3 20 -2\n0 20 -3\n" + ROWS, None),
+    "vectors": ("a.dump", BOX + "abc origin pp pp pp\n" + VECTORS + ROWS, None),
+    "another box": ("a.dump", BOX + "abc pp pp pp\n" + VECTORS + ROWS, "line 5 begins a box of a kind that is not known"),
+    "a short box": ("a.dump", BOX + "xy xz yz pp pp pp\n0 26 4\n0 23\n0 20 3\n" + ROWS, "line 7 has 2 numbers, where a side of its box has 3"),
+    "no box": ("a.dump", BOX.rpartition("ITEM")[0] + ROWS, "shares of a box (xs, ys, zs), and it has no box"),
+    "an unknown item": ("a.dump", BOX + "pp pp pp\n0 1\n0 1\n0 1\nITEM: FRAME\n1\n" + ROWS, "is none of a dump"),
+    "units": ("a.dump", "ITEM: UNITS\nlj\n" + BOX + "pp pp pp\n0 1\n0 1\n0 1\n" + ROWS, None),
+    "a lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0 0 0 4", "T F T") + "\n" + TWO, None),
+    "a tilted lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 1 3 0 0 0 4", "T T T") + "\n" + TWO, None),
+    "a short lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0", "T T T") + "\n" + TWO, "line 2 has 6 values as its lattice"),
+    "one row more": ("a.xyz", "1\n\n" + TWO, "line 4 is one more than the 1 particles that the step says it has"),
+    "no count": ("a.xyz", "1 2 3\n4 5 6\n", None),
+}
+PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is tilted", "vectors": "none, as its cell is tilted",
+           "a tilted box of one period": [0, 20, 0, 0, 0, 0], "a lattice": [0, 2, 0, 0, 0, 4], "units": [0, 1, 0, 1, 0, 1],
+           "a tilted lattice": "none, as its cell is tilted"}
+
+
+@unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
+class AsTheProgram(Case):
+    """The program and Python read the same of the same files, or both refuse them."""
+
+    def list_arrays(self, path):
+        return subprocess.run([os.environ["MCOR_TEST_PROGRAM"], "--list-arrays", str(path)], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+
+    def describe(self, particles):
+        """As --list-arrays does: {name: (components, kind, lowest and highest values)}."""
+        found = {"positions": particles.positions, **{name: particles.arrays[name] for name in particles.arrays}}
+        if "vx" in found:
+            found.pop("Velocity", None)  # three arrays of the file
+        return {name: (values[0].size, values.dtype.kind if values.dtype.kind in "fi" else "-", [] if values.dtype.kind == "U" else
+                       [float(f"{each:.9g}") for end in (np.nanmin, np.nanmax) for each in np.ravel(end(values, axis=0))])
+                for name, values in found.items()}
+
+    def described(self, text):
+        found = {}
+        for line in text.splitlines():
+            word, rest = line[:18].strip(), line[18:]
+            name, _, about = rest.partition(": ") if word == "array" else (word, "", "3 components, double, " + rest)
+            if word in ("array", "positions"):
+                components, kind, values = about.split(", ", 2)
+                ends = re.sub(r"[^-+.e0-9]+", " ", values.replace(" .. ", " ")) if values != "not numbers" else ""
+                found[name] = int(components.split()[0]), "-" if not ends else "f" if kind in ("double", "float") else "i", [
+                    float(word) for word in ends.split()]
+        return found, re.search(r"^period +(.*?)(?: \(field.*)?$", text, re.M)[1]
+
+    def compare(self, path, period=None):
+        done = self.list_arrays(path)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        found, told = self.described(done.stdout)
+        particles = io.read(path)
+        self.assertEqual(found, self.describe(particles))
+        mine = "none" if particles.period is None else list(particles.period)
+        mine = "none, as its cell is tilted" if particles.cell is not None else mine
+        self.assertEqual(told if told.startswith("none") else [float(word) for word in told.split(",")], mine)
+        self.assertEqual(mine, period or "none")
+        return particles
+
+    def test_cases(self):
+        for case, (name, text, words) in CASES.items():
+            with self.subTest(case):
+                self.at(name).write_text(text)
+                if words is None:
+                    self.compare(self.at(name), PERIODS.get(case))
+                    continue
+                done = self.list_arrays(self.at(name))
+                self.assertEqual(done.returncode, 1)
+                self.assertIn(words, done.stderr)
+                self.assert_refused(words, self.at(name))
+        self.at("a.csv").write_text(CASES["large identifiers"][1])
+        self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
+
+    def test_tilted_cells(self):
+        """Positions by hand; and what is said where a period is asked for."""
+        for case in ("a tilted box", "a tilted box of one period", "vectors"):
+            self.at("a.dump").write_text(CASES[case][1])
+            low = np.array([1.0, 2, 3]) if case == "vectors" else np.zeros(3)
+            wanted = [[0.25 * 20 + 0.5 * 4 + 0.75 * 2, 0.5 * 20 + 0.75 * 3, 0.75 * 20], [13, 11.5, 10]]
+            self.assertEqual(io.read(self.at("a.dump")).positions.tolist(), (low + wanted).tolist())
+        self.at("a.dump").write_text(CASES["a tilted box"][1])
+        convert([self.at("a.dump")], self.at("b.vtp"))
+        for name in ("a.dump", "b.vtp"):
+            words = [str(self.at(name)), str(self.at("o.vtp")), "--free-surface", "--smoothing-length", "9", "--periodic", "auto"]
+            for command in ([os.environ["MCOR_TEST_PROGRAM"]], [sys.executable, "-m", "marchingcorrectors", "surface"]):
+                done = subprocess.run(command + words, stderr=subprocess.PIPE, text=True)
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+                self.assertIn("cell of the particles is tilted", done.stderr)
+            with self.assertWarnsRegex(mc.InputWarning, "cell of the particles is tilted"):
+                mc.free_surface(io.read(self.at(name)), smoothing_length=9.0)
+
+    def test_random_files(self):
+        for seed in range(6):
+            random = np.random.default_rng([57, seed])
+            for name, write in {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 1, True),
+                                "a.dump": lambda path, r: write_lammps(path, r, 1, seed % 2)}.items():
+                write(self.at(name), random)
+                self.compare(self.at(name), {"a.xyz": [0, 2, 0, 0, 0, 4], "a.dump": [-1, 3, 0, 0, 0.5, 4.5]}.get(name))
+
+
 class Tables(Case):
     def test_names(self):
-        self.at("p.csv").write_text("X;Y;VelX;VelY;VelZ;rho;Type\n1,5;2;1;2;3;1000;0\n2,5;3;4;5;6;;3\n")
+        self.at("p.csv").write_text("X;Y;Z;VelX;VelY;VelZ;rho;Type\n1,5;2;0;1;2;3;1000;0\n2,5;3;0;4;5;6;;3\n")
         particles = io.read(self.at("p.csv"))
         self.assertEqual(particles.positions.tolist(), [[1.5, 2, 0], [2.5, 3, 0]])
         self.assertEqual(particles.arrays["Vel"].tolist(), [[1, 2, 3], [4, 5, 6]])
@@ -280,7 +414,8 @@ class Tables(Case):
                 ("p.txt", "1 2 3\0", "is no text"),
                 ("p.xyz", "5\n\nO 1 2 3\n", "claims 5 particles"),
                 ("p.xyz", "99999999999999\n\nO 1 2 3\n", "claims 99999999999999 particles"),
-                ("p.xyz", "water\n", "line 1 does not say how many"),
+                ("p.xyz", "water\n", "has no row of values"),
+                ("p.xyz", "1\n\nO 1 2 3\n\nwater\n", "line 5 does not say how many"),
                 ("p.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z\n1 2 3\n", "claims 9 particles"),
                 ("p.dump", "ITEM: TIMESTEP\n", "is no time")):
             self.at(name).write_text(text)

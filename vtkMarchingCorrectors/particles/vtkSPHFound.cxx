@@ -35,12 +35,21 @@ vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
 
 vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
 {
+  vtkSPHPeriod found;
   std::deque<std::vector<double>> values;
   std::vector<mcor_field_data> arrays;
   for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    if (array && mcor_tells_of_period(array->GetName()) && array->GetNumberOfValues() <= 6)
+    if (!array || !mcor_tells_of_period(array->GetName()))
+    {
+      continue;
+    }
+    if (array->GetNumberOfValues() == 9)
+    {
+      found.Array = array->GetName(); // the sides of a tilted cell, as vectors
+    }
+    if (array->GetNumberOfValues() <= 6)
     {
       const int components = array->GetNumberOfComponents();
       values.emplace_back();
@@ -51,7 +60,6 @@ vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
       arrays.push_back({ array->GetName(), values.back().data(), array->GetNumberOfValues() });
     }
   }
-  vtkSPHPeriod found;
   double period[6];
   int which;
   const int numbers =

@@ -32,7 +32,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles
 struct vtkSPHPeriod
 {
   std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
-  std::string Array;          ///< the array that tells it
+  std::string Array;          ///< the array that tells it, or, without a period, of a tilted cell
 };
 
 /** Finds it, see mcor_find_period. */

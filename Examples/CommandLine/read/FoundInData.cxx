@@ -43,6 +43,11 @@ std::string DescribeRange(vtkDataArray* array)
   return ends[0].str() + " .. " + ends[1].str();
 }
 
+const std::string TiltedPeriod = "The cell of the particles is tilted, and periods here are along "
+                                 "the axes: nothing goes on across "
+                                 "its sides. Positions that are not wrapped (xu, yu, zu in dumps "
+                                 "of LAMMPS) leave its bodies whole.";
+
 /// "1,1,0", or nothing.
 std::string TextOf(const vtkSPHPeriod& found)
 {
@@ -59,7 +64,8 @@ std::string TextOf(const vtkSPHPeriod& found)
 std::string DescribeArrays(vtkPointSet& particles)
 {
   std::ostringstream text;
-  text << "particles         " << particles.GetNumberOfPoints() << "\n";
+  text << "particles         " << particles.GetNumberOfPoints() << "\npositions         "
+       << DescribeRange(particles.GetPoints()->GetData()) << "\n";
   vtkPointData* data = particles.GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
@@ -92,7 +98,8 @@ std::string DescribeArrays(vtkPointSet& particles)
     text << found.Fluid << " = " << found.FluidValue << " (give --fluid " << found.Fluid << "="
          << found.FluidValue << ")";
   }
-  text << "\nperiod            " << orNone(TextOf(period), "none")
+  text << "\nperiod            "
+       << orNone(TextOf(period), period.Array.empty() ? "none" : "none, as its cell is tilted")
        << (period.Period.empty() ? "" : " (field data " + period.Array + "; --periodic auto)")
        << "\ndimension         " << vtkNew<vtkMarchingCorrectors>()->FindDimension(&particles)
        << "\n";
@@ -105,7 +112,10 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
   {
     const std::string none = "The field data of the particles give no period: there is no array "
                              "PeriodicBounds, BoxSize, or box with boundaryType.";
-    throw std::runtime_error((problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
+    const bool isTilted = problem.empty() && !found.Array.empty();
+    throw std::runtime_error(isTilted
+        ? TiltedPeriod + " Leave out --periodic."
+        : (problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
   }
   return found.Period;
 }
@@ -114,7 +124,7 @@ std::string HintOfPeriod(vtkDataObject* particles)
 {
   const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
   return found.Period.empty()
-    ? ""
+    ? found.Array.empty() ? "" : TiltedPeriod
     : "the field data array " + Printable(found.Array) + " may be a period (" + TextOf(found) +
       "), but was not used; --periodic auto uses it, --periodic 0,0,0 confirms that there is none";
 }

@@ -18,6 +18,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 
 namespace
 {
@@ -100,13 +101,13 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
         continue;
       }
     }
-    AddRow(table, lines, cells);
+    AddRow(table, lines, cells, separator);
   }
   if (table.empty())
   {
     FailToRead(file, "it has no row of values");
   }
-  std::vector<std::size_t> positions = FindPositions(table);
+  std::vector<std::size_t> positions = FindPositions(file, table);
   const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0; // else names have to tell
   for (std::size_t c = 0; c < std::min(first, table.size()) && positions.size() == c; ++c)
   {
@@ -195,7 +196,8 @@ struct Step
 {
   vtkTypeInt64 Count = 0;
   std::vector<std::string> Names; ///< empty: as many as the first row has values
-  std::array<double, 6> Bounds = {};
+  std::vector<double> Cell;       ///< its three sides, as vectors; empty: it has none
+  std::array<double, 3> Origin = {};
   std::array<bool, 3> Periodic = {};
   double Time = std::numeric_limits<double>::quiet_NaN(); ///< where it is told
 };
@@ -221,18 +223,24 @@ bool FindXyzStep(Lines& lines, Step& step)
   lines.Need("the second line of a step");
   std::map<std::string, std::string> values = ValuesOf(lines.Get());
   step.Names = PropertiesOf(lines.File, values["properties"]);
-  const std::vector<double> side = NumbersOf(values["lattice"]);
-  const bool isBox = side.size() == 9 && side[1] == 0.0 && side[2] == 0.0 && side[3] == 0.0 &&
-    side[5] == 0.0 && side[6] == 0.0 && side[7] == 0.0;
+  step.Cell = NumbersOf(values["lattice"]);
   std::vector<View> words;
   Split(values["pbc"], ' ', words);
   const std::vector<double> origin = NumbersOf(values["origin"]);
-  for (std::size_t a = 0; a < 3 && isBox; ++a)
+  for (const auto& [key, count, least] : { std::tuple("lattice", step.Cell.size(), 9U),
+         std::tuple("pbc", words.size(), 3U), std::tuple("origin", origin.size(), 3U) })
   {
-    step.Periodic[a] =
-      words.size() != 3 || (words[a] != "F" && words[a] != "0" && words[a] != "False");
-    step.Bounds[2 * a] = origin.size() == 3 ? origin[a] : 0.0;
-    step.Bounds[2 * a + 1] = step.Bounds[2 * a] + side[4 * a];
+    if (count != least && !values[key].empty())
+    {
+      FailToRead(lines.File,
+        lines.Where() + " has " + std::to_string(count) + " values as its " + key + ", which are " +
+          std::to_string(least));
+    }
+  }
+  for (std::size_t a = 0; a < 3 && !step.Cell.empty(); ++a)
+  {
+    step.Periodic[a] = words.empty() || (words[a] != "F" && words[a] != "0" && words[a] != "False");
+    step.Origin[a] = origin.empty() ? 0.0 : origin[a];
   }
   const std::vector<double> time = NumbersOf(values["time"]);
   step.Time = time.size() == 1 ? time[0] : step.Time;
@@ -242,6 +250,71 @@ bool FindXyzStep(Lines& lines, Step& step)
 bool StartsWith(View text, View start)
 {
   return text.substr(0, start.size()) == start;
+}
+
+/// Reads the box of a dump: sides along the axes, or tilted (xy xz yz), where the first two numbers
+/// of a line are those of the box around the cell, or vectors with their origin (abc origin).
+void ReadBox(Lines& lines, std::vector<View> words, Step& step)
+{
+  const std::string kind = lines.Where();
+  const auto isFlag = [](View word)
+  { return word.size() == 2 && word.find_first_not_of("pfsm") == View::npos; };
+  if (words.size() >= 3 && std::all_of(words.end() - 3, words.end(), isFlag))
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      step.Periodic[a] = words[words.size() - 3 + a] == "pp";
+    }
+    words.resize(words.size() - 3);
+  }
+  const bool isTilted = words == std::vector<View>{ "xy", "xz", "yz" };
+  const bool isOfVectors = words == std::vector<View>{ "abc", "origin" };
+  if (!words.empty() && !isTilted && !isOfVectors)
+  {
+    FailToRead(lines.File, kind + " begins a box of a kind that is not known here");
+  }
+  const std::size_t count = isOfVectors ? 4 : isTilted ? 3 : 2;
+  std::array<std::vector<double>, 3> sides;
+  for (std::vector<double>& side : sides)
+  {
+    lines.Need("the bounds of the box");
+    side = NumbersOf(lines.Get());
+    if (side.size() != count)
+    {
+      FailToRead(lines.File,
+        lines.Where() + " has " + std::to_string(side.size()) +
+          " numbers, where a side of its box has " + std::to_string(count));
+    }
+  }
+  step.Cell.assign(9, 0.0);
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    step.Origin[a] = sides[a][isOfVectors ? 3 : 0];
+    step.Cell[4 * a] = sides[a][1];
+    for (std::size_t b = 0; b < 3 && isOfVectors; ++b)
+    {
+      step.Cell[3 * a + b] = sides[a][b];
+    }
+  }
+  if (isOfVectors)
+  {
+    return;
+  }
+  if (isTilted)
+  {
+    const double xy = sides[0][2], xz = sides[1][2], yz = sides[2][2];
+    step.Cell[3] = xy;
+    step.Cell[6] = xz;
+    step.Cell[7] = yz;
+    step.Origin[0] -= std::min({ 0.0, xy, xz, xy + xz });
+    step.Cell[0] -= std::max({ 0.0, xy, xz, xy + xz });
+    step.Origin[1] -= std::min(0.0, yz);
+    step.Cell[4] -= std::max(0.0, yz);
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    step.Cell[4 * a] -= step.Origin[a];
+  }
 }
 
 bool FindDumpStep(Lines& lines, Step& step)
@@ -278,17 +351,8 @@ bool FindDumpStep(Lines& lines, Step& step)
     }
     else if (StartsWith(line, "ITEM: BOX BOUNDS"))
     {
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        step.Periodic[a] = words.size() >= 6 && words[words.size() - 3 + a] == "pp";
-      }
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        lines.Need("the bounds of the box");
-        const std::vector<double> bounds = NumbersOf(lines.Get());
-        step.Bounds[2 * a] = bounds.empty() ? 0.0 : bounds[0];
-        step.Bounds[2 * a + 1] = bounds.size() < 2 ? 0.0 : bounds[1];
-      }
+      words.erase(words.begin(), words.begin() + 3);
+      ReadBox(lines, words, step);
     }
     else if (StartsWith(line, "ITEM: ATOMS"))
     {
@@ -296,9 +360,9 @@ bool FindDumpStep(Lines& lines, Step& step)
       step.Names = NamesOf(words);
       return true;
     }
-    else if (StartsWith(line, "ITEM:"))
+    else if (line == "ITEM: UNITS")
     {
-      lines.Need("what an item holds"); // UNITS
+      lines.Need("the name of its units");
     }
     else if (!line.empty())
     {
@@ -312,29 +376,59 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// The columns of positions of a step: as they are, unwrapped, or in units of the box, which are
-/// taken away.
-std::vector<std::size_t> PositionsOf(Table& table, const Step& step)
+/// The columns of positions of a step: as they are, unwrapped, or in units of the cell's sides,
+/// which are taken away.
+std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, const Step& step)
 {
-  std::vector<std::size_t> positions = FindPositions(table);
   for (const char* kind : { "u", "s", "su" })
   {
-    if (!positions.empty())
+    const std::vector<std::size_t> positions = FindAxes(table, kind);
+    if (positions.size() < 3 || FindAxes(table, "").size() == 3)
     {
-      break;
+      continue;
     }
-    positions = FindAxes(table, kind);
-    for (const std::size_t column : positions)
+    if (*kind == 's' && step.Cell.empty())
     {
-      const auto a = static_cast<std::size_t>(Small(table[column].Name)[0] - 'x');
-      for (double& x : table[column].Numbers)
+      FailToRead(file, "its positions are shares of a box (xs, ys, zs), and it has no box");
+    }
+    for (std::size_t row = 0; row < table.front().Numbers.size() && *kind == 's'; ++row)
+    {
+      std::array<double, 3> place = step.Origin;
+      for (std::size_t k = 0; k < 9; ++k)
       {
-        x =
-          *kind == 's' ? step.Bounds[2 * a] + x * (step.Bounds[2 * a + 1] - step.Bounds[2 * a]) : x;
+        place[k % 3] += table[positions[k / 3]].Numbers[row] * step.Cell[k];
+      }
+      for (std::size_t a = 0; a < 3; ++a)
+      {
+        table[positions[a]].Numbers[row] = place[a];
       }
     }
+    return positions;
   }
-  return positions;
+  return FindPositions(file, table);
+}
+
+/// Field data of the cell: six bounds, 0 where an axis has no period; or, where a side with a period
+/// is tilted, the cell itself, which vtkSPHFindPeriod() does not take for a period.
+std::vector<double> PeriodOf(const Step& step)
+{
+  std::vector<double> period(6);
+  for (std::size_t a = 0; a < 3 && !step.Cell.empty(); ++a)
+  {
+    for (std::size_t b = 0; b < 3 && step.Periodic[a]; ++b)
+    {
+      if (a != b && step.Cell[3 * a + b] != 0.0)
+      {
+        return step.Cell;
+      }
+    }
+    if (step.Periodic[a] && step.Cell[4 * a] > 0.0)
+    {
+      period[2 * a] = step.Origin[a];
+      period[2 * a + 1] = step.Origin[a] + step.Cell[4 * a];
+    }
+  }
+  return period;
 }
 
 /// How the steps of a file are found; null where it is a table, which is one.
@@ -391,31 +485,25 @@ vtkSmartPointer<vtkDataObject> ReadStep(
       names.insert(names.begin(), hasSpecies, "species");
       table = TableOf(names);
     }
-    AddRow(table, lines, cells);
+    AddRow(table, lines, cells, ' ');
   }
-  bool isMore = number == 0 && lines.Next(); // what is behind later steps is told of the next one
-  while (isMore && Trimmed(lines.Get()).empty())
+  for (cells.clear(); cells.empty() && lines.Next();)
   {
-    isMore = lines.Next();
+    Split(lines.Get(), ' ', cells);
   }
-  if (isMore &&
-    !(find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(Trimmed(lines.Get()), "ITEM:")))
+  const bool beginsStep = cells.empty() ||
+    (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(cells[0], "ITEM:"));
+  // Other lines behind later steps are told of the next one.
+  if (!beginsStep && (number == 0 || cells.size() == table.size()))
   {
     FailToRead(file,
       lines.Where() + " is one more than the " + std::to_string(step.Count) +
         " particles that the step says it has; correct that number");
   }
   table = table.empty() ? TableOf({ "x", "y", "z" }) : table;
-  const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(file, table, PositionsOf(table, step));
-  std::vector<double> period(6);
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    if (step.Periodic[a] && step.Bounds[2 * a] < step.Bounds[2 * a + 1])
-    {
-      period[2 * a] = step.Bounds[2 * a];
-      period[2 * a + 1] = step.Bounds[2 * a + 1];
-    }
-  }
+  const vtkSmartPointer<vtkPolyData> particles =
+    ParticlesOf(file, table, PositionsOf(file, table, step));
+  const std::vector<double> period = PeriodOf(step);
   if (period != std::vector<double>(6))
   {
     AddNumbers(particles, "PeriodicBounds", period);

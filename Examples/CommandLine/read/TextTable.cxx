@@ -152,7 +152,7 @@ Table TableOf(const std::vector<std::string>& names)
   return { names.begin(), names.end() };
 }
 
-void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
+void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator)
 {
   if (cells.size() != table.size())
   {
@@ -162,6 +162,14 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
   }
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
+    if (separator == ',' && cells[c].find(',') != View::npos && table[c].Words.empty() &&
+      cells[c].find_first_not_of("0123456789+-.,eEdD ") == View::npos)
+    {
+      FailToRead(lines.File,
+        lines.Where() + " has '" + std::string(cells[c]) +
+          "' in a table with commas between columns: write it without a comma, or semicolons "
+          "between columns, where a comma is that of decimals");
+    }
     table[c].Add(cells[c]);
   }
 }
@@ -188,6 +196,16 @@ int ComponentOf(const std::string& name, std::string& base)
   return digit >= '0' && digit <= '8'    ? digit - '0'
     : isInBrackets || axis == View::npos ? -1
                                          : static_cast<int>(axis % 3);
+}
+
+std::string NamesOf(const Table& table)
+{
+  std::string list;
+  for (std::size_t c = 0; c < table.size() && list.size() < 200; ++c)
+  {
+    list += (c ? ", " : "") + table[c].Name;
+  }
+  return list;
 }
 
 /// An array, and the columns of its components.
@@ -265,7 +283,7 @@ vtkSmartPointer<ArrayT> ArrayWith(const std::vector<ValueT>& values)
 }
 
 vtkSmartPointer<vtkAbstractArray> ArrayOf(
-  const Table& table, const std::vector<std::size_t>& columns)
+  const std::string& file, const Table& table, const std::vector<std::size_t>& columns)
 {
   const Column& first = table[columns[0]];
   if (columns.size() == 1 && !first.Words.empty())
@@ -277,11 +295,22 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
                   letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
     letters.end());
   const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
-  if (columns.size() == 1 && !first.Whole.empty() &&
+  const auto isLarge = [](double number) { return std::abs(number) >= 9007199254740992.0; };
+  const bool areLarge = columns.size() == 1 &&
+    std::any_of(first.Numbers.begin(), first.Numbers.end(), isLarge); // doubles are 2 apart there
+  const bool isIdentifier = columns.size() == 1 &&
     std::any_of(ends.begin(), ends.end(),
-      [&letters](const char* end) { return letters == end || EndsWith(letters, end); }))
+      [&letters](const char* end) { return letters == end || EndsWith(letters, end); });
+  if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
     return ArrayWith<vtkTypeInt64Array>(first.Whole); // which tells particles, or kinds, apart
+  }
+  if (isIdentifier && areLarge)
+  {
+    FailToRead(file,
+      "its column " + first.Name +
+        " has numbers from 2^53 on, where some of it are not whole or are 2^63 and more: different "
+        "ones would become equal");
   }
   return JoinColumns(table, columns, static_cast<int>(columns.size()));
 }
@@ -300,11 +329,26 @@ std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
       found.push_back(static_cast<std::size_t>(at - table.begin()));
     }
   }
-  return found.size() >= 2 ? found : std::vector<std::size_t>();
+  return found;
 }
 
-std::vector<std::size_t> FindPositions(const Table& table)
+std::vector<std::size_t> FindPositions(const std::string& file, const Table& table)
 {
+  const auto need = [&file, &table](const std::vector<std::size_t>& found)
+  {
+    if (found.size() == 3 || found.size() == table.size())
+    {
+      return found;
+    }
+    std::string names;
+    for (const std::size_t column : found)
+    {
+      names += (names.empty() ? "" : " and ") + table[column].Name;
+    }
+    FailToRead(file,
+      "of the three columns of positions only " + names + " is found; there are " + NamesOf(table) +
+        ". For particles in a plane add the third one, of zeros");
+  };
   const std::vector<Array> arrays = FindArrays(table);
   for (const char* usual : { "points", "point", "position", "positions", "pos", "coordinates",
          "coordinate", "coords", "coord", "xyz", "r" })
@@ -314,28 +358,31 @@ std::vector<std::size_t> FindPositions(const Table& table)
       const std::size_t count = array.Columns.size();
       if ((count == 2 || count == 3) && Small(array.Name) == usual)
       {
-        return array.Columns;
+        return need(array.Columns);
       }
     }
   }
-  return FindAxes(table, "");
+  const std::vector<std::size_t> found = FindAxes(table, "");
+  return found.empty() ? found : need(found);
 }
 
 vtkSmartPointer<vtkPolyData> ParticlesOf(
   const std::string& file, const Table& table, std::vector<std::size_t> positions)
 {
-  positions = positions.empty() ? FindPositions(table) : positions;
+  positions = positions.empty() ? FindPositions(file, table) : positions;
   if (positions.empty())
   {
-    std::string list;
-    for (std::size_t c = 0; c < table.size() && list.size() < 200; ++c)
-    {
-      list += (c ? ", " : "") + table[c].Name;
-    }
     FailToRead(file,
       "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
       "Points:2; there are " +
-        list);
+        NamesOf(table));
+  }
+  for (const std::size_t column : positions)
+  {
+    if (!table[column].Words.empty())
+    {
+      FailToRead(file, "its positions are no numbers: '" + table[column].Words.front() + "'");
+    }
   }
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
@@ -345,7 +392,7 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   {
     if (!each.Columns.empty())
     {
-      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(table, each.Columns);
+      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(file, table, each.Columns);
       array->SetName(each.Name.c_str());
       particles->GetPointData()->AddArray(array);
     }

@@ -85,13 +85,14 @@ struct Column
 using Table = std::vector<Column>;
 
 Table TableOf(const std::vector<std::string>& names);
-void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells);
+void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// The columns called x, y and z, with these letters behind; one of them is none.
+/// The columns called x, y and z, with these letters behind: those that are there.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
-/// The columns of positions, two or three; none where no name tells.
-std::vector<std::size_t> FindPositions(const Table& table);
+/// The columns of positions; none where no name tells. Fails where some of x, y and z are there and
+/// others are not, unless these two are the whole table.
+std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
 /// `positions`: the columns of positions; where there are none, names tell.
 vtkSmartPointer<vtkPolyData> ParticlesOf(

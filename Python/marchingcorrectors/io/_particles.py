@@ -24,6 +24,8 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
 WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
 
 GHOSTS = "vtkGhostType"
+TILTED = ("The cell of the particles is tilted, and periods here are along the axes: nothing goes on across its sides. Positions "
+          "that are not wrapped (xu, yu, zu in dumps of LAMMPS) leave its bodies whole.")
 TIMES = ("TimeValue", "TIME", "Time", "time")  # arrays of field data, in VTK's files
 
 
@@ -99,7 +101,8 @@ class Particles:
 
     smoothing_length, volume, mass, density: the name of an array, one value, or None. support_radius: whether
     the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
-    solid: None, or for each particle whether it is a wall. times: of a file that holds several, all of
+    solid: None, or for each particle whether it is a wall. cell: nine numbers, the sides of a tilted
+    cell, which is no period here. times: of a file that holds several, all of
     them. parameters: all else that the file says
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
@@ -120,6 +123,7 @@ class Particles:
         self.support_radius, self.h_factor = False, 1.0
         self.solid: Optional[np.ndarray] = None
         self.period: Optional[Sequence[float]] = None
+        self.cell: Optional[Sequence[float]] = None
         self.time: Optional[float] = None
         self.times: Optional[Sequence[float]] = None
         self.dimension: int = 3
@@ -185,6 +189,8 @@ class Particles:
             words["solid"] = self.solid
         if self.period is not None:
             words.setdefault("periodic", self.period)
+        if self.cell is not None and words.get("periodic") is None:
+            warn(f"{self.file}: {TILTED}")
         if self.kernel and "sph_kernel" not in words:
             known = find_kernel(self.kernel)
             if known:
@@ -257,9 +263,9 @@ def choose_step(file, step, times):
 
 
 def period_of_field(field):
-    """Six bounds, as convert writes them, of {name: array}; None where there are none."""
+    """Six bounds, or the nine numbers of a tilted cell, as convert writes them, of {name: array}; None where there are none."""
     bounds = np.ravel(field.get("PeriodicBounds", ()))
-    return bounds.tolist() if len(bounds) == 6 and np.isfinite(bounds).all() and bounds.any() else None
+    return bounds.tolist() if len(bounds) in (6, 9) and np.isfinite(bounds).all() and bounds.any() else None
 
 
 def check_claim(file, thing, claimed, there):

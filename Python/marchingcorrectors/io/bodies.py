@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files, of SPHinXsys, PartVTK, SPlisHSPlasH, and tables: several bodies as one set, walls marked."""
+import re
+
 import numpy as np
 
 from ._particles import WALL, FileError, Particles, choose_step, join, join_bodies, usual
@@ -14,6 +16,12 @@ ENDINGS = (".vtp", ".vtu", ".vtk", ".vtkhdf", *LISTS, *TABLES, *XYZ, ".dump", ".
 def is_dump(path):
     with open(path, "rb") as file:
         return file.read(5) == b"ITEM:"
+
+
+def has_count(path):
+    """Whether an .xyz file has steps, each behind its number of particles; else it is a table of positions."""
+    with open(path, "rb") as file:
+        return re.fullmatch(rb"\s*[0-9]+\s*", file.readline(100)) is not None
 
 
 def may_hold_steps(path):
@@ -34,7 +42,7 @@ def load(path, step):
     if is_dump(path):
         from .tables import read_lammps
         return read_lammps(path, step)
-    if ending in XYZ:
+    if ending in XYZ and has_count(path):
         from .tables import read_xyz
         return read_xyz(path, step)
     if ending == ".vtkhdf":
@@ -94,5 +102,5 @@ def read_bodies(paths, walls, step):
         solid |= arrays["Type"]() != 3  # PartVTK's
     return Particles(paths[0].name, "VTK", lambda: join([body.points for body in bodies]), arrays,
                      **{name: usual(single, name) for name in ("smoothing_length", "volume", "mass", "density")},
-                     solid=solid if solid.any() else None, time=bodies[0].time, period=fluids[0].period,
+                     solid=solid if solid.any() else None, time=bodies[0].time, **{"cell" if len(fluids[0].period or ()) == 9 else "period": fluids[0].period},
                      times=bodies[0].times, parameters={"bodies": dict(zip([path.name for path in every], counts))})

@@ -54,7 +54,7 @@ def to_vtk(particles):
             else:
                 warn(f"{particles.file}: the array '{name}' ({values.dtype}) is left out, as VTK has no such type.")
     field = {"TimeValue": None if particles.time is None else [float(particles.time)],
-             "PeriodicBounds": particles.period}
+             "PeriodicBounds": particles.cell or particles.period}
     for name, values in field.items():
         if values is not None:
             add(data.GetFieldData(), name, np.asarray(values, float))

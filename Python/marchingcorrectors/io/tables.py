@@ -12,6 +12,7 @@ from ._particles import Body, FileError, choose_step
 POSITIONS = ("points", "point", "position", "positions", "pos", "coordinates", "coordinate", "coords", "coord", "xyz", "r")
 MOST_COLUMNS = 10000
 COMPONENT = re.compile(r"(.+?)(?:[:_.]([0-8xyzXYZ])|[\[(]([0-8])[\])]|(?<=[a-z])([XYZ]))")
+NUMBER = re.compile(r"[-+]?(([0-9]+[.,]?[0-9]*|[.,][0-9]+)([eEdD][-+]?[0-9]+)?|nan|inf|infinity)", re.I)
 IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
 
 
@@ -27,14 +28,10 @@ def lines_of(path):
 
 def to_number(cell):
     """As tables have them: nothing, a D of Fortran, a decimal comma; None where it is none."""
-    try:
-        return float(cell) if cell.strip() else np.nan
-    except ValueError:
-        pass
-    try:
-        return float(re.sub("[dD]", "e", cell.replace(",", "."), count=1))
-    except ValueError:
-        return None
+    cell = cell.strip()
+    if not NUMBER.fullmatch(cell):
+        return None if cell else np.nan
+    return float(re.sub("[dD](?=[-+0-9])", "e", cell.replace(",", ".")))
 
 
 def split(line, separator):
@@ -51,6 +48,8 @@ def check_width(file, count):
 def columns_of(file, lines, names, separator=None):
     """{name: array} of rows of values."""
     try:
+        if any("_" in line for line in lines):  # which Python takes for a part of a number
+            raise ValueError
         values = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2).T if lines else np.empty((len(names), 0))
         if values.shape != (len(names), len(lines)):
             raise ValueError
@@ -59,30 +58,36 @@ def columns_of(file, lines, names, separator=None):
         odd = next((i for i, row in enumerate(rows) if len(row) != len(names)), None)
         if odd is not None:
             raise FileError(f"{file}: row {odd + 1} has {len(rows[odd])} values for {len(names)} columns.") from None
-        values = [numbers_or_words([row[i] for row in rows]) for i in range(len(names))]
+        values = [numbers_or_words(file, [row[i] for row in rows], separator) for i in range(len(names))]
     found = {}
     for i, (name, column) in enumerate(zip(names, values)):
         letters = "".join(letter for letter in name.lower() if letter.isalpha())
-        if column.dtype.kind == "f" and IS_IDENTIFIER.search(letters):
-            column = as_integers(column, lambda: [split(line, separator)[i] for line in lines])
+        is_identifier = bool(IS_IDENTIFIER.search(letters))
+        if column.dtype.kind == "f" and (is_identifier or (np.abs(column) >= 2 ** 53).any()):
+            column = as_integers(column, [split(line, separator)[i] for line in lines])
+            if is_identifier and column.dtype.kind == "f" and (np.abs(column) >= 2 ** 53).any():
+                raise FileError(f"{file}: its column {name} has numbers from 2^53 on, where some of it are not whole or are 2^63 "
+                                "and more: different ones would become equal.")
         found[name] = column
     return found
 
 
-def numbers_or_words(cells):
+def numbers_or_words(file, cells, separator):
     numbers = [to_number(cell) for cell in cells]
+    odd = next((cell for cell in cells if "," in cell and re.fullmatch(r"[-+.,0-9eEdD ]+", cell)), None)
+    if separator == "," and odd is not None and (numbers[0] is not None or cells[0] == odd):
+        raise FileError(f"{file} has '{odd}' in a table with commas between columns: write it without a comma, or semicolons "
+                        "between columns, where a comma is that of decimals.")
     if numbers and numbers[0] is None:
         return np.array([cell[:64] for cell in cells])
     return np.array([np.nan if number is None else number for number in numbers], float)
 
 
 def as_integers(values, cells):
-    """Where they are; beyond 2^53 by their own digits, which no double has."""
-    if not np.isfinite(values).all() or (values != np.floor(values)).any() or (len(values) and np.abs(values).max() >= 2 ** 63):
-        return values
-    if len(values) and np.abs(values).max() >= 2 ** 53:
-        return np.array([int(cell) if re.fullmatch(r"[+-]?\d+", cell) else int(float(cell)) for cell in cells()], np.int64)
-    return values.astype(np.int64)
+    """By their own digits, of which no double has all from 2^53 on; as they are where one is no integer."""
+    if all(re.fullmatch(r"-?[0-9]+", cell) and abs(int(cell[:20])) < 2 ** 63 for cell in cells):
+        return np.array([int(cell) for cell in cells], np.int64)
+    return values
 
 
 def join_vectors(columns):
@@ -105,22 +110,37 @@ def join_vectors(columns):
     return joined
 
 
+class NoPositions(FileError):
+    """No name of a column tells of positions."""
+
+
+def axes_of(columns, behind=""):
+    """The columns called x, y and z, with these letters behind: those that are there."""
+    found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
+    return [name for name in found if name is not None]
+
+
 def body_of(file, columns, positions=(), **more):
     """positions: names of their columns, where names do not tell."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         usual = [name for wanted in POSITIONS for name in arrays
                  if name.lower() == wanted and arrays[name].ndim == 2 and arrays[name].shape[1] <= 3]
-        positions = [name for axis in "xyz" for name in arrays if name.lower() == axis and arrays[name].ndim == 1]
+        positions = axes_of(columns)
         points = arrays.pop(usual[0]) if usual else None
+        count = len(positions) if points is None else points.shape[1]
+        if count == 0:
+            raise NoPositions(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+                              f"Points:2; there are {', '.join(columns)}.")
+        if count != 3 and count != len(columns):
+            found = [f"{usual[0]}:{i}" for i in range(count)] if usual else positions
+            raise FileError(f"{file}: of the three columns of positions only {' and '.join(found)} is found; there are "
+                            f"{', '.join(columns)}. For particles in a plane add the third one, of zeros.")
     if points is None:
-        if len(positions) < 2:
-            raise FileError(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
-                            f"Points:2; there are {', '.join(columns)}.")
         points = np.stack([columns[name] for name in positions], axis=1)
         arrays = {name: array for name, array in arrays.items() if name not in positions}
     if points.dtype.kind not in "fi":
-        raise FileError(f"{file}: its positions are no numbers.")
+        raise FileError(f"{file}: its positions are no numbers: '{next(value for value in points.flat if to_number(value) is None)}'.")
     points = np.pad(points.astype(float), ((0, 0), (0, 3 - points.shape[1])))
     return Body(points, arrays, **more)
 
@@ -131,7 +151,9 @@ def name_columns(file, cells):
     names = {}
     for i, cell in enumerate(cells):
         name = re.sub(r" (\[|\((?![0-8xyzXYZ]\)$)).*", "", cell).strip(' "') or f"Column{i + 1}"
-        names[name if name not in names else f"{name}_{i + 1}"] = i
+        while name in names:
+            name += "_"
+        names[name] = i
     return list(names)
 
 
@@ -170,7 +192,7 @@ def read_table(path):
     columns = columns_of(path.name, rows, names, separator)
     try:
         return body_of(path.name, columns)
-    except FileError:
+    except NoPositions:
         if separator is not None or any(columns[name].dtype.kind not in "fi" for name in names[:3]):
             raise
         return body_of(path.name, columns, names[:3])
@@ -203,6 +225,9 @@ def read_xyz(path, step):
     lines, at, starts, times = lines_of(path), 0, [], []
     while at < len(lines):
         if lines[at].strip():
+            if starts and len(lines[at].split()) == len(lines[at - 1].split()) > 1:
+                raise FileError(f"{path.name}: line {at + 1} is one more than the {count} particles that the step says it "
+                                "has; correct that number.")
             count = whole_number(path.name, lines, at)
             rows_of(path.name, lines, at + 2, count)
             time = numbers_of(value_of(lines[at + 1], "time"))
@@ -223,20 +248,48 @@ def read_xyz(path, step):
         width = len(rows[0].split()) if rows else 3
         check_width(path.name, width)
         properties = ["species", *number_columns(width - 1)] if width > 3 else number_columns(width)
-    lattice, origin = numbers_of(value_of(comment, "lattice")), numbers_of(value_of(comment, "origin"))
-    period, flags = None, value_of(comment, "pbc").split()
-    if len(lattice) == 9 and not any(lattice[i] for i in range(9) if i % 4):
-        low = origin if len(origin) == 3 else [0.0] * 3
-        period = period_of([(low[a], low[a] + lattice[4 * a]) for a in range(3)],
-                           [flag in ("T", "1", "True") for flag in flags] if len(flags) == 3 else [True] * 3)
+    told = {"lattice": numbers_of(value_of(comment, "lattice")), "pbc": value_of(comment, "pbc").split(),
+            "origin": numbers_of(value_of(comment, "origin"))}
+    for key, values in told.items():
+        if value_of(comment, key) and len(values) != (9 if key == "lattice" else 3):
+            raise FileError(f"{path.name}: line {begin + 2} has {len(values)} values as its {key}, which are "
+                            f"{9 if key == 'lattice' else 3}.")
+    period = period_of(np.reshape(told["lattice"], (-1, 3)), told["origin"] or [0.0] * 3,
+                       [flag not in ("F", "0", "False") for flag in told["pbc"] or "TTT"])
     time = times[choose_step(path.name, step, times)]
     return body_of(path.name, columns_of(path.name, rows, properties), time=time, period=period, times=times)
 
 
-def period_of(bounds, is_periodic):
-    """Six bounds; of axes without a period 0."""
-    good = [flag and np.isfinite(side).all() and side[0] < side[1] for side, flag in zip(bounds, is_periodic)]
-    return [bound for side, flag in zip(bounds, good) for bound in (side if flag else (0.0, 0.0))] if any(good) else None
+def period_of(cell, origin, is_periodic):
+    """Six bounds, of axes without a period 0; or the sides of the cell, nine numbers, where one with a period is tilted."""
+    bounds = [0.0] * 6
+    for a, side in enumerate(cell):
+        if is_periodic[a] and any(side[b] for b in range(3) if b != a):
+            return np.ravel(cell).tolist()
+        if is_periodic[a] and side[a] > 0 and np.isfinite([origin[a], side[a]]).all():
+            bounds[2 * a:2 * a + 2] = origin[a], origin[a] + side[a]
+    return bounds if any(bounds) else None
+
+
+def read_box(file, words, lines, at):
+    """The cell's sides as vectors, where it begins, and which are periods: sides along the axes, or tilted (xy xz yz), where the
+    first two numbers of a line are those of the box around the cell, or vectors with their origin (abc origin)."""
+    flags = words[-3:] if len(words) >= 3 and all(re.fullmatch("[pfsm]{2}", word) for word in words[-3:]) else []
+    kind = " ".join(words[:len(words) - len(flags)])
+    if kind not in ("", "xy xz yz", "abc origin"):
+        raise FileError(f"{file}: line {at} begins a box of a kind that is not known here.")
+    sides = [numbers_of(line) for line in rows_of(file, lines, at, 3)]
+    count = {"": 2, "xy xz yz": 3, "abc origin": 4}[kind]
+    odd = next((i for i, side in enumerate(sides) if len(side) != count), None)
+    if odd is not None:
+        raise FileError(f"{file}: line {at + odd + 1} has {len(sides[odd])} numbers, where a side of its box has {count}.")
+    sides, periodic = np.array(sides), [flag == "pp" for flag in flags] or [False] * 3
+    if kind == "abc origin":
+        return sides[:, :3], sides[:, 3], periodic
+    low, high, (xy, xz, yz) = sides[:, 0].copy(), sides[:, 1].copy(), sides[:, 2] if kind else (0.0, 0.0, 0.0)
+    low[:2] -= min(0.0, xy, xz, xy + xz), min(0.0, yz)
+    high[:2] -= max(0.0, xy, xz, xy + xz), max(0.0, yz)
+    return np.array([[high[0] - low[0], 0, 0], [xy, high[1] - low[1], 0], [xz, yz, high[2] - low[2]]]), low, periodic
 
 
 def read_lammps(path, step):
@@ -256,29 +309,30 @@ def read_lammps(path, step):
         elif words[1:3] == ["NUMBER", "OF"]:
             head["count"] = whole_number(path.name, lines, at)
         elif words[1:3] == ["BOX", "BOUNDS"]:
-            head["periodic"] = [word == "pp" for word in words[-3:]]
-            head["bounds"] = [(*numbers_of(line), 0.0, 0.0)[:2] for line in rows_of(path.name, lines, at, 3)]
+            head["box"] = read_box(path.name, words[3:], lines, at)
             at += 2
         elif words[1] == "ATOMS":
             rows_of(path.name, lines, at, head.get("count", 0))
             steps.append((at, words[2:], head))
             at, head = at + head.get("count", 0) - 1, {}
+        elif words[1:] != ["UNITS"]:
+            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS that is known here.")
         at += 1
     if not steps:
         raise FileError(f"{path.name} has no particles.")
     times = [head.get("TIME", head.get("TIMESTEP", float(i))) for i, (_, _, head) in enumerate(steps)]
     i = choose_step(path.name, step, times)
     begin, words, head = steps[i]
-    names, bounds = name_columns(path.name, words), head.get("bounds", [(0.0, 1.0)] * 3)
+    names = name_columns(path.name, words)
     columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
-    positions = ()
-    for kind in ("", "u", "s", "su"):  # as they are, unwrapped, in units of the box
-        positions = [axis + kind for axis in "xyz" if axis + kind in columns]
-        if len(positions) > 1:
-            break
-    if positions and positions[0][1:2] == "s":
-        for name in positions:
-            low, high = bounds["xyz".index(name[0])]
-            columns[name] = low + columns[name] * (high - low)
-    period = period_of(bounds, head["periodic"]) if "periodic" in head and len(head["periodic"]) == 3 else None
+    cell, origin, periodic = head.get("box", (np.empty((0, 3)), None, None))
+    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # as they are, unwrapped, as shares of the cell's sides
+    positions = next((each for each in found if len(each) == 3), ())
+    if positions in found[2:]:
+        if origin is None:
+            raise FileError(f"{path.name}: its positions are shares of a box (xs, ys, zs), and it has no box.")
+        shares = [columns[name] for name in positions]
+        for a, name in enumerate(positions):
+            columns[name] = origin[a] + sum(share * side[a] for share, side in zip(shares, cell))
+    period = period_of(cell, origin, periodic)
     return body_of(path.name, columns, positions, time=times[i], period=period, times=times)

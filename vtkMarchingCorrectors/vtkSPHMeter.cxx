@@ -127,6 +127,7 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   this->FillOptions(run->Options);
   run->Options.field = MCOR_WEIGHT_SUM;
   run->Options.level_limit = 0;
+  run->Options.wall_share = MCOR_WALL_SHARE_MEASURED;
   run->Options.iso_values = &this->Level;
   run->Options.iso_count = 1;
   if (!run->Measure(mine, false))

@@ -71,7 +71,8 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     lines: (lines, 2, 3), L: from and to of each; or one line, (2, 3); or {name: (from, to)}.
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
 
-    Solids do not count. The other arguments are those of isosurface().
+    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share). The other
+    arguments are those of isosurface().
 
     {options}
     """
@@ -190,7 +191,8 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
     density: (particles,) or one value, for mass fluxes; or mass and volume, which give it.
 
-    Solids do not count. The other arguments are those of isosurface().
+    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share); the means are those of the
+    fluid. The other arguments are those of isosurface().
 
     {options}
     """

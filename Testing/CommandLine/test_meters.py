@@ -46,7 +46,7 @@ class Meter(CommandLineTest):
         option, many = self.one[0], self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
             (["--scalar", "Radius"], "leave out --scalar"), (["--iso", "0.2,0.5"], "all but one --iso value"),
-            (["--iso", "0"], "--iso value above 0"), (["--solids", "wall"], "leave out --solids wall"),
+            (["--iso", "0"], "--iso value above 0"),
             (["--weighted-by", "Mass"], "is for --project"), (["--least-volume", "1"], "no pieces"), (["--view", "0,0,1"], "no picture"),
             (["--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"))), *usage]
         os.mkfifo(self.directory / "fifo")

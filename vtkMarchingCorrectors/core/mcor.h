@@ -753,14 +753,16 @@ extern "C"
     mcor_statistics statistics;
   } mcor_gauges;
 
-  /* Where lines cross the free surface, that is, where the weight sum of fluid particles, as in
-   * mcor_extract with MCOR_WEIGHT_SUM, equals the level, which is the iso value (above 0; 0.5 if
-   * there is none). There is fluid where the sum is at least the level; walls do not end it. Each
-   * line is sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
+  /* Where lines cross the free surface, that is, where the weight sum equals the level, which is
+   * the iso value (above 0; 0.5 if there is none). There is fluid where the sum is at least the
+   * level. Solids count in the sum, unless they are ignored, and the fluid ends where their share
+   * of it exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line is
+   * sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
    * neighbouring samples show that an extremum may cross the level; then crossings are solved for.
    * lines: [count]. The options of mcor_probe apply, except field, and iso_values and wall_share
-   * do, too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM and
-   * level_limit 0) and the same lines; all get all readings. *gauges is overwritten. */
+   * do, too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM,
+   * level_limit 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; all
+   * get all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);

@@ -414,16 +414,23 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
   MCOR_REAL(mcor_edge_of(&(c)->lattice, 0)), MCOR_REAL(mcor_edge_of(&(c)->lattice, 1)),            \
     MCOR_REAL(mcor_edge_of(&(c)->lattice, 2))
 
-/* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
-#define MCOR_GRID_ARGS(c)                                                                          \
+/* Returns the buffer for the weights of fluid particles. */
+static inline const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
+{
+  return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
+}
+
+/* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. weight: the
+ * buffer whose weights are summed, of fluid particles or of all. */
+#define MCOR_GRID_ARGS(c) MCOR_WEIGHTED_GRID_ARGS(c, mcor_fluid_weight(&(c)->grid))
+#define MCOR_WEIGHTED_GRID_ARGS(c, weight)                                                         \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
     MCOR_REAL(ldexp(1, -(c)->lattice.fix_bits - (c)->grid.view)),                                  \
     MCOR_REAL(ldexp(1, (c)->lattice.fix_bits + (c)->grid.view)),                                   \
     MCOR_REAL(ldexp(1, (c)->grid.view)), MCOR_EDGE_ARGS(c), MCOR_BUFFER(&(c)->grid.level_buffer),  \
     MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
     MCOR_BUFFER(&(c)->grid.cell_begins), MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py),   \
-    MCOR_BUFFER(&(c)->grid.pz), MCOR_BUFFER(&(c)->grid.inv_h),                                     \
-    MCOR_BUFFER((c)->grid.has_solids ? &(c)->grid.fluid_weight : &(c)->grid.trim_weight),          \
+    MCOR_BUFFER(&(c)->grid.pz), MCOR_BUFFER(&(c)->grid.inv_h), MCOR_BUFFER(weight),                \
     MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
 
 /* Kernel arguments of MCOR_SEED_PARAMS. */

@@ -81,8 +81,6 @@ const std::vector<Rule> Rules = {
   { Fluxes, IsAny, "{mode} writes a table of its own", { "--gauge", "--gauges", "--gauge-grid" } },
   { Tables, IF(j.Surface->GetNumberOfContours() > 1),
     "{mode} makes no surface; leave out all but one --iso value" },
-  { Tables, IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
-    "{mode} does not end at walls; leave out --solids wall" },
   { Gauges, IF(j.Has("--gauge-grid")), "--gauge-grid makes its own gauges",
     { "--gauge", "--gauges" } },
   { Gauges, IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),

@@ -366,6 +366,49 @@ static void test_period(void** state)
     "%g, %.17g, %.17g", here.area, here.mass_flux, there.mass_flux);
 }
 
+/* A channel whose walls are solids beyond y = 0 and y = 12. The fluid begins a spacing inside of them: with solids it
+ * ends where both weigh the same, a quarter of a spacing inside; alone, half a spacing beyond its last particles. The
+ * solids have no velocities. */
+static void test_walls(void** state)
+{
+  const shape across = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 0, 5, 8.2, 12, 5, 8.2, 0, 9 }, 0 };
+  const mcor_gauge_line line = { .from = { 8.2, -2, 7.1 }, .to = { 8.2, 14, 7.1 } };
+  particle_set set = particle_set_make(16 * 17 * 14);
+  for (int64_t n = 0; n < set.count; ++n)
+  {
+    const int row = (int)(n / 16 % 17);
+    set.solid[n] = row < 3 || row >= 14;
+    set.position[3 * n] = (double)(n % 16) + 0.5;
+    set.position[3 * n + 1] = row < 3 ? row - 2.5 : row < 14 ? row - 2 : row - 1.5;
+    set.position[3 * n + 2] = (double)(n / (16 * 17)) + 0.5;
+    set.smoothing_length[n] = 1.3;
+    set.volume[n] = 1;
+  }
+  set.has_solids = 1;
+  CORE_OWNED(free_fluid) fluid made = make_fluid(set, move_uniform);
+  for (int64_t n = 0; n < set.count; ++n)
+  {
+    made.velocity[3 * n] = set.solid[n] ? NAN : 1;
+  }
+  mcor_input input = fluid_input(&made);
+  mcor_options options = flux_options(MCOR_FLOAT32);
+  options.wall_share = MCOR_WALL_SHARE_AUTO;
+  for (int alone = 0; alone < 2; ++alone)
+  {
+    const double begin = alone ? 0.5 : 0.25, width = 12 - 2 * begin, error = alone ? 5e-3 : 1e-4;
+    input.ignore_solids = alone;
+    const mcor_flux_reading r = flux_of(*state, &input, &options, &across);
+    CORE_CHECK(fabs(r.area - 4 * width) < 4 * error && fabs(r.volume_flux - r.area) < 1e-5,
+      "area %.9g, expected %.9g; flux %.9g", r.area, 4 * width, r.volume_flux);
+    CORE_GAUGES gauges;
+    CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
+    const double* at = gauges.crossings;
+    CORE_CHECK(gauges.crossing_count == 2 && fabs(at[0] - 2 - begin) < error &&
+        fabs(at[1] - 14 + begin) < error,
+      "%lld crossings, at %g and %g", (long long)gauges.crossing_count, at[0], at[1]);
+  }
+}
+
 /* Fails with a sentence that has these words. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_section* section, const char* words)
@@ -450,6 +493,6 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
     cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_half_out_of_the_water),
     cmocka_unit_test(test_corner_on_the_level), cmocka_unit_test(test_same_bits),
-    cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_period), cmocka_unit_test(test_walls), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

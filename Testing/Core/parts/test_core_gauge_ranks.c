@@ -26,6 +26,15 @@ static particle_set make_sparse(void)
   return set;
 }
 
+/* Makes every seventh particle a solid. */
+static void set_solids(particle_set* set)
+{
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    set->solid[i] = i % 7 == 0;
+  }
+}
+
 typedef struct gauge_job
 {
   const particle_set* set;
@@ -45,6 +54,7 @@ static mcor_options gauge_options(const gauge_job* job)
   options.iso_count = 0;
   options.field = MCOR_WEIGHT_SUM;
   options.level_limit = 0;
+  options.wall_share = MCOR_WALL_SHARE_MEASURED;
   if (job->periodic)
   {
     options.periodic[2 * job->axis] = -6;
@@ -85,6 +95,7 @@ static particle_set take_near(const gauge_job* job, double low, double high, dou
 {
   particle_set part = particle_set_make(job->set->count);
   part.count = 0;
+  part.has_solids = job->set->has_solids;
   for (int64_t i = 0; i < job->set->count; ++i)
   {
     int is_near = 0;
@@ -224,6 +235,7 @@ static void check_ranks(mcor_context* context, gauge_job* job, int kind)
 static void test_same_bits(void** state)
 {
   CORE_SET set = make_sparse();
+  set_solids(&set);
   for (int kind = 0; kind < 6; ++kind)
   {
     mcor_gauge_line lines[LINES];
@@ -232,6 +244,7 @@ static void test_same_bits(void** state)
       .axis = kind % 3,
       .periodic = kind >= 3,
       .volumes = kind == 1 || kind == 5 };
+    set.has_solids = kind % 2;
     make_lines(lines, job.axis);
     check_ranks(*state, &job, kind);
   }
@@ -250,8 +263,10 @@ static void test_same_fluxes(void** state)
     { .shape = MCOR_SECTION_TRIANGLES, .points = points[3], .point_count = 3 }
   };
   CORE_SET set = make_sparse();
+  set_solids(&set);
   for (int kind = 0; kind < 4; ++kind)
   {
+    set.has_solids = kind % 2;
     gauge_job job = { .set = &set,
       .sections = sections,
       .axis = kind % 3,

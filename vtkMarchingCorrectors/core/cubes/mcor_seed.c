@@ -135,7 +135,7 @@ mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
   if (context->run.options->field != MCOR_WEIGHT_SUM) /* else particles have no values */
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
-      MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+      MCOR_BUFFER(mcor_fluid_weight(grid)),
       MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
       MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags)));
   }

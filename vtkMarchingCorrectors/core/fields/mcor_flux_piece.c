@@ -36,13 +36,10 @@ mcor_status mcor_sample_flux(mcor_flux_job* job, int count)
   {
     mcor_map_patch(job, field->at[i], points + 3 * i);
   }
-  memset(field->weight, 0, (size_t)count * sizeof(double));
   memset(field->velocity, 0, (size_t)count * (size_t)job->velocity_components * sizeof(double));
   memset(field->density, 0, (size_t)count * sizeof(double));
-  run->samples->weight_sum = field->weight;
   run->samples->values = field->values;
-  MCOR_TRY(mcor_report_launch(job->edges.context));
-  return mcor_probe_batch(run, 0, count);
+  return mcor_sample_level(&job->edges, field->weight, count);
 }
 
 double mcor_speed_along(const mcor_flux_job* job, int64_t sample, const double direction[3])

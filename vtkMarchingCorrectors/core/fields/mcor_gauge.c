@@ -333,6 +333,28 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
+/* The fluid ends where the weight sum T of fluid and solids is below the level, or the fluid's own
+ * sum F below its share of T. The lowered sum is the lesser one of T and of a sum that equals the
+ * level where F is that share of T; far from solids, where F = T, both leave F as it is. */
+mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count)
+{
+  mcor_probe_run* run = job->run;
+  const double share = mcor_fluid_share(job->context);
+  memset(weight, 0, (size_t)count * sizeof *weight);
+  run->samples->weight_sum = weight;
+  run->weights_with_solids = job->with_solids;
+  MCOR_TRY(mcor_report_launch(job->context));
+  MCOR_TRY(mcor_probe_batch(run, 0, count));
+  for (int i = 0; i < count && job->with_solids; ++i)
+  {
+    const double fluid = weight[i], all = job->with_solids[i];
+    weight[i] = fluid == 0 || fluid == all
+      ? fluid
+      : fmin(all, job->level + (fluid - share * all) / (1 - share));
+  }
+  return MCOR_OK;
+}
+
 mcor_status mcor_run_points(
   mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*))
 {
@@ -345,12 +367,16 @@ mcor_status mcor_run_points(
     .context = context, .input = input, .points = &points, .samples = &samples
   };
   job->run = &run;
-  mcor_status status = mcor_allocated(context, places && valid);
+  job->with_solids =
+    mcor_ends_at_solids(context) ? malloc(MCOR_GAUGE_BATCH * sizeof *places) : NULL;
+  mcor_status status =
+    mcor_allocated(context, places && valid && (job->with_solids || !mcor_ends_at_solids(context)));
   MCOR_THEN(status, mcor_load_attributes(context, input, 0));
   MCOR_THEN(status, work(job));
   mcor_release_probe(&run);
   free(places);
   free(valid);
+  free(job->with_solids);
   return status;
 }
 
@@ -457,6 +483,10 @@ mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options,
     MCOR_INVALID_ARGUMENT,
     "%s need one iso value above 0, the weight sum at which the fluid ends; 0.5 is usual.", who);
   *own = *options;
+  if (own->wall_share == MCOR_WALL_SHARE_AUTO)
+  {
+    own->wall_share = MCOR_WALL_SHARE_MEASURED;
+  }
   mcor_evaluate_without_scalar(input, own);
   own->ranks = options->globals ? options->ranks : NULL;
   own->outputs = 0;

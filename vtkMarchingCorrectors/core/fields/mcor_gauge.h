@@ -49,6 +49,7 @@ typedef struct mcor_gauge_job
   const double* box; /* [6], box of the samples that this call owns; NULL: all */
   mcor_gauges* gauges;
   mcor_probe_run* run; /* evaluates the field */
+  double* with_solids; /* [MCOR_GAUGE_BATCH], weight sums of fluid and solids; NULL: no solids */
   /* Turns parameters into points if lines are given in parameters; NULL: lines are given in
    * points. */
   void (*map)(const void* data, const double parameters[3], double point[3]);
@@ -85,6 +86,9 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
  * `work`. */
 mcor_status mcor_run_points(
   mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*));
+/* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered
+ * near solids so that they fall below the level where the fluid ends at them. */
+mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count);
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
 /* Finds the cells of a box along x, y, z; tells whether a point is in one of them. */
 void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);

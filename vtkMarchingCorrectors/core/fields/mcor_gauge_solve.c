@@ -37,11 +37,10 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
 /* Evaluates the weight sums at the inner places. */
 static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 {
-  mcor_probe_run* run = job->run;
-  double* points = (double*)run->points->data;
+  double* points = (double*)job->run->points->data;
   const int64_t count = job->inner.count;
   free(job->weights);
-  job->weights = calloc((size_t)count + 1, sizeof *job->weights);
+  job->weights = malloc(((size_t)count + 1) * sizeof *job->weights);
   MCOR_TRY(mcor_allocated(job->context, job->weights));
   for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
   {
@@ -58,9 +57,7 @@ static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
         job->map(job->map_data, parameters, point);
       }
     }
-    run->samples->weight_sum = job->weights + first;
-    MCOR_TRY(mcor_report_launch(job->context));
-    MCOR_TRY(mcor_probe_batch(run, 0, n));
+    MCOR_TRY(mcor_sample_level(job, job->weights + first, n));
   }
   return MCOR_OK;
 }

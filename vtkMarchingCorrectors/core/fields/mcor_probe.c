@@ -28,7 +28,8 @@
 void mcor_release_probe(mcor_probe_run* run)
 {
   mcor_release_batch(run->context, &run->batch);
-  MCOR_RELEASE(run->context, &run->weight, &run->sums, &run->weight_gradient, &run->gradients);
+  MCOR_RELEASE(run->context, &run->weight, &run->weight_with_solids, &run->sums,
+    &run->weight_gradient, &run->gradients);
 }
 
 /* ---- evaluation ---- */
@@ -36,7 +37,8 @@ void mcor_release_probe(mcor_probe_run* run)
 typedef struct mcor_probe_job
 {
   const mcor_probe_run* run;
-  void *order, *weight, *sums, *weight_gradient, *gradients; /* views of the device's results */
+  /* Views of the device's results. */
+  void *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
   double threshold;
 } mcor_probe_job;
 
@@ -117,6 +119,11 @@ static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
       chunk.valid[i] = valid;
       samples->weight_sum[to] = weight;
       samples->valid[to] = valid;
+      if (run->weights_with_solids)
+      {
+        run->weights_with_solids[to] =
+          mcor_get_real(context, job->weight_with_solids, chunk.first + i);
+      }
       for (int a = 0; a < 3 && samples->weight_gradient; ++a)
       {
         samples->weight_gradient[3 * to + a] =
@@ -151,6 +158,15 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
     MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
     MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
     MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
+  if (run->weights_with_solids)
+  {
+    MCOR_TRY(mcor_reserve(context, &run->weight_with_solids, n * real));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (groups + cluster - 1) / cluster,
+      MCOR_WEIGHTED_GRID_ARGS(context, &context->grid.trim_weight), MCOR_INT(groups),
+      MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&run->batch.node),
+      MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight_with_solids), MCOR_INT(0),
+      MCOR_INT(0), MCOR_BUFFER(&context->attributes.sorted), MCOR_BUFFER(&run->sums)));
+  }
   if (run->samples->weight_gradient)
   {
     MCOR_TRY(mcor_reserve(context, &run->weight_gradient, n * 3 * real));
@@ -166,11 +182,18 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
   mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
-  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
-    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
-    { &run->weight_gradient, n * 3 * real, &job.weight_gradient },
-    { &run->gradients, n * 3 * arrays * real, &job.gradients } };
-  const int count = run->samples->weight_gradient ? 5 : 3;
+  mcor_mapping views[6] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
+    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums } };
+  int count = 3;
+  if (run->weights_with_solids)
+  {
+    views[count++] = (mcor_mapping){ &run->weight_with_solids, n * real, &job.weight_with_solids };
+  }
+  if (run->samples->weight_gradient)
+  {
+    views[count++] = (mcor_mapping){ &run->weight_gradient, n * 3 * real, &job.weight_gradient };
+    views[count++] = (mcor_mapping){ &run->gradients, n * 3 * arrays * real, &job.gradients };
+  }
   mcor_status status = mcor_map_all(context, views, count);
   MCOR_THEN(status,
     mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));

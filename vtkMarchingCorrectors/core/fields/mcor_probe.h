@@ -15,8 +15,9 @@ typedef struct mcor_probe_run
   int64_t point_count;
   mcor_samples* samples;
   bool is_sum;
+  double* weights_with_solids; /* of the samples' points; NULL: not wanted */
   mcor_point_batch batch;
-  mcor_buffer weight, sums, weight_gradient, gradients;
+  mcor_buffer weight, weight_with_solids, sums, weight_gradient, gradients;
   int64_t first;     /* first point of the batch */
   int count, inside; /* points of the batch; points of it that particles may reach */
 } mcor_probe_run;

@@ -68,9 +68,7 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
   MCOR_TRY(mcor_reserve(context, &run->wanted, ((size_t)n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &run->outside, (size_t)n * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_sizes", MCOR_LIGHT, n, MCOR_INT(n), MCOR_INT(plane),
-    MCOR_BUFFER(&grid->inv_h),
-    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&run->sizes)));
+    MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&run->sizes)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_try", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso), MCOR_REAL(MCOR_WIDEN_MARGIN),
     MCOR_REAL(crowd * MCOR_CROWD_FROM), MCOR_REAL(crowd * MCOR_CROWD_TO), MCOR_BUFFER(&run->sizes),

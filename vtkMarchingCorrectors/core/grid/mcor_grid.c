@@ -221,12 +221,6 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return mcor_index_cells(context, cells);
 }
 
-/* Returns the buffer for the weights of fluid particles. */
-static const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
-{
-  return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
-}
-
 /* The factor of D^2 by which a side without neighbours adds to a density, see
  * mcor_density_factor. With 5/3, the uppermost layer of a lattice at rest has its true volume
  * within 0.7 %, for all kernels and smoothing lengths. */

@@ -78,7 +78,7 @@ class Usage(CommandLineTest):
             (["--list-arrays"], "--list-arrays needs FILE"),
             (["--list-arrays", *good], "--list-arrays FILE stands alone"),
             ([self.input, "--list-arrays=" + str(self.input)], "--list-arrays FILE stands alone"),
-            (["--list-arrays", "Part_0001.bi4"], "is a solver's own file"),
+            (["--list-arrays", "Part_0001.bi4"], "is read by the Python package"),
             ([*good, "--free-surface", "--scalar", "Radius"], "leave out --scalar"),
             ([*good, *ISO, "--sharp"], "unknown option --sharp"),
             ([*good, *ISO, "--preview=1"], "--preview takes no value"),
@@ -212,9 +212,9 @@ class BadData(CommandLineTest):
         self.refuse_with("fifo.vtp cannot be read: it is not a regular file", source=fifo)
 
     def test_files_of_solvers(self):
-        for name in ("s.bgeo", "s.bi4", "s.hdf5"):
+        for name in ("s.bgeo", "s.bi4", "s.hdf5", "s.npz", "s.gro", "s.data", "s.xyz.gz", "s.h5"):
             self.refuse(self.run_program(self.directory / name, "o.vtp", *ISO), 2,
-                        f"{name} is a solver's own file; 'python -m marchingcorrectors convert .*{name} particles.vtp'")
+                        f"{name} is read by the Python package: 'python -m marchingcorrectors convert .*{name} particles.vtp'")
 
     def test_correction_that_ends_early(self):
         """Options are as each sentence advises."""

@@ -205,12 +205,14 @@ void Check(const Job& job)
   }
   for (const std::string& input : job.Inputs)
   {
-    for (const char* ending : { ".bgeo", ".bgeo.gz", ".bi4", ".h5", ".hdf5" })
+    for (const char* ending :
+      { ".bgeo", ".bi4", ".data", ".gro", ".gz", ".h5", ".h5part", ".hdf5", ".npy", ".npz" })
     {
       if (EndsWith(input, ending))
       {
-        throw UsageError(input + " is a solver's own file; 'python -m marchingcorrectors convert " +
-          input + " particles.vtp' of the Python package makes one that is read here");
+        throw UsageError(input +
+          " is read by the Python package: 'python -m marchingcorrectors convert " + input +
+          " particles.vtp' (particles.pvd, if it has several steps) makes one that is read here");
       }
     }
   }

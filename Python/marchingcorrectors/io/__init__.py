@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Any, Iterator, Sequence, Union
 
 from . import bodies
+from ._packed import read_head
 from ._particles import FileError, Particles
 from .gadget_binary import is_gadget_binary
 
-ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", *bodies.ENDINGS)
+HDF5 = (".hdf5", ".h5", ".h5part")
+ENDINGS = (*HDF5, ".bi4", ".bgeo", *bodies.ENDINGS)
 PathName = Union[str, "os.PathLike[str]"]
 __all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read", "read_steps"]
 
@@ -26,7 +28,7 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
     path: a file, or a list of files of bodies (VTK's, tables) that are one set.
     types: of GADGET-like files, names as "gas", "dark_matter", "stars", or numbers; by default gas.
     walls: those of the listed files that hold walls; by default names tell (Wall, Boundary, ...).
-    step: which of those that a file holds (.vtkhdf, .xyz, LAMMPS' dumps); -1 is the last one. Times are in
+    step: which of those that a file holds (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part, lists); -1 is the last one. Times are in
         the result's times.
 
     Raises FileError. No code that a file may hold is run.
@@ -53,8 +55,9 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
 
 def count_steps(path: PathName) -> int:
-    """How many steps a file holds; more than one only in .vtkhdf, .xyz and dumps of LAMMPS."""
-    return len(read(path).times or [0]) if bodies.may_hold_steps(Path(path)) else 1
+    """How many steps a file holds; more than one only in .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series."""
+    reader = bodies.reader_of(Path(path))
+    return len(read(path).times or [0]) if (reader and reader[2]) or Path(path).suffix.lower() in HDF5 else 1
 
 
 def read_steps(path: Union[PathName, Sequence[PathName]], **words: Any) -> Iterator[Particles]:
@@ -78,41 +81,45 @@ def _read(paths, types, walls, step):
     path, ending = paths[0], paths[0].suffix.lower()
     with open(path, "rb") as file:
         head = file.read(64)
+    reader = bodies.reader_of(path)
     is_hdf5, is_gadget = head.startswith(b"\x89HDF\r\n\x1a\n"), is_gadget_binary(head)
-    if ending == ".vtkhdf" or head.startswith(b"ITEM:") or (ending in bodies.ENDINGS and not is_hdf5 and not is_gadget):
+    if reader and (ending == ".vtkhdf" or not is_hdf5 and not is_gadget):
         return bodies.read_bodies(paths, walls, step)
     if len(paths) > 1 or walls:
         raise FileError("Several files are one set only where they are bodies: VTK's, or tables.")
+    if is_hdf5:
+        return _read_hdf5(path, types, step)
     if step not in (0, -1):
         raise FileError(f"{path.name} has one step, number 0, not {step}.")
-    if ending in (".npz", ".npy", ".pkl", ".pickle"):
-        raise FileError(f"{path.name} is not opened: such files of solvers hold pickles, which can run code. Let the "
-                        "solver write HDF5 (PySPH: install h5py).")
+    if ending in (".pkl", ".pickle"):
+        raise FileError(f"{path.name} is not opened: pickles can run code. Let the solver write HDF5 (PySPH: install h5py).")
     if is_gadget:
         from .gadget_binary import read_gadget_binary
         return read_gadget_binary(path, types)
-    if is_hdf5:
-        return _read_hdf5(path, types)
     if head.startswith(b"#FileJBD "):
         from .bi4 import read_bi4
         return read_bi4(path)
-    if head.startswith((b"BgeoV", b"\x1f\x8b")) and ending != ".npz":
+    if head.startswith(b"BgeoV") or read_head(path).startswith(b"BgeoV"):
         from .bgeo import read_bgeo
         return read_bgeo(path)
     if head[4:8] in (b"\x61\xed\0\0", b"\0\0\xed\x61") or head[4:12] == b"\x61\xed\0\0\0\0\0\0":
         from .phantom import read_native
         return read_native(path)
-    raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, dumps of "
-                    "LAMMPS and Phantom, GADGET), or its beginning is damaged.")
+    raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, .ply, "
+                    ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")
 
 
-def _read_hdf5(path, types):
+def _read_hdf5(path, types, step):
     import h5py
 
-    from . import gadget, phantom, pysph
+    from . import gadget, h5part, phantom, pysph
 
     with h5py.File(path, "r") as file:
         names = set(file)
+    if h5part.is_h5part(names) and types is None:
+        return h5part.read_h5part(path, step)
+    if step not in (0, -1):
+        raise FileError(f"{path.name} has one step, number 0, not {step}.")
     if any(name.startswith("PartType") for name in names):
         return gadget.read_gadget(path, types)
     if types is not None:
@@ -122,4 +129,5 @@ def _read_hdf5(path, types):
     if {"solver_data", "particles"} <= names:
         return pysph.read_pysph(path)
     raise FileError(f"{path.name} is HDF5, but no layout that is known here: GADGET, GIZMO, AREPO and SWIFT have "
-                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles.")
+                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles, "
+                    "H5Part Step#0.")

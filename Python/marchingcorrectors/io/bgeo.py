@@ -4,32 +4,16 @@
 endian: "BgeoV", version, numbers of points, primitives, groups of points and of primitives, attributes of points, vertices,
 primitives, detail; attributes of points (name, size, type, defaults); points: x, y, z, w, attributes."""
 import struct
-import zlib
 
 import numpy as np
 
+from ._packed import read_bytes
 from ._particles import FileError, Particles, by_name
 
 TYPES = {0: ">f4", 1: ">i4", 5: ">f4"}  # float, int, vector
-LIMIT = 1000  # deflate packs no more than that
-
-
-def unpack(path):
-    raw = path.read_bytes()
-    if not raw.startswith(b"\x1f\x8b"):
-        return raw
-    try:
-        inflate = zlib.decompressobj(31)
-        data = inflate.decompress(raw, LIMIT * len(raw) + 1024)
-    except zlib.error as error:
-        raise FileError(f"{path.name} is damaged: {error}") from None
-    if not inflate.eof:
-        raise FileError(f"{path.name} ends too early.")
-    return data
-
 
 def read_bgeo(path):
-    data = unpack(path)
+    data = read_bytes(path)
     try:
         if data[:5] != b"BgeoV":
             raise FileError(f"{path.name} is no .bgeo of Houdini's version 5.")

@@ -2,35 +2,60 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files, of SPHinXsys, PartVTK, SPlisHSPlasH, and tables: several bodies as one set, walls marked."""
 import re
+from importlib import import_module
 
 import numpy as np
 
+from ._packed import ending_of, read_head
 from ._particles import WALL, FileError, Particles, choose_step, join, join_bodies, usual
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
 XYZ = (".xyz", ".extxyz", ".exyz")
-LISTS = (".pvtp", ".pvtu", ".pvd")
-ENDINGS = (".vtp", ".vtu", ".vtk", ".vtkhdf", *LISTS, *TABLES, *XYZ, ".dump", ".lammpstrj")
+LISTS = (".pvtp", ".pvtu", ".pvd", ".series")
+DUMPS = (".dump", ".lammpstrj")
+PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # also as .gz
 
 
-def is_dump(path):
-    with open(path, "rb") as file:
-        return file.read(5) == b"ITEM:"
+def read_list(path, step):
+    """.pvd and .series: files of several times."""
+    from .vtk_xml import list_series, list_times
+    times = (list_times if ending_of(path) == ".pvd" else list_series)(path)
+    time = list(times)[choose_step(path.name, step, times)]
+    body = join_bodies([load(each, 0) for each in check_parts(path, times[time])])
+    return body._replace(time=time, times=list(times))
 
 
-def has_count(path):
-    """Whether an .xyz file has steps, each behind its number of particles; else it is a table of positions."""
-    with open(path, "rb") as file:
-        return re.fullmatch(rb"\s*[0-9]+\s*", file.readline(100)) is not None
+def read_pieces(path):
+    from .vtk_xml import list_pieces, read_xml
+    return join_bodies([read_xml(piece) for piece in check_parts(path, list_pieces(path))])
 
 
-def may_hold_steps(path):
-    return path.suffix.lower() in (".vtkhdf", ".pvd", *XYZ) or path.is_file() and is_dump(path)
+# The module and the function that read a file, and whether it may hold several steps.
+READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{ending: ("tables", "read_xyz", True) for ending in XYZ},
+           **{ending: ("tables", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
+           ".data": ("molecules", "read_data", False), ".ply": ("ply", "read_ply", False), ".npz": ("arrays", "read_arrays", False),
+           ".npy": ("arrays", "read_arrays", False), ".vtp": ("vtk_xml", "read_xml", False), ".vtu": ("vtk_xml", "read_xml", False),
+           ".vtk": ("legacy", "read_legacy", False), ".vtkhdf": ("vtkhdf", "read_vtkhdf", True), ".pvtp": ("bodies", "read_pieces", False),
+           ".pvtu": ("bodies", "read_pieces", False), ".pvd": ("bodies", "read_list", True), ".series": ("bodies", "read_list", True)}
+ENDINGS = (*READERS, ".gz")
+
+
+def reader_of(path):
+    """By the name's ending, but for what begins as a dump, and .xyz files that have no count and are tables."""
+    ending = ending_of(path)
+    head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
+    if head.startswith(b"ITEM:"):
+        return READERS[".dump"]
+    if ending in XYZ and not re.match(rb"\s*[0-9]+\s*\n", head):
+        return READERS[".txt"]
+    if path.suffix.lower() == ".gz" and ending not in PACKED:
+        return None
+    return READERS.get(ending)
 
 
 def check_parts(path, parts):
     for part in parts:
-        if part.suffix.lower() == ".pvd" or part.suffix.lower() not in ENDINGS:
+        if ending_of(part) in (".pvd", ".series") or ending_of(part) not in READERS:
             raise FileError(f"{path.name} lists {part.name}, which is no file of particles that are bodies.")
         if not part.is_file():
             raise FileError(f"{path.name} lists '{part}', and there is no such file.")
@@ -38,34 +63,12 @@ def check_parts(path, parts):
 
 
 def load(path, step):
-    ending = path.suffix.lower()
-    if is_dump(path):
-        from .tables import read_lammps
-        return read_lammps(path, step)
-    if ending in XYZ and has_count(path):
-        from .tables import read_xyz
-        return read_xyz(path, step)
-    if ending == ".vtkhdf":
-        from .vtkhdf import read_vtkhdf
-        return read_vtkhdf(path, step)
-    if ending == ".pvd":
-        from .vtk_xml import list_times
-        times = list_times(path)
-        time = list(times)[choose_step(path.name, step, times)]
-        body = join_bodies([load(each, 0) for each in check_parts(path, times[time])])
-        return body._replace(time=time, times=list(times))
+    module, name, has_steps = reader_of(path)
+    read = getattr(import_module("." + module, __package__), name)
+    if has_steps:
+        return read(path, step)
     choose_step(path.name, step, [0.0])
-    if ending in LISTS:
-        from .vtk_xml import list_pieces, read_xml
-        return join_bodies([read_xml(piece) for piece in check_parts(path, list_pieces(path))])
-    if ending == ".vtk":
-        from .legacy import read_legacy
-        return read_legacy(path)
-    if ending in (".vtp", ".vtu"):
-        from .vtk_xml import read_xml
-        return read_xml(path)
-    from .tables import read_table
-    return read_table(path)
+    return read(path)
 
 
 def column(name, bodies, fluids):

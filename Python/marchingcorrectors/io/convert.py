@@ -88,7 +88,10 @@ def convert(inputs, output):
         raise FileError(f"'{output}' must end in .vtp or .pvd.")
     if output.suffix.lower() == ".vtp":
         with Outputs(inputs, [output]) as files:
-            files.write(output, vtp_bytes(read(inputs[0] if len(inputs) == 1 else inputs)))
+            particles = read(inputs[0] if len(inputs) == 1 else inputs)
+            files.write(output, vtp_bytes(particles))
+        if len(particles.times or ()) > 1:
+            warn(f"{particles.file} has {len(particles.times)} steps, and {output.name} the first: a .pvd file holds all.")
         return
     sources = [(each, i) for each in inputs for i in range(count_steps(each))]
     steps = [output.with_name(f"{output.stem}_{i:04d}.vtp") for i in range(len(sources))]

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from ._packed import ending_of, read_bytes
 from ._particles import Body, FileError, choose_step
 
 POSITIONS = ("points", "point", "position", "positions", "pos", "coordinates", "coordinate", "coords", "coord", "xyz", "r")
@@ -17,7 +18,7 @@ IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
 
 
 def lines_of(path):
-    data = path.read_bytes()
+    data = read_bytes(path)
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # as Excel's "Unicode text"
         data = data.decode("utf-16", errors="replace").encode()
     if b"\0" in data:
@@ -95,7 +96,7 @@ def join_vectors(columns):
     groups = {}
     for name in columns:
         found = COMPONENT.fullmatch(name)
-        if found and columns[name].dtype.kind in "fi":
+        if found and columns[name].dtype.kind in "fi" and columns[name].ndim == 1:
             letter = found[2] or found[3] or found[4]
             groups.setdefault(found[1], {})[int(letter) if letter.isdigit() else "xyz".index(letter.lower())] = name
     groups = {base: [parts[i] for i in range(len(parts))] for base, parts in groups.items()
@@ -140,7 +141,7 @@ def body_of(file, columns, positions=(), **more):
         points = np.stack([columns[name] for name in positions], axis=1)
         arrays = {name: array for name, array in arrays.items() if name not in positions}
     if points.dtype.kind not in "fi":
-        raise FileError(f"{file}: its positions are no numbers: '{next(value for value in points.flat if to_number(value) is None)}'.")
+        raise FileError(f"{file}: its positions are no numbers: '{next((value for value in points.flat if to_number(str(value)) is None), points.dtype)}'.")
     points = np.pad(points.astype(float), ((0, 0), (0, 3 - points.shape[1])))
     return Body(points, arrays, **more)
 
@@ -173,7 +174,7 @@ def read_table(path):
     if not rows:
         raise FileError(f"{path.name} has no row of values.")
     separator = next((letter for letter in ";\t," if letter in rows[0]), None)
-    if separator == "\t" and path.suffix.lower() not in (".csv", ".tsv"):
+    if separator == "\t" and ending_of(path) not in (".csv", ".tsv"):
         separator = None
     if separator is None:
         rows = [row.partition("#")[0] if "#" in row else row for row in rows]

@@ -7,6 +7,7 @@ are their number; of packed ones: number of blocks, bytes of a block, bytes of t
 packed bytes of each."""
 import binascii
 import bisect
+import json
 import lzma
 import re
 import zlib
@@ -235,6 +236,21 @@ def list_pieces(path):
     if not names or odd is not None:
         raise FileError(f"{path.name} lists no pieces." if odd is None else f"The piece {odd} of {path.name} is no {wanted} file.")
     return [path.parent / name for name in names]
+
+
+def list_series(path):
+    """.vtk.series, ParaView's list of files and their times: {time: files}, in the order of time."""
+    try:
+        entries = json.loads(path.read_bytes())["files"]
+        found = sorted(((float(each["time"]), str(each["name"])) for each in entries), key=lambda pair: pair[0])
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise FileError(f"{path.name} is no series of files, {{\"files\": [{{\"name\": ..., \"time\": ...}}, ...]}}, or damaged.") from None
+    times = {}
+    for time, file in found:
+        times.setdefault(time, []).append(path.parent / file)
+    if not times:
+        raise FileError(f"{path.name} lists no files.")
+    return times
 
 
 def list_times(path):

@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""NumPy's .npz and .npy of plain arrays. What holds objects holds pickles, which are not opened."""
+import io
+import zipfile
+
+import numpy as np
+
+from .._warnings import warn
+from ._particles import TIMES, FileError, check_claim, period_of_field
+from .tables import POSITIONS, axes_of, body_of
+
+
+def array_of(file, name, data):
+    """From the bytes of a .npy file."""
+    stream = io.BytesIO(data)
+    version = np.lib.format.read_magic(stream)
+    read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
+    shape, by_columns, kind = read(stream)
+    if kind.hasobject:
+        raise FileError(f"{file} is not opened: its array '{name}' holds Python's objects, which are pickles, which can run code. Let "
+                        "the solver write HDF5 (PySPH: install h5py), or plain arrays.")
+    count = int(np.prod(shape, dtype=object))
+    if min(shape, default=0) < 0 or count * kind.itemsize > len(data) - stream.tell() or kind.itemsize == 0:
+        raise FileError(f"{file}: its array '{name}' claims {shape} values, for which it is too short.")
+    values = np.frombuffer(data, kind, count, stream.tell())
+    return values.reshape(shape[::-1]).T if by_columns else values.reshape(shape)
+
+
+def read_arrays(path):
+    if path.suffix.lower() == ".npy":
+        found = {"positions": array_of(path.name, path.stem, path.read_bytes())}
+        if found["positions"].dtype.names:
+            found = {name: found["positions"][name] for name in found["positions"].dtype.names}
+    else:
+        with zipfile.ZipFile(path) as packed:
+            members = packed.infolist()
+            check_claim(path.name, "its arrays together", sum(each.file_size for each in members), path.stat().st_size)
+            found = {each.filename[:-4]: array_of(path.name, each.filename[:-4], packed.read(each)) for each in members
+                     if each.filename.endswith(".npy")}
+    usual = [name for wanted in POSITIONS for name in found if name.lower() == wanted and found[name].ndim == 2]
+    usual += [name for name in axes_of(found) if found[name].ndim == 1]
+    count = len(found[usual[0]]) if usual else -1
+    plain = {name: np.ascontiguousarray(values, values.dtype.newbyteorder("=")) for name, values in found.items()
+             if values.ndim in (1, 2) and len(values) == count}
+    if usual and found[usual[0]].ndim == 2 and found[usual[0]].shape[1] == 2:
+        plain[usual[0]] = np.pad(plain[usual[0]], ((0, 0), (0, 1)))  # of a plane
+    body = body_of(path.name, plain if usual else {name: np.empty(0) for name in found})
+    alone = {name: values for name, values in found.items() if name not in plain}
+    time = next((values for name, values in alone.items() if name.lower() in ("t", *(each.lower() for each in TIMES))
+                 and values.size == 1 and values.dtype.kind in "fiu"), None)
+    others = [name for name, values in alone.items() if values is not time and name != "PeriodicBounds"]
+    if others:
+        warn(f"{path.name}: no value for each of {count} particles have {', '.join(others)[:200]}, which are left out.")
+    return body._replace(time=None if time is None else float(np.ravel(time)[0]), period=period_of_field(alone))

@@ -132,10 +132,32 @@ def write_legacy(path, points, arrays, **more):
     path.write_bytes(legacy(points, arrays, **more))
 
 
+def columns(points, arrays, mark):
+    """Names of columns and rows of numbers; a vector's are its name, this mark, and x, y, z."""
+    names = ["x", "y", "z", *(name + (mark + "xyz"[c] if components(values) > 1 else "")
+                              for name, values in arrays.items() for c in range(components(values)))]
+    return names, [list(p) + flat(values[i] for values in arrays.values()) for i, p in enumerate(points)]
+
+
+def ply(points, arrays, form):
+    names, rows = columns(points, arrays, "_")
+    head = [f"ply\nformat {form} 1.0\nelement vertex {len(points)}", *(f"property double {name}" for name in names), "end_header\n"]
+    return "\n".join(head).encode() + b"".join(
+        text_of(row).encode() + b"\n" if form == "ascii" else packed(row, "<" if "little" in form else ">") for row in rows)
+
+
+def table(points, arrays):
+    names, rows = columns(points, arrays, ":")
+    names = [name.replace(":x", ":0").replace(":y", ":1").replace(":z", ":2") for name in names]
+    return ("\n".join(",".join(map(str, row)) for row in [names, *rows]) + "\n").encode()
+
+
 def all_forms(points, arrays):
     """Name of a file and its bytes, for each form."""
     forms = {f"{form}.{ending}": xml(points, arrays, kind, form) for form in ("ascii", "inline", "compressed", "appended")
              for ending, kind in (("vtp", "PolyData"), ("vtu", "UnstructuredGrid"))}
+    forms = {**forms, "table.csv": table(points, arrays), "ascii.ply": ply(points, arrays, "ascii"),
+             **{f"{end}.ply": ply(points, arrays, f"binary_{end}_endian") for end in ("little", "big")}}
     return {**forms, "ascii.vtk": legacy(points, arrays), "binary.vtk": legacy(points, arrays, "BINARY", len(arrays) - 2)}
 
 

@@ -28,7 +28,7 @@ def mutated(data, rng):
     head = min(len(data), rng.choice([300, 600, len(data)]))
     kind = rng.randrange(6)
     if kind < 3:
-        matches = list(re.finditer(rb"(?<=[\" ])-?\d+" if kind < 2 else rb"[A-Za-z]+", data[:head]))
+        matches = list(re.finditer(rb"(?<=[\" ,\n])-?\d+" if kind < 2 else rb"[A-Za-z]+", data[:head]))
         by = rng.choice(NUMBERS) if kind < 2 else rng.choice(matches).group()
         return replaced(rng.choice(matches), by)
     if kind == 3:

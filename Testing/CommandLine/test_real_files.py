@@ -1,8 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Files as people have them, by the program marching-correctors: test_real_files.py PROGRAM PRELOAD."""
+import json
 import math
 import re
+import struct
 
 import particle_files as files
 from command_line_test import CommandLineTest, main, read_table
@@ -142,6 +144,40 @@ class RealFiles(CommandLineTest):
                                  (2, part[2], "new.vtp")], words="lists 2 files"), [0.4, 0.6])
         for other_part in part[1:]:
             self.assertEqual(levels([(0, part[0], "new.vtp"), (0, other_part, "other.vtp")]), [0.8])
+
+    def test_series(self):
+        series = self.directory / "tank.vtk.series"
+        names = {0.25: "tank_9.vtk", 0: "tank_2.vtk", 1e1: 't\u00e4nk "3".vtk'}
+        self.write_tank(9, 9), self.write_tank(2, 4), self.write_tank(3, 6).rename(self.directory / 't\u00e4nk "3".vtk')
+        series.write_text(json.dumps({"file-series-version": "1.0", "files": [
+            {"name": name, "time": time} for time, name in names.items()]}, indent=1))
+        self.assertEqual([(time, round(level, 1)) for time, _, level in self.levels([series], *H)], [(0, 0.4), (0.25, 0.9), (10, 0.6)])
+        self.run_good(series, self.directory / "film.pvd", *FREE, *H)
+        self.assertEqual(re.findall('timestep="(.*?)"', (self.directory / "film.pvd").read_text()), ["0", "0.25", "10"])
+        self.refuse(self.run_program(series, series, self.directory / "film.pvd", *FREE, *H), 2, "a .pvd or .series file must be the only")
+        self.refuse(self.run_program(self.input, self.directory / "film.series", *FREE, *H), 2, "the output is a")
+        for bad in ("{", "[]", '{"files": [{"name": "a.vtk"}]}', '{"files": [{"name": "a.vtk", "time": "x"}]}', '{"files": []}',
+                    '{"files": [{"name": "a.vtk", "time": 0}', "[" * 100000, '{"files'):
+            series.write_text(bad)
+            self.refuse(self.run_program(series, self.directory / "film.pvd", *FREE, *H), 1, "tank.vtk.series cannot be read: it is no series")
+
+    def test_ply(self):
+        points = block((6, 6, 6))
+        head = ("ply\nformat {} 1.0\ncomment of a scanner\nelement vertex 216\nproperty float x\nproperty float y\nproperty float z\n"
+                "property double vx\nproperty double vy\nproperty double vz\nproperty int id\nelement face 0\n"
+                "property list uchar int vertex_indices\nend_header\n")
+        bodies = {"ascii": "".join(f"{x} {y} {z} {x} 0 0 {i}\n" for i, (x, y, z) in enumerate(points)).encode(),
+                  **{f"binary_{name}_endian": b"".join(struct.pack(order + "3f3di", *p, p[0], 0, 0, i) for i, p in enumerate(points))
+                     for name, order in (("little", "<"), ("big", ">"))}}
+        for form, body in bodies.items():
+            file = self.directory / "points.ply"
+            file.write_bytes(head.format(form).encode() + body)
+            self.assertAlmostEqual(self.volume(file, *H), 0.216, delta=0.04)
+            surface = self.output.read_text()
+            self.assertRegex(surface, 'type="Int64"[^>]*Name="id"')
+            self.extract_good("--scalar", "Velocity", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
+        file.write_bytes(head.format(form).encode() + body[:-1])
+        self.refuse(self.extract(*FREE, *H, source=file), 1, "it ends before all of its 216 vertices")
 
     def test_steps_without_fluid(self):
         paths = [self.write_tank(n, layers, 0.1 * n) for n, layers in enumerate([0, 5, 0])]

@@ -207,6 +207,7 @@ def write_vtkhdf(path, random, steps):
     return counts
 
 
+FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
 TRIES = int(os.environ.get("MCOR_MUTATIONS", "90"))
 
 
@@ -390,7 +391,7 @@ class Others(Case):
 
     def test_ply(self):
         for random in self.randoms():
-            for form in ("ascii", "binary_little_endian", "binary_big_endian"):
+            for form in FORMS:
                 values = write_ply(self.at("p.ply"), random, form, bool(random.integers(2)))
                 particles = io.read(self.at("p.ply"))
                 self.assert_same(particles.positions, np.stack([values[axis] for axis in "xyz"], axis=1))
@@ -513,11 +514,11 @@ class AsTheProgram(Case):
                               stderr=subprocess.PIPE, text=True)
 
     def describe(self, particles):
-        """As --list-arrays does: {name: (components, kind, lowest and highest values)}."""
+        """As --list-arrays does: {name: (components, lowest and highest values, none of text)}."""
         found = {"positions": particles.positions, **{name: particles.arrays[name] for name in particles.arrays}}
         if "vx" in found:
             found.pop("Velocity", None)  # three arrays of the file
-        return {name: (values[0].size, values.dtype.kind if values.dtype.kind in "fi" else "-", [] if values.dtype.kind == "U" else
+        return {name: (values[0].size, [] if values.dtype.kind == "U" else
                        [float(f"{each:.9g}") for end in (np.nanmin, np.nanmax) for each in np.ravel(end(values, axis=0))])
                 for name, values in found.items()}
 
@@ -527,10 +528,9 @@ class AsTheProgram(Case):
             word, rest = line[:18].strip(), line[18:]
             name, _, about = rest.partition(": ") if word == "array" else (word, "", "3 components, double, " + rest)
             if word in ("array", "positions"):
-                components, kind, values = about.split(", ", 2)
+                components, _, values = about.split(", ", 2)
                 ends = re.sub(r"[^-+.e0-9]+", " ", values.replace(" .. ", " ")) if values != "not numbers" else ""
-                found[name] = int(components.split()[0]), "-" if not ends else "f" if kind in ("double", "float") else "i", [
-                    float(word) for word in ends.split()]
+                found[name] = int(components.split()[0]), [float(word) for word in ends.split()]
         return found, re.search(r"^period +(.*?)(?: \(field.*)?$", text, re.M)[1]
 
     def compare(self, path, period=None):
@@ -599,11 +599,25 @@ class AsTheProgram(Case):
                 subprocess.run([*words[:-1], str(self.at("b.pvd"))], check=True)
                 self.assertEqual(io.count_steps(self.at("b.pvd")), steps)
 
+    def test_damaged_properties(self):
+        write_ply(self.at("a.ply"), np.random.default_rng(1), FORMS[1])
+        whole = self.at("a.ply").read_bytes()
+        for old, new, words, mine in (
+                (b"float z", b"float w", "positions only x and y is found", ""), (b"little", b"mixed_", "format", ""),
+                (b"float z", b"list uchar float z", "has lists", ""), (b"float z", b"half z", "of its head", "line 'property half z'"),
+                (b"double vx", b"double vy", "have the same name", ""), (b"vertex", b"vortex", "no vertices", ""),
+                (b"ply\n", b"play\n", "is no .ply file", ""), (whole[-9:], b"", "ends", "too early")):
+            with self.subTest(new):
+                self.at("a.ply").write_bytes(whole.replace(old, new))
+                self.assertIn(words, self.list_arrays(self.at("a.ply")).stderr)
+                self.assert_refused(mine or words, self.at("a.ply"))
+
     def test_random_files(self):
         for seed in range(6):
             random = np.random.default_rng([57, seed])
             for name, write in {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 1, True),
-                                "a.dump": lambda path, r: write_lammps(path, r, 1, seed % 2)}.items():
+                                "a.dump": lambda path, r: write_lammps(path, r, 1, seed % 2),
+                                "a.ply": lambda path, r: write_ply(path, r, FORMS[seed % 3], seed % 2)}.items():
                 write(self.at(name), random)
                 self.compare(self.at(name), {"a.xyz": [0, 2, 0, 0, 0, 4], "a.dump": [-1, 3, 0, 0, 0.5, 4.5]}.get(name))
 

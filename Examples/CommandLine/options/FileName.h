@@ -20,6 +20,12 @@ inline bool IsCollectionFile(const std::string& file)
   return EndsWith(file, ".pvd");
 }
 
+/// Whether an input ends as a list of files and their times: .pvd, or .vtk.series and the like.
+inline bool IsListOfSteps(const std::string& file)
+{
+  return IsCollectionFile(file) || EndsWith(file, ".series");
+}
+
 /// A file format: the ending of its names, and the function that reads or writes it.
 template <typename FunctionT>
 struct FileFormat

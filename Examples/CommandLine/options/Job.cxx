@@ -114,7 +114,7 @@ const std::vector<Rule> Rules = {
   { Others, IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
 
   { Probes,
-    IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
+    IF(j.Inputs.size() > 1 || IsListOfSteps(j.Inputs.front()) || !j.Times.empty() ||
       j.TimeStep != 1.0),
     "{mode} takes one INPUT of one time" },
   { Probes, IsAny, "{mode} makes no surface",
@@ -131,11 +131,10 @@ const std::vector<Rule> Rules = {
   { Films, IF(!j.IsFilm()),
     "the output is not a film, which is a .pvd file or has %04d in its name",
     { "--times", "--time-step" } },
-  { Films,
-    IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsCollectionFile)),
-    "a .pvd file must be the only INPUT, because it lists the steps" },
-  { Films, IF(IsCollectionFile(j.Inputs.front()) && j.TimeStep != 1.0),
-    "--time-step is for a list of particle files; a .pvd file has times of its own" },
+  { Films, IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsListOfSteps)),
+    "a .pvd or .series file must be the only INPUT, because it lists the steps" },
+  { Films, IF(IsListOfSteps(j.Inputs.front()) && j.TimeStep != 1.0),
+    "--time-step is for a list of particle files; a .pvd or .series file has times of its own" },
 
   { Projections, IsAny, "{mode} makes no surface",
     { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
@@ -223,7 +222,7 @@ void Check(const Job& job)
   for (const std::string& walls : job.Walls)
   {
     const Modes mode = ModeOf(job);
-    if ((mode & Others) && !job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
+    if ((mode & Others) && !job.IsFilm() && (IsListOfSteps(walls) || HasStepNumber(walls)))
     {
       throw UsageError("--walls " + walls +
         " has walls for each step, which only films, gauges and fluxes can use; give one file");
@@ -325,7 +324,7 @@ bool Job::IsFilm() const
 {
   return !this->IsProbe() && (!this->IsTable() || this->Has("--project")) &&
     (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
-      (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
+      (!this->Inputs.empty() && IsListOfSteps(this->Inputs.front())));
 }
 
 std::string CommandLineHelp()

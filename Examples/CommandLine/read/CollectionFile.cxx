@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "FileName.h"
 #include "OptionValue.h"
 #include "SafeText.h"
 
@@ -10,7 +11,10 @@
 #include "vtkXMLUtilities.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace
 {
@@ -42,9 +46,86 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(const std::string& file, const ch
   return found;
 }
 
+/// Splits JSON: its signs, numbers and words as they are, and texts behind a quotation mark.
+std::vector<std::string> Tokens(const std::string& text)
+{
+  std::vector<std::string> tokens;
+  for (std::size_t at = 0; (at = text.find_first_not_of(" \t\r\n", at)) != std::string::npos;)
+  {
+    std::string token(1, text[at++]);
+    if (token != "\"")
+    {
+      const bool isSign = std::string("{}[]:,").find(token) != std::string::npos;
+      const std::size_t end =
+        isSign ? at : std::min(text.find_first_of(" \t\r\n{}[]:,\"", at), text.size());
+      tokens.push_back(token + text.substr(at, end - at));
+      at = end;
+      continue;
+    }
+    for (; at < text.size() && text[at] != '"'; ++at)
+    {
+      const bool isMasked = text[at] == '\\' && at + 1 < text.size();
+      at += isMasked ? 1 : 0;
+      if (isMasked && text[at] == 'u') // a letter that is not in ASCII, by its code
+      {
+        const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
+        at += std::min<std::size_t>(4, text.size() - 1 - at);
+        token += code < 0x80 ? std::string(1, static_cast<char>(code))
+          : code < 0x800     ? std::string{ static_cast<char>(0xC0 | code >> 6) }
+                             : std::string{ static_cast<char>(0xE0 | code >> 12),
+                             static_cast<char>(0x80 | (code >> 6 & 0x3F)) };
+        token += code < 0x80 ? "" : std::string(1, static_cast<char>(0x80 | (code & 0x3F)));
+        continue;
+      }
+      token += text[at];
+    }
+    tokens.push_back(token);
+    at += 1;
+  }
+  return tokens;
+}
+
 std::string Resolved(const std::string& list, const std::string& file)
 {
   return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
+}
+
+/// ParaView's {"files": [{"name": "a.vtk", "time": 0}, ...]}, in the order of time.
+std::vector<CollectionEntry> ReadSeries(const std::string& file)
+{
+  CheckRegularFile(file);
+  std::ifstream stream(file, std::ios::binary);
+  const std::vector<std::string> tokens =
+    Tokens({ std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>() });
+  const auto at = [&tokens](std::size_t i) { return i < tokens.size() ? tokens[i] : ""; };
+  std::vector<CollectionEntry> entries;
+  const std::size_t begin =
+    static_cast<std::size_t>(std::find(tokens.begin(), tokens.end(), "\"files") - tokens.begin());
+  std::size_t i = begin + 2;
+  bool isGood = at(begin + 1) == ":" && at(i) == "[";
+  while (isGood && at(i) != "]")
+  {
+    CollectionEntry entry = { 0.0, "", "" };
+    bool hasTime = false;
+    isGood = at(i + 1) == "{";
+    for (i += 2; at(i - 1) != "}" && isGood; i += 4) // at KEY : VALUE and a comma or the end
+    {
+      hasTime = hasTime || (at(i) == "\"time" && ParseNumber(at(i + 2), entry.Time));
+      entry.File = at(i) == "\"name" && at(i + 2).size() > 1 ? at(i + 2).substr(1) : entry.File;
+      isGood = at(i + 1) == ":" && (at(i + 3) == "," || at(i + 3) == "}");
+    }
+    isGood = isGood && hasTime && !entry.File.empty() && (at(i) == "," || at(i) == "]");
+    entry.File = Resolved(file, entry.File);
+    entries.push_back(entry);
+  }
+  if (!isGood || entries.empty())
+  {
+    FailToRead(file,
+      "it is no series of files, {\"files\": [{\"name\": ..., \"time\": ...}, ...]}, or damaged");
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+    [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
+  return entries;
 }
 
 }
@@ -52,6 +133,10 @@ std::string Resolved(const std::string& list, const std::string& file)
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings)
 {
+  if (EndsWith(file, ".series"))
+  {
+    return ReadSeries(file);
+  }
   const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection");
   std::vector<CollectionEntry> entries;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)

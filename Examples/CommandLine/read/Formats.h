@@ -32,7 +32,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 std::vector<double> ListTimesOfVtk(const std::string& file);
 ///@}
 
-/// An entry of a .pvd file.
+/// An entry of a .pvd or .series file.
 struct CollectionEntry
 {
   double Time;
@@ -56,6 +56,9 @@ std::vector<std::string> ReadPieces(const std::string& file);
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
 std::vector<double> ListTimesInText(const std::string& file);
 ///@}
+
+/// The vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
+vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);
 
 /// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins as one does,
 /// the files of its snapshot, its time, and the gas in one file. SmoothingLength is half of

@@ -88,6 +88,7 @@ const Formats ParticleFormats = {
   { ".extxyz", { ReadText, ListTimesInText } },
   { ".lammpstrj", { ReadText, ListTimesInText } },
   { ".dump", { ReadText, ListTimesInText } },
+  { ".ply", { ReadPly } },
 };
 
 /// Formats of data sets of any class.

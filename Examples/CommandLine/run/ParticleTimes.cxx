@@ -140,7 +140,7 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings)
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {
-  const bool areListed = IsCollectionFile(file);
+  const bool areListed = IsListOfSteps(file);
   const Steps walls = areListed ? ListedSteps(file, warnings) : Steps();
   if (areListed && !haveTimes && walls.size() != steps.size())
   {
@@ -270,7 +270,7 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
 {
   const Job& job = sharing.Options;
   std::vector<std::string> notes;
-  const bool haveTimes = IsCollectionFile(job.Inputs.front());
+  const bool haveTimes = IsListOfSteps(job.Inputs.front());
   this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes);
   for (const std::string& walls : job.Walls)
   {
@@ -343,7 +343,7 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
   this->Interpolator->UpdateTimeStep(time);
   const std::string error = this->Source->Error;
   Messages().Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
-  const bool hasTimes = IsCollectionFile(this->Shared.Options.Inputs.front());
+  const bool hasTimes = IsListOfSteps(this->Shared.Options.Inputs.front());
   for (const std::string& sentence : Messages().Warnings)
   {
     warnings.push_back(Reworded(sentence, "set the time scale",

@@ -242,14 +242,14 @@ def list_series(path):
     """.vtk.series, ParaView's list of files and their times: {time: files}, in the order of time."""
     try:
         entries = json.loads(path.read_bytes())["files"]
-        found = sorted(((float(each["time"]), str(each["name"])) for each in entries), key=lambda pair: pair[0])
+        found = sorted(((float(each["time"] + 0), each["name"] + "") for each in entries), key=lambda pair: pair[0])
     except (ValueError, KeyError, TypeError, RecursionError):
+        found = []
+    if not found or not np.isfinite([time for time, _ in found]).all() or not all(name for _, name in found):
         raise FileError(f"{path.name} is no series of files, {{\"files\": [{{\"name\": ..., \"time\": ...}}, ...]}}, or damaged.") from None
     times = {}
     for time, file in found:
         times.setdefault(time, []).append(path.parent / file)
-    if not times:
-        raise FileError(f"{path.name} lists no files.")
     return times
 
 

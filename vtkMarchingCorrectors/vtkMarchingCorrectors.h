@@ -36,7 +36,8 @@
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
  * velocities, the first vector, or the first scalar of the particles that varies; with several iso
- * values, the iso value. The output field data holds "IsoValues" and the arrays of the input's.
+ * values, the iso value. The output field data holds "IsoValues", whose component has the name of the point array
+ * that says which of them each point has, and the arrays of the input's.
  *
  * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h
  * describes ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and

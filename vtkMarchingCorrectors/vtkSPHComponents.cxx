@@ -7,6 +7,7 @@
 #include "vtkCellData.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -176,24 +177,27 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
       particles->GetPoint(i, places.back().data());
     }
   }
-  const std::vector<vtkIdType> around = pieces.FindEnclosing(places);
   using Step = void (OrderlessSum::*)(double);
-  for (const Step step : { &OrderlessSum::Expect, &OrderlessSum::Add })
+  for (const double isoValue : pieces.IsoValues)
   {
-    for (size_t i = 0; i < fluid.size(); ++i)
+    const std::vector<vtkIdType> around = pieces.FindEnclosing(places, isoValue);
+    for (const Step step : { &OrderlessSum::Expect, &OrderlessSum::Add })
     {
-      if (around[i] < 0)
+      for (size_t i = 0; i < fluid.size(); ++i)
       {
-        continue;
-      }
-      Content& content = contents[around[i]];
-      const double one = this->Mass > 0.0 ? this->Mass : 1.0;
-      const double mass = masses ? masses->GetComponent(fluid[i], 0) : one;
-      content.Particles += step == &OrderlessSum::Add ? 1.0 : 0.0;
-      (content.Mass.*step)(mass);
-      for (int a = 0; a < 3 && velocities; ++a)
-      {
-        (content.Momentum[a].*step)(mass * velocities->GetComponent(fluid[i], a));
+        if (around[i] < 0)
+        {
+          continue;
+        }
+        Content& content = contents[around[i]];
+        const double one = this->Mass > 0.0 ? this->Mass : 1.0;
+        const double mass = masses ? masses->GetComponent(fluid[i], 0) : one;
+        content.Particles += step == &OrderlessSum::Add ? 1.0 : 0.0;
+        (content.Mass.*step)(mass);
+        for (int a = 0; a < 3 && velocities; ++a)
+        {
+          (content.Momentum[a].*step)(mass * velocities->GetComponent(fluid[i], a));
+        }
       }
     }
   }
@@ -231,18 +235,27 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
   return number;
 }
 
+// The surface's field data list the values, and name the array: see vtkMarchingCorrectors.
+vtkDataArray* vtkSPHComponents::FindIsoValues(vtkPolyData* mesh)
+{
+  vtkDataArray* values = mesh->GetFieldData()->GetArray("IsoValues");
+  const char* name = values ? values->GetComponentName(0) : nullptr;
+  return name ? mesh->GetPointData()->GetArray(name) : nullptr;
+}
+
 vtkSPHComponents::Numbers vtkSPHComponents::Split(
   vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
 {
-  const vtkSPHPieces pieces(mesh, this->PeriodicBounds);
+  vtkDataArray* const isoValues = FindIsoValues(mesh);
+  const vtkSPHPieces pieces(mesh, isoValues, this->PeriodicBounds);
   const std::vector<Content> contents =
     particles ? this->Count(pieces, particles) : std::vector<Content>();
   const std::vector<vtkIdType> number = this->Choose(pieces, contents);
-  const char* const names[] = { "component", "parent", "closed", "area", "volume", "x", "y", "z",
-    "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
-    "vz" };
+  const char* const names[] = { "component", "iso", "parent", "closed", "area", "volume", "x", "y",
+    "z", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx",
+    "vy", "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles = 15; // the others are about particles, which may be absent
+  constexpr size_t withoutParticles = 16; // the others are about particles, which may be absent
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
   for (size_t c = 0; c < used; ++c)
@@ -252,6 +265,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     table->AddColumn(column);
     columns[c] = column;
   }
+  vtkDataArray* listed = mesh->GetFieldData()->GetArray("IsoValues");
   for (size_t i = 0; i < pieces.Pieces.size(); ++i)
   {
     if (number[i] < 0)
@@ -259,10 +273,16 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
       continue;
     }
     const vtkSPHPiece& piece = pieces.Pieces[i];
+    double iso = NoNumber; // the points may have it rounded to float
+    for (vtkIdType v = 0; isoValues && v < listed->GetNumberOfValues(); ++v)
+    {
+      const double value = listed->GetComponent(v, 0);
+      iso = std::abs(value - piece.Iso) >= std::abs(iso - piece.Iso) ? iso : value;
+    }
     const bool has = piece.HasVolume(), filled = has && piece.Volume > 0.0 && !contents.empty();
     const Content content = filled ? contents[i] : Content();
     const double* b = piece.Bounds;
-    const double row[columnCount] = { static_cast<double>(number[i]),
+    const double row[columnCount] = { static_cast<double>(number[i]), iso,
       piece.Parent >= 0 ? static_cast<double>(number[piece.Parent]) : NoNumber,
       piece.Closed ? 1.0 : 0.0, piece.Area, has ? piece.Volume : NoNumber, piece.Centre[0],
       piece.Centre[1], piece.Centre[2], b[0], b[1], b[2], b[3], b[4], b[5],

@@ -10,13 +10,14 @@
  * second output is a vtkTable with a row for each piece:
  *
  *     component            its number
+ *     iso                  the iso value that it is a surface of; NaN where the surface does not tell
  *     parent               of a cavity, the piece around it; else NaN
  *     closed               1 or 0: each edge has triangles on either side
  *     area, volume         volume only of closed pieces; negative for a cavity
  *     x, y, z              centre, of the volume; of open pieces, of the area
  *     xmin, xmax, ...      bounds; a piece that crosses the side of a period is joined first
  *     diameter             of the sphere of this volume
- *     particles            fluid particles inside it, without those in pieces inside it
+ *     particles            fluid particles inside it, without those in pieces of the same iso value inside it
  *     mass                 their mass
  *     vx, vy, vz           their mean velocity, weighted by the mass
  *
@@ -143,6 +144,7 @@ private:
     const vtkSPHPieces& pieces, const std::vector<Content>& contents) const;
   static void Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output);
   static std::string FindProblem(vtkPolyData* mesh);
+  static vtkDataArray* FindIsoValues(vtkPolyData* mesh);
 
   // For many processes together.
   std::string SplitDistributed(

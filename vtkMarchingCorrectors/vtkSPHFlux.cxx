@@ -144,12 +144,12 @@ int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,
     sections.push_back(section);
   }
   mcor_input input = particles;
-  mcor_array still = {};
-  still.components = 3;
-  if (input.count == 0 && input.attribute_count == 0) // without particles, no array is needed
+  mcor_array none[2] = {}; // velocities, densities
+  none[0].components = 3;
+  if (input.count == 0) // without particles, no array is needed, and nothing flows
   {
-    input.attributes = &still;
-    input.attribute_count = 1;
+    input.attributes = none;
+    input.attribute_count = 2;
   }
   mcor_fluxes fluxes = {};
   const int status = mcor_flux(

@@ -6,6 +6,9 @@
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
@@ -99,7 +102,7 @@ bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
   return true;
 }
 
-// Without fluid, each process measures for itself that there is none.
+// Without fluid, each process measures for itself, of no particles, that there is none.
 void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* table = vtkTable::SafeDownCast(output);
@@ -111,19 +114,22 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticles mine(run->Choose(), run->Own);
+  vtkSPHParticles present(run->Choose(), run->Own);
   const auto collect = [this](vtkSPHParticles& near) { return this->Collect(near); };
-  if (!run->Accept(mine, collect, this->GetConsequence()))
+  if (!run->Accept(present, collect, this->GetConsequence()))
   {
     return;
   }
   const bool hasFluid = run->HasFluid;
+  vtkNew<vtkPolyData> none;
+  none->SetPoints(vtkNew<vtkPoints>());
   if (!hasFluid)
   {
-    const vtkSmartPointer<vtkPointSet> own = run->Own;
     run = std::make_unique<vtkRun>(this);
-    run->Own = own;
+    run->Own = none;
   }
+  vtkSPHParticles nothing(vtkSPHParticlesChoice(*this), none);
+  vtkSPHParticles& mine = hasFluid ? present : nothing;
   this->FillOptions(run->Options);
   run->Options.field = MCOR_WEIGHT_SUM;
   run->Options.level_limit = 0;
@@ -167,16 +173,18 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   }
   vtkSPHAddRunStatistics(this->RunStatistics, statistics);
   run->WarnOfParticles(input->Core, statistics);
-  for (size_t i = 0; isFirst && hasFluid && i < outside.size(); ++i)
+  const auto first = std::find(outside.begin(), outside.end(), true);
+  const auto dry = std::count(first, outside.end(), true);
+  if (isFirst && hasFluid && dry > 0)
   {
-    if (outside[i])
-    {
-      std::string noun = this->GetNoun();
-      noun[0] = static_cast<char>(noun[0] - 'a' + 'A');
-      this->Warn(noun + " '" + places[i].Name +
-        "' is outside of all fluid: no particle reaches it. If this is so at all times, "
-        "check where it is.");
-    }
+    const std::string noun = this->GetNoun(),
+                      name = "'" + places[first - outside.begin()].Name + "'";
+    const std::string all = std::to_string(outside.size());
+    this->Warn(
+      (dry == 1 ? "The " + noun + " " + name + " is outside of all fluid: no particle reaches it. "
+                : std::to_string(dry) + " of " + all + " " + noun + "s, the first of them " + name +
+            ", are outside of all fluid: no particle reaches them. ") +
+      "If this is so at all times, check " + (dry == 1 ? "where it is." : "where they are."));
   }
   if (!isFirst)
   {

@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHTemporalPair.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -309,8 +310,16 @@ void vtkSPHTemporalInterpolator::Fill(
     this->Internals->Pairs.resize(block + 1);
   }
   vtkSPHTemporalPair& pair = this->Internals->Pairs[block];
+  const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // only lengths count
+  std::vector<double> found;
+  if (this->DetectPeriod)
+  {
+    found = vtkSPHBoundsOfPeriod(vtkSPHFindPeriod(sets[0]->GetFieldData()).Period, extent);
+  }
+  const double* p = found.empty() ? this->PeriodicBounds : found.data();
   const vtkSPHTemporalChoice choice = { this->IdArrayName, this->VelocityArrayName,
-    this->UseVelocities != 0, this->TimeScale, { times[0], times[1] } };
+    this->UseVelocities != 0, this->TimeScale, { times[0], times[1] },
+    { p[1] - p[0], p[3] - p[2], p[5] - p[4] } };
   const bool matched = pair.Match(sets[0], sets[1], choice);
   this->UsedIdArrayName = pair.IdName;
   this->UsedVelocityArrayName = pair.VelocityName;
@@ -329,7 +338,7 @@ void vtkSPHTemporalInterpolator::Fill(
 void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  vtkSPHPrintMacro(IdArrayName, VelocityArrayName, UseVelocities, UsedIdArrayName,
-    UsedVelocityArrayName, TimeScale, ResampleFactor, ErrorMessage);
+  vtkSPHPrintMacro(IdArrayName, VelocityArrayName, UseVelocities, PeriodicBounds, DetectPeriod,
+    UsedIdArrayName, UsedVelocityArrayName, TimeScale, ResampleFactor, ErrorMessage);
 }
 VTK_ABI_NAMESPACE_END

@@ -34,8 +34,9 @@
  * particle is a vertex. Composite data must have the same tree in both steps, and give composite
  * data. Arrays that only one of the two steps has are left out between them, with a warning.
  *
- * @warning
- * Particles that cross a periodic boundary fly through the whole domain between the two steps.
+ * Where PeriodicBounds are set, each particle goes to its nearest image in the other step, so that one
+ * that crosses a side goes on beyond it. Otherwise it flies through the whole domain between the two
+ * steps.
  *
  * @sa
  * vtkMarchingCorrectors vtkTemporalInterpolator
@@ -81,6 +82,15 @@ public:
    * 0, 1, 2, ... and stored every 0.01 s. > 0, 1 by default.
    */
   vtkSPHValueMacro(TimeScale, double, 1.0);
+
+  /**
+   * The lower and the upper side of one period along x, y and z; 0, 0, the default, along an axis that is
+   * not periodic.
+   */
+  vtkSPHVector6Macro(PeriodicBounds, double, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+
+  /** Takes the period from the field data of the steps instead, as vtkSPHAlgorithm does. Off by default. */
+  vtkSPHFlagMacro(DetectPeriod, 0);
 
   /**
    * The number of steps that are announced for each interval between two stored ones, as ParaView's

@@ -4,7 +4,7 @@
 import particle_files as files
 from command_line_test import CommandLineTest, main, read_table
 
-COLUMNS = ("component parent closed area volume x y z xmin xmax ymin ymax zmin zmax diameter particles mass "
+COLUMNS = ("component iso parent closed area volume x y z xmin xmax ymin ymax zmin zmax diameter particles mass "
            "vx vy vz").split()
 FREE = ["--free-surface"]
 
@@ -77,8 +77,8 @@ class Components(CommandLineTest):
         for options in ([], ["--components", self.table], ["--components", self.table, "--least-volume", "0.3"]):
             self.run_good(*film, *options)
             rows.append(read_table(numbers))
-        names = ["time", "triangles", "area", "volume", "pieces", "mast.last", "mast.depth", "mast.crossings"]
-        self.assertEqual([list(table[0]) for table in rows], [names[:4] + names[5:], names, names])
+        names = ["time", "iso", "triangles", "area", "volume", "pieces", "mast.last", "mast.depth", "mast.crossings"]
+        self.assertEqual([list(table[0]) for table in rows], [names[:5] + names[6:], names, names])
         self.assertEqual([row["time"] for row in rows[0]], ["0", "0.1", "0.25"])
         for i, (plain, both, one) in enumerate(zip(*rows)):
             for name in plain:
@@ -89,6 +89,39 @@ class Components(CommandLineTest):
             self.assertAlmostEqual(float(one["area"]), 6, delta=0.9)
             self.assertAlmostEqual(float(plain["mast.last"]), 1.5 + (0, 0.04, 0.1)[i], delta=0.01)
             self.assertLess(int(one["triangles"]), int(both["triangles"]))
+
+    def test_iso_values(self):
+        """Each iso value has its own rows, as if it were the only one, in space and in a plane."""
+        height = [0.6 - r for r in self.arrays["Radius"]]
+        files.write_vtp(self.input, self.points, {**self.arrays, "Height": height})
+        numbers = self.directory / "numbers.csv"
+
+        def tables(iso, *options):
+            self.run_good(self.input, "film.pvd", "--scalar", "Height", "--iso", iso, "--numbers", numbers, "--quiet", *options)
+            return read_table(numbers), read_table(self.table) if options else []
+
+        for flat in (False, True):
+            if flat:
+                plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
+                arrays = {name: [values[i] for i in plane] for name, values in {**self.arrays, "Height": height}.items()}
+                files.write_vtp(self.input, [self.points[i] for i in plane], {**arrays, "Mass": [10.0] * 100, "Height": [h + 0.3 for h in arrays["Height"]]})
+            components = [] if flat else ["--components", self.table]
+            (first, second), pieces = tables("0.4,0.3", *components)
+            self.assertEqual([first["iso"], second["iso"]], ["0.3", "0.4"])
+            self.assertGreater(float(first["area"]), 1.2 * float(second["area"]))
+            for row, number in ((first, 0), (second, 1)):
+                (alone,), own = tables(row["iso"], *components)
+                self.assertEqual(alone["triangles"], row["triangles"])
+                for name in ("area",) if flat else ("area", "volume"):
+                    self.assertAlmostEqual(float(alone[name]) / float(row[name]), 1, delta=1e-5)
+                for name in () if flat else ("particles", "mass", "iso", "parent", "closed"):
+                    self.assertEqual([own[0][name]], [piece[name] for piece in pieces if piece["iso"] == row["iso"]])
+            if not flat:
+                self.assertAlmostEqual(float(first["between"]), float(first["volume"]) - float(second["volume"]), delta=1e-12)
+                self.assertEqual(second["between"], second["volume"])
+                self.assertGreater(float(first["between"]), 0.05)
+                self.run_good(self.input, "film.pvd", "--scalar", "Height", "--iso", "0.4,0.3", "--numbers", numbers, "--quiet")
+                self.assertEqual([row["volume"] for row in read_table(numbers)], [first["volume"], second["volume"]])
 
     def test_area_is_that_of_what_stays(self):
         statistics = self.succeed(*FREE, "--components", self.table, "--least-volume", "0.3", "--quiet")["statistics"]

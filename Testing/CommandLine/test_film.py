@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Films by the program marching-correctors: test_film.py PROGRAM PRELOAD."""
+import csv
 import json
 import re
 import signal
@@ -106,6 +107,26 @@ class Film(CommandLineTest):
         self.good("steps.pvd", "--times", "0.03", "--ids", "Tag")
         self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "only --times asks for; leave out --ids")
+
+    def test_period_between_steps(self):
+        """Particles that cross the side of a period go on beyond it, not back through the box."""
+        points, arrays = files.lattice(6)
+        for i, x in enumerate((0.6, 0.8)):
+            moved = [((p[0] + x) % 1, p[1] + 0.5, p[2] + 0.5) for p in points]
+            files.write_vtp(self.directory / f"step_{i}.vtp", moved,
+                            {**arrays, "Id": list(range(216)), "Velocity": [(2.0, 0.0, 0.0)] * 216})
+        files.write_pvd(self.directory / "steps.pvd", [(0.1 * i, f"step_{i}.vtp") for i in range(2)])
+        numbers = self.directory / "numbers.csv"
+        film = ["steps.pvd", self.film, *FREE, "--times", "0,0.03,0.05,0.1", "--numbers", numbers, "--components", "pieces.csv", "--quiet"]
+        for period in ("1,1,1", "0,1,0,1,0,1"):
+            self.run_good(*film, "--periodic", period)
+            with open(numbers, encoding="utf-8") as stream:
+                rows = list(csv.DictReader(stream))
+            self.assertEqual([row["pieces"] for row in rows], ["1"] * 4)
+            for row in rows:
+                self.assertAlmostEqual(float(row["area"]) / float(rows[0]["area"]), 1, delta=0.01)
+        said = self.run_program(*film).stderr
+        self.assertRegex(said, r"times as far as 'Velocity'.*period that is not given \(set the periodic bounds \(--periodic\)\)")
 
     def test_no_numbers(self):
         points, arrays = files.drop_at(0.1)

@@ -38,8 +38,37 @@ class Meter(CommandLineTest):
 
     def test_outside(self):
         result = self.measure(*self.one, self.one[0], "far=9,0,0:9,0,1:9,1,0"[:None if self.one[0] == "--flux" else 15])
-        self.one_sentence(result, 0, "warning: .*'far' is outside of all fluid")
+        self.one_sentence(result, 0, "warning: .*The (gauge|section) 'far' is outside of all fluid")
         self.assertEqual(len(self.read_rows()), 2)
+        many = [word for i in range(300) for word in (self.one[0], f"far{i}=9,0,{i}:9,0,{i + 1}" + f":9,1,{i}" * (self.one[0] == "--flux"))]
+        result = self.run_program(self.source, self.source, self.table, *many, *self.one)
+        lines = result.stderr.splitlines()
+        self.assertRegex(lines[0], "300 of 301 (gauges|sections), the first of them 'far0', are outside of all fluid")
+        self.assertRegex(lines[1], "1 more step: warning: places are outside of all fluid")
+        self.assertEqual(len(lines), 2)
+
+    def test_steps_without_fluid(self):
+        """A step without particles of the type, or without any, is a step like others; in a plane, too."""
+        plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
+        z = self.points[0][2]
+        for flat in (False, True):
+            chosen = plane if flat else range(len(self.points))
+            points, arrays = [self.points[i] for i in chosen], {name: [values[i] for i in chosen] for name, values in self.arrays.items()}
+            arrays["Mass"] = [(10 if flat else 1) * mass for mass in arrays["Mass"]]
+            one = [self.one[0], f"wall=0.1,-1,{z}:0.1,1,{z}"] if flat or self.one[0] == "--gauge" else self.one
+            files.write_vtp(self.directory / "wet.vtp", points, {**arrays, "Kind": [1.0] * len(points)})
+            files.write_vtp(self.directory / "other.vtp", points, {**arrays, "Kind": [0.0] * len(points)})
+            files.write_vtp(self.directory / "none.vtp", [], {})
+            steps = ["wet.vtp", "other.vtp", "none.vtp", "wet.vtp"]
+            files.write_pvd(self.directory / "steps.pvd", enumerate(steps))
+            for source in ("steps.pvd", "other.vtp"):
+                self.run_good(source, self.table, *one, "--fluid", "Kind=1", says="warning: other.vtp: No particle has Kind = 1")
+                rows = read_table(self.table)
+                states = [row.get("state") or ("dry" if float(row["area"]) == 0 else "wet") for row in rows]
+                self.assertEqual(states, ["dry" if name != "wet.vtp" else "wet" for name in (steps if source == "steps.pvd" else [source])])
+                if "volume" in rows[0]:
+                    self.assertEqual([row["mass_flux"] for row in rows if float(row["area"]) == 0], ["0"] * states.count("dry"))
+                    self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
         """cases of exit status 2 and 1, and those that both tables have; the table stays as it was."""

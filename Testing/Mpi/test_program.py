@@ -450,7 +450,7 @@ class Program(unittest.TestCase):
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
             os.mkdir(self.path(name))
-            how = ["--free-surface", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
+            how = ["--free-surface", "--iso", "0.5,0.3", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
                    "--numbers", self.path(name + "/numbers.csv"), "--periodic", "0,0,3.1"]
             done = self.good(run(steps, self.path(name + "/film_%04d.ply"), *how, "--times", "0,0.007,0.02"))
             self.assertEqual(done.stdout.count(" triangles, "), 3, done.stdout)
@@ -463,7 +463,7 @@ class Program(unittest.TestCase):
         alone, ranks = (read(self.path(name + "/list_0001.vtp")) for name in ("alone", "ranks"))
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
         with open(self.path("ranks/numbers.csv"), encoding="utf-8") as stream:
-            self.assertEqual(len(set(stream)), 4)
+            self.assertEqual(len(set(stream)), 7)
         picture = self.run_ranks(steps, self.path("o.pvd"), "--free-surface", "--screenshot", self.path("o_%04d.png"))
         self.check_fails(picture, "--screenshot")
 

@@ -4,6 +4,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
+#include "vtkDataArray.h"
 #include "vtkMath.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -23,7 +24,7 @@ constexpr double SideTolerance = 1e-5;
 }
 
 // The root of each part is its lowest point, in any order of joining.
-vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
+vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const double period[6])
   : Points(mesh->GetNumberOfPoints())
   , Root(this->Points.size())
 {
@@ -63,7 +64,19 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
   this->FindClosed();
   this->Measure();
   this->MoveHome();
-  this->FindParents();
+  for (vtkSPHPiece& piece : this->Pieces)
+  {
+    const vtkIdType point = this->Triangles[piece.FirstTriangle][0];
+    piece.Iso = isoValues ? isoValues->GetComponent(point, 0) : 0.0;
+    this->IsoValues.push_back(piece.Iso);
+  }
+  std::sort(this->IsoValues.begin(), this->IsoValues.end());
+  this->IsoValues.erase(
+    std::unique(this->IsoValues.begin(), this->IsoValues.end()), this->IsoValues.end());
+  for (const double isoValue : this->IsoValues)
+  {
+    this->FindParents(isoValue);
+  }
 }
 
 // Points on opposite sides are matched by their other two coordinates. Parts that meet there form a
@@ -326,23 +339,24 @@ void vtkSPHPieces::MoveHome()
 }
 
 // A piece without a volume, such as a layer over the whole period, is the parent of cavities in it.
-void vtkSPHPieces::FindParents()
+void vtkSPHPieces::FindParents(double isoValue)
 {
   std::vector<Triple> places;
   std::vector<vtkIdType> cavities;
   for (size_t i = 0; i < this->Pieces.size(); ++i)
   {
-    if (this->Pieces[i].HasVolume() && this->Pieces[i].Volume < 0.0)
+    const vtkSPHPiece& piece = this->Pieces[i];
+    if (piece.Iso == isoValue && piece.HasVolume() && piece.Volume < 0.0)
     {
       double c[3][3];
-      this->CornersOf(this->Pieces[i].FirstTriangle, c);
+      this->CornersOf(piece.FirstTriangle, c);
       places.push_back({ { c[0][0], c[0][1], c[0][2] } });
       cavities.push_back(static_cast<vtkIdType>(i));
     }
   }
-  const std::vector<vtkIdType> within = this->FindEnclosing(places, cavities);
+  const std::vector<vtkIdType> within = this->FindEnclosing(places, isoValue, cavities);
   const bool isAll = std::count(within.begin(), within.end(), -1) == 0;
-  const std::vector<vtkIdType> around = isAll ? within : this->FindAround(places);
+  const std::vector<vtkIdType> around = isAll ? within : this->FindAround(places, isoValue);
   for (size_t i = 0; i < cavities.size(); ++i)
   {
     this->Pieces[cavities[i]].Parent = within[i] >= 0 ? within[i] : around[i];

@@ -10,6 +10,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkDataArray;
 class vtkPolyData;
 
 /** One piece. Lengths are in the unit of the positions. */
@@ -18,6 +19,7 @@ struct vtkSPHPiece
   vtkIdType Parent = -1; ///< of a cavity: the piece around it; -1: none
   bool Closed = true;    ///< each edge has a triangle on both sides
   bool Endless = false;  ///< closed only around a period, so that it has no volume
+  double Iso = 0.0;      ///< the value that its points have
   double Area = 0.0;
   double Volume = 0.0; ///< if closed; negative for a cavity
   double Centre[3] = { 0.0, 0.0, 0.0 };
@@ -33,23 +35,27 @@ struct vtkSPHPiece
  * period (bounds; 0 0: no period), where points have the same other coordinates, to the last
  * bit. A surface ends at planes of its lattice, which lie up to a cube from these bounds and a
  * period apart; where the surface passes the bounds, its own bounds are the sides. Pieces are
- * sorted by area, the largest first. Each is placed so that its centre is within the period.
+ * sorted by area, the largest first. Each is placed so that its centre is within the period. Pieces of
+ * several iso values are nested in each other, so each encloses particles, and cavities of its own
+ * value, as if there were no others.
  */
 class vtkSPHPieces
 {
 public:
-  vtkSPHPieces(vtkPolyData* mesh, const double period[6]);
+  /** isoValues: of the points; null: there is one for all. */
+  vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const double period[6]);
 
   std::vector<vtkSPHPiece> Pieces;
+  std::vector<double> IsoValues; ///< of all pieces, ascending, each once
   std::vector<vtkIdType> PieceOfTriangle;
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
   /**
-   * Finds, for each point, the innermost piece with a volume that encloses it; -1: that piece is
-   * a cavity, or there is none. without: for each point a piece to ignore; may be empty.
+   * Finds, for each point, the innermost piece of this iso value with a volume that encloses it; -1:
+   * that piece is a cavity, or there is none. without: for each point a piece to ignore; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
-    const std::vector<vtkIdType>& without = {}) const;
+    double isoValue, const std::vector<vtkIdType>& without = {}) const;
 
   struct Face
   {
@@ -66,10 +72,11 @@ private:
   void Measure();
   void FindClosed();
   void MoveHome();
-  void FindParents();
+  void FindParents(double isoValue);
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
-  std::vector<Face> ListFaces(bool hasVolume) const;
-  std::vector<vtkIdType> FindAround(const std::vector<std::array<double, 3>>& points) const;
+  std::vector<Face> ListFaces(bool hasVolume, double isoValue) const;
+  std::vector<vtkIdType> FindAround(
+    const std::vector<std::array<double, 3>>& points, double isoValue) const;
   void CornersOf(vtkIdType triangle, double corners[3][3]) const;
 
   double Period[6];

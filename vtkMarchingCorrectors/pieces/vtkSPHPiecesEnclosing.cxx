@@ -218,14 +218,15 @@ std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
   return shifts;
 }
 
-std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume) const
+std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume, double isoValue) const
 {
   std::vector<Face> faces;
   for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
     Face face;
     face.Piece = this->PieceOfTriangle[t];
-    if (this->Pieces[face.Piece].HasVolume() == hasVolume)
+    const vtkSPHPiece& piece = this->Pieces[face.Piece];
+    if (piece.HasVolume() == hasVolume && piece.Iso == isoValue)
     {
       this->CornersOf(static_cast<vtkIdType>(t), face.Corner);
       faces.push_back(face);
@@ -235,9 +236,9 @@ std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume) const
 }
 
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
-  const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const
+  const std::vector<Triple>& points, double isoValue, const std::vector<vtkIdType>& without) const
 {
-  const Columns columns(points.empty() ? std::vector<Face>() : this->ListFaces(true));
+  const Columns columns(points.empty() ? std::vector<Face>() : this->ListFaces(true, isoValue));
   const std::vector<Triple> shifts = this->ListShifts(true);
   std::vector<vtkIdType> found(points.size(), -1);
   vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
@@ -261,13 +262,14 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
 
 // Rays go both ways along each axis. Each ends at the first face of such a piece, which it leaves
 // or enters; the majority decides, since an open piece has holes.
-std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& points) const
+std::vector<vtkIdType> vtkSPHPieces::FindAround(
+  const std::vector<Triple>& points, double isoValue) const
 {
   std::vector<int> left(points.size(), 0); // rays that left, less those that entered
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);
-  const std::vector<Face> all = this->ListFaces(false);
+  const std::vector<Face> all = this->ListFaces(false, isoValue);
   for (int ray = 0; ray < 6; ++ray)
   {
     const int axis = ray / 2;

@@ -181,6 +181,11 @@ std::string vtkSPHComponents::SplitDistributed(
   bare->SetPolys(mesh->GetPolys());
   bare->GetPointData()->SetGlobalIds(mesh->GetPointData()->GetGlobalIds());
   bare->GetCellData()->SetGlobalIds(mesh->GetCellData()->GetGlobalIds());
+  bare->SetFieldData(mesh->GetFieldData());
+  if (vtkDataArray* isoValues = FindIsoValues(mesh))
+  {
+    bare->GetPointData()->AddArray(isoValues);
+  }
   vtkSmartPointer<vtkPolyData> whole = GatherSurface(ranks, bare);
   whole = whole ? whole : vtkSmartPointer<vtkPolyData>::New();
   const Numbers found = this->Split(whole, all, table);

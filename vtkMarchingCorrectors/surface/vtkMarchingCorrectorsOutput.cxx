@@ -17,6 +17,7 @@
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHParticles.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -37,7 +38,8 @@ constexpr double LeastShare = 0.03;
 void AddQuantity(
   vtkFieldData* data, const char* arrayName, const char* name, const mcor_array& array)
 {
-  vtkSPHAddText(data, arrayName, array.name ? array.name : "");
+  const bool isArray = array.data && array.name && !vtkSPHParticles::IsMade(array.name);
+  vtkSPHAddText(data, arrayName, isArray ? array.name : "");
   if (name && !array.data && mcor_is_given(&array))
   {
     vtkSPHAddReal(data, name, { array.constant });
@@ -248,6 +250,10 @@ void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
   for (int i = 0; i < this->Options.iso_count; ++i)
   {
     isoValues->InsertNextValue(this->Options.iso_values[i]);
+  }
+  if (this->Options.outputs & MCOR_OUT_ISO_VALUE)
+  {
+    isoValues->SetComponentName(0, this->Input.IsoValueName.c_str());
   }
   vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }

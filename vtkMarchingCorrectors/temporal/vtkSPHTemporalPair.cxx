@@ -82,6 +82,7 @@ bool vtkSPHTemporalPair::Match(
   this->Error.clear();
   this->Warnings.clear();
   this->TimeScale = choice.TimeScale;
+  std::copy_n(choice.Period, 3, this->Period);
   vtkPointSet* const particles[2] = { first, second };
   for (int k = 0; k < 2; ++k)
   {
@@ -114,7 +115,8 @@ bool vtkSPHTemporalPair::Match(
     vtkSPHSign(signature, step.Ids);
     vtkSPHSign(signature, step.Velocities);
   }
-  for (const double number : { choice.Times[0], choice.Times[1], choice.TimeScale })
+  for (const double number : { choice.Times[0], choice.Times[1], choice.TimeScale, choice.Period[0],
+         choice.Period[1], choice.Period[2] })
   {
     signature.push_back(std::hash<double>()(number));
   }
@@ -191,6 +193,12 @@ bool vtkSPHTemporalPair::MatchNumbers()
 std::string vtkSPHTemporalPair::NameOfStep(int step) const
 {
   return "the step at time " + Text(this->Steps[step].Time);
+}
+
+double vtkSPHTemporalPair::Nearest(double way, int axis) const
+{
+  const double period = this->Period[axis];
+  return period > 0.0 ? way - period * std::round(way / period) : way;
 }
 
 bool vtkSPHTemporalPair::FindIds(const std::string& name)
@@ -320,7 +328,7 @@ void vtkSPHTemporalPair::CheckVelocities()
           for (int c = 0; j >= 0 && c < 3; ++c)
           {
             const double expected = 0.5 * duration * (begun(i, c) + ended(j, c));
-            sum.first += (to(j, c) - from(i, c)) * expected;
+            sum.first += this->Nearest(to(j, c) - from(i, c), c) * expected;
             sum.second += expected * expected;
           }
         }
@@ -337,7 +345,8 @@ void vtkSPHTemporalPair::CheckVelocities()
     this->Warnings.push_back("From time " + Text(first.Time) + " to " + Text(second.Time) +
       " the particles moved " + Text(moved / expected) + " times as far as '" + this->VelocityName +
       "' says; positions are therefore linear in time between these steps. Either the times are in "
-      "another unit than the velocities (set the time scale), or the steps are too far apart.");
+      "another unit than the velocities (set the time scale), or the steps are too far apart, or "
+      "particles cross the side of a period that is not given (set the periodic bounds).");
     this->FollowsVelocities = false;
   }
 }
@@ -415,7 +424,7 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
     {
       return curved ? x + toTime * begun(i, c) : x;
     }
-    const double way = to(j, c) - x;
+    const double way = this->Nearest(to(j, c) - x, c);
     return curved ? x + ofFar * way + toFar * (ofBegun * begun(i, c) + ofEnded * ended(j, c))
                   : x + share * way;
   };

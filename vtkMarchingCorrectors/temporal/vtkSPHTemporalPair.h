@@ -22,6 +22,7 @@ struct vtkSPHTemporalChoice
   bool UseVelocities = true;
   double TimeScale = 1.0;
   double Times[2] = { 0.0, 1.0 };
+  double Period[3] = { 0.0, 0.0, 0.0 }; // 0: not periodic
 };
 
 /** Copies the points and point arrays alone, with a vertex for each point if the set has cells. */
@@ -63,9 +64,12 @@ private:
   void InterpolateArrays(
     const Step& near, const Step& far, double share, vtkPolyData* output) const;
   std::string NameOfStep(int step) const;
+  /** Returns the way to the nearest image. */
+  double Nearest(double way, int axis) const;
 
   Step Steps[2];
   double TimeScale = 1.0;
+  double Period[3] = { 0.0, 0.0, 0.0 };
   bool FollowsVelocities = false;
   std::vector<std::uint64_t> Signature; // state of the data that were matched
 };

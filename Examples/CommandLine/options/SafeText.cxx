@@ -132,7 +132,7 @@ const Advice Advices[] = {
   { "pthread_create has failed: Resource temporarily unavailable",
     "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
   { "by a range of positions", "by a range of positions (--within)", "--within" },
-  { "Set the periodic bounds", "Set the periodic bounds (--periodic)", "--periodic" },
+  { "et the periodic bounds", "et the periodic bounds (--periodic)", "--periodic" },
 };
 }
 

@@ -17,6 +17,7 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHTemporalInterpolator.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -334,6 +335,13 @@ void ParticleTimes::Reset()
   this->Interpolator = vtkSmartPointer<vtkSPHTemporalInterpolator>::New();
   this->Interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
   this->Interpolator->SetInputConnection(this->Source->GetOutputPort());
+  const std::vector<double>& period = this->Shared.Options.Periodic;
+  const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // lengths alone count
+  this->Interpolator->SetDetectPeriod(this->Shared.Options.DetectPeriod);
+  if (!period.empty())
+  {
+    this->Interpolator->SetPeriodicBounds(vtkSPHBoundsOfPeriod(period, extent).data());
+  }
 }
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
@@ -392,7 +400,10 @@ bool Series::MakeAll()
     for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
     {
       const std::string kind = error.empty() ? "warning: " : "";
-      if (this->Shared.IsFirst() && ++counts[kind + warning] == 1)
+      // How many places are dry differs from step to step.
+      const bool areDry = warning.find("outside of all fluid") != std::string::npos;
+      if (this->Shared.IsFirst() &&
+        ++counts[kind + (areDry ? "places are outside of all fluid" : warning)] == 1)
       {
         const bool isNamed = warning.compare(0, label.size() + 1, label + " ") == 0;
         Say(kind + (isNamed ? "" : label + ": ") + warning);

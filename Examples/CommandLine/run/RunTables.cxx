@@ -12,11 +12,14 @@
 #include "SafeText.h"
 #include "Sharing.h"
 
+#include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -24,14 +27,19 @@
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 namespace
 {
+
+constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// An elevation map: Level is the height of the surface.
 void WriteGrid(const Job& job, vtkTable* table)
@@ -150,7 +158,7 @@ private:
     this->LastTime = time;
     for (const std::string& warning : Messages().Warnings)
     {
-      if (!this->IsImage || warning.find("is outside of all fluid") == std::string::npos)
+      if (!this->IsImage || warning.find("outside of all fluid") == std::string::npos)
       {
         warnings.push_back(warning);
       }
@@ -175,6 +183,69 @@ private:
   std::vector<double> Rates[2], Sums[2]; ///< of volume and mass, for each section
   std::string Text;
 };
+
+/// The iso values of a run, ascending; where it had no particles, those that were asked for.
+std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
+{
+  std::vector<double> values;
+  vtkDataArray* used = run->GetArray("IsoValues");
+  vtkMarchingCorrectors* asked = job.Surface;
+  const vtkIdType count = used ? used->GetNumberOfValues()
+    : asked->GetFreeSurface()  ? asked->GetNumberOfFreeSurfaceValues()
+                               : asked->GetNumberOfContours();
+  for (int i = 0; i < static_cast<int>(count); ++i)
+  {
+    values.push_back(used         ? used->GetComponent(i, 0)
+        : asked->GetFreeSurface() ? asked->GetFreeSurfaceValue(i)
+                                  : asked->GetValue(i));
+  }
+  std::sort(values.begin(), values.end());
+  return values.empty() ? std::vector<double>{ NoNumber } : values;
+}
+
+/// The number of the level with this iso value, which may be rounded to float.
+std::size_t LevelOf(const std::vector<Level>& levels, double iso)
+{
+  const auto next = std::min_element(levels.begin(), levels.end(),
+    [iso](const Level& a, const Level& b)
+    { return std::abs(a.Iso - iso) < std::abs(b.Iso - iso); });
+  return static_cast<std::size_t>(next - levels.begin());
+}
+
+/// Sets the areas that lines of each iso value enclose, where they are closed.
+void MeasureLines(Run& run, const std::string& isoName)
+{
+  vtkDataArray* isoValues = run.Surface->GetPointData()->GetArray(isoName.c_str());
+  vtkNew<vtkIdList> line;
+  for (Level& level : run.Levels)
+  {
+    bool areClosed = true;
+    double sum[3] = { 0.0, 0.0, 0.0 };
+    for (vtkIdType l = 0; isoValues && l < run.Surface->GetNumberOfLines(); ++l)
+    {
+      run.Surface->GetLines()->GetCellAtId(l, line);
+      const vtkIdType count = line->GetNumberOfIds();
+      const std::size_t own = LevelOf(run.Levels, isoValues->GetComponent(line->GetId(0), 0));
+      if (&run.Levels[own] != &level)
+      {
+        continue;
+      }
+      areClosed = areClosed && line->GetId(0) == line->GetId(count - 1);
+      double first[3], a[3], b[3], both[3];
+      run.Surface->GetPoint(line->GetId(0), first);
+      for (vtkIdType i = 0; i + 1 < count; ++i)
+      {
+        run.Surface->GetPoint(line->GetId(i), a);
+        run.Surface->GetPoint(line->GetId(i + 1), b);
+        vtkMath::Subtract(a, first, a);
+        vtkMath::Subtract(b, first, b);
+        vtkMath::Cross(a, b, both);
+        vtkMath::Add(sum, both, sum);
+      }
+    }
+    level.Area = areClosed ? 0.5 * vtkMath::Norm(sum) : NoNumber;
+  }
+}
 
 /// Adds an array of one number, to statistics or a table's row.
 void AddNumber(vtkFieldData* data, const std::string& name, double value)
@@ -237,12 +308,24 @@ bool MakeMeterTable(Sharing& sharing)
   return MeterTable(sharing).Make(places);
 }
 
-// Describes the particles to the filter of pieces as to that of the surface.
+// Describes the particles to the filter of pieces as to that of the surface. Surfaces of several iso
+// values are nested in each other, so each is measured by its pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {
   const Job& job = sharing.Options;
-  if (job.ComponentFile.empty())
+  const bool isTable = !job.ComponentFile.empty();
+  for (const double iso : IsoValuesOf(job, run.Statistics))
+  {
+    run.Levels.push_back({ iso, NoNumber, NoNumber, NoNumber });
+  }
+  const bool areMany = !job.NumbersFile.empty() && run.Levels.size() > 1;
+  if (!isTable && areMany && run.Statistics->HasArray("Lines"))
+  {
+    MeasureLines(run, job.Surface->GetIsoValueArrayName());
+    return;
+  }
+  if (!isTable && !areMany)
   {
     return;
   }
@@ -268,6 +351,23 @@ void AddPieces(
   split->Update();
   Messages().Check();
   vtkTable* pieces = split->GetTable();
+  for (Level& level : run.Levels)
+  {
+    level.Area = level.Volume = level.Pieces = 0.0;
+    for (vtkIdType row = 0; row < pieces->GetNumberOfRows(); ++row)
+    {
+      const auto of = [pieces, row](const char* column)
+      { return pieces->GetValueByName(row, column).ToDouble(); };
+      const bool isOwn = run.Levels.size() == 1 || of("iso") == level.Iso;
+      level.Area += isOwn ? of("area") : 0.0;
+      level.Volume += isOwn ? of("volume") : 0.0;
+      level.Pieces += isOwn ? 1.0 : 0.0;
+    }
+  }
+  if (!isTable)
+  {
+    return;
+  }
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
   for (const char* name : { "Area", "Volume" }) // those of the pieces that are left
@@ -303,35 +403,62 @@ void AddFilmNumbers(
   {
     return;
   }
-  const auto numberOf = [&run](const char* name)
-  {
-    vtkDataArray* array = run.Statistics->GetArray(name);
-    return array ? array->GetComponent(0, 0) : std::numeric_limits<double>::quiet_NaN();
-  };
-  vtkNew<vtkTable> table;
-  vtkFieldData* row = table->GetRowData();
-  AddNumber(row, "time", time);
-  AddNumber(row, "triangles", static_cast<double>(run.Surface->GetNumberOfPolys()));
-  const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
-  AddNumber(row, "area", hasRun ? numberOf("Area") : 0.0);
-  AddNumber(row, "volume", hasRun ? numberOf("Volume") : 0.0);
-  if (!job.ComponentFile.empty())
-  {
-    AddNumber(row, "pieces", numberOf("Pieces"));
-  }
+  vtkTable* gauges = nullptr;
   if (job.Gauge->GetNumberOfGauges() > 0)
   {
-    vtkTable* gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
+    gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
     const std::vector<std::string>& more = Messages().Warnings;
     run.Warnings.insert(run.Warnings.end(), more.begin(), more.end());
-    for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
+  }
+  const bool areMany = run.Levels.size() > 1;
+  if (!areMany)
+  {
+    const auto numberOf = [&run](const char* name)
     {
-      const std::string name = gauges->GetValueByName(i, "gauge").ToString();
+      vtkDataArray* array = run.Statistics->GetArray(name);
+      return array ? array->GetComponent(0, 0) : NoNumber;
+    };
+    const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
+    run.Levels.front().Area = hasRun ? numberOf("Area") : 0.0;
+    run.Levels.front().Volume = hasRun ? numberOf("Volume") : 0.0;
+  }
+  vtkDataArray* isoValues =
+    areMany ? run.Surface->GetPointData()->GetArray(job.Surface->GetIsoValueArrayName()) : nullptr;
+  std::vector<double> triangles(run.Levels.size());
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType t = 0; isoValues && t < run.Surface->GetNumberOfPolys(); ++t)
+  {
+    run.Surface->GetPolys()->GetCellAtId(t, corners);
+    triangles[LevelOf(run.Levels, isoValues->GetComponent(corners->GetId(0), 0))] += 1.0;
+  }
+  for (std::size_t i = 0; i < run.Levels.size(); ++i)
+  {
+    const Level& level = run.Levels[i];
+    vtkNew<vtkTable> table;
+    vtkFieldData* row = table->GetRowData();
+    AddNumber(row, "time", time);
+    AddNumber(row, "iso", level.Iso);
+    AddNumber(row, "triangles",
+      areMany ? triangles[i] : static_cast<double>(run.Surface->GetNumberOfPolys()));
+    AddNumber(row, "area", level.Area);
+    AddNumber(row, "volume", level.Volume);
+    if (areMany)
+    {
+      AddNumber(row, "between",
+        level.Volume - (i + 1 < run.Levels.size() ? run.Levels[i + 1].Volume : 0.0));
+    }
+    if (!job.ComponentFile.empty())
+    {
+      AddNumber(row, "pieces", level.Pieces);
+    }
+    for (vtkIdType g = 0; gauges && g < gauges->GetNumberOfRows(); ++g)
+    {
+      const std::string name = gauges->GetValueByName(g, "gauge").ToString();
       for (const char* what : { "last", "depth", "crossings" })
       {
-        AddNumber(row, name + "." + what, gauges->GetValueByName(i, what).ToDouble());
+        AddNumber(row, name + "." + what, gauges->GetValueByName(g, what).ToDouble());
       }
     }
+    AppendTable(text, table);
   }
-  AppendTable(text, table);
 }

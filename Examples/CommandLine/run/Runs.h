@@ -53,11 +53,18 @@ void SetUpSurface(const Job& job, vtkPointSet* input);
 /// std::runtime_error with the filter's sentence.
 double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string& before = "");
 
+/// What is measured of the surface of one iso value.
+struct Level
+{
+  double Iso, Area, Volume, Pieces; // NaN: not known
+};
+
 struct Run
 {
   vtkSmartPointer<vtkPolyData> Surface;
   vtkSmartPointer<vtkFieldData> Statistics; // of the surface, and of what the run cost
   std::vector<std::string> Warnings;        // sentences that the user should know
+  std::vector<Level> Levels; // of a film with a table of numbers, by ascending iso values
   double WallSeconds = 0.0;
 };
 
@@ -119,13 +126,14 @@ std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vt
 double PeakResidentBytes();
 
 /// Gives the run's surface the array ComponentId, without the pieces that are to be left out, and
-/// the text of a table a row for each piece; those of films have a column of times. Does nothing if
-/// no table is wanted. Throws std::runtime_error.
+/// the text of a table a row for each piece; those of films have a column of times. Sets the run's
+/// levels where a film's table needs them. Throws std::runtime_error.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time = 0.0);
 
-/// Adds a row to the text of a table of a film's numbers: the surface's triangles, area, volume and
-/// pieces, and what gauges read. Does nothing if no table is wanted. Throws std::runtime_error.
+/// Adds a row for each iso value to the text of a table of a film's numbers: its triangles, area,
+/// volume and pieces, and what gauges read. Does nothing if no table is wanted. Throws
+/// std::runtime_error.
 void AddFilmNumbers(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time);
 

@@ -293,7 +293,10 @@ static mcor_status mcor_flux_input(
   }
   for (int64_t s = 0; s < job->section_count; ++s)
   {
-    MCOR_TRY(mcor_add_section(job, s));
+    /* Without particles, nobody knows whether these lie in the plane that a line needs. */
+    const bool has_place =
+      input->count > 0 || job->is_plane || job->sections[s].shape != MCOR_SECTION_LINES;
+    MCOR_TRY(has_place ? mcor_add_section(job, s) : MCOR_OK);
   }
   MCOR_TRY(mcor_scale_flux(job));
   if (input->count == 0 || job->section_count == 0)

@@ -83,6 +83,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.compact = this->Compact;
   options.smooth = this->Smooth;
   options.widen = this->Widening;
+  mcor_spell_out(&options);
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
     ? MCOR_BOUNDARY_EIGENVALUE
@@ -243,7 +244,7 @@ bool vtkMarchingCorrectors::FindWidening(
 {
   const std::unique_ptr<vtkRun> sums = vtkRun::Make(this);
   sums->Own = run.Own;
-  sums->Options = mcor_spell_out(&run.Options);
+  sums->Options = run.Options;
   sums->Options.level_limit = 0;
   if (!sums->Measure(mine, false)) // with the box, which tells the particles that are too far away
   {
@@ -287,6 +288,53 @@ bool vtkMarchingCorrectors::FindWidening(
   return true;
 }
 
+namespace
+{
+// Lists the options on which factors of widening depend, and some more.
+std::vector<double> ListFactorOptions(const mcor_options& o)
+{
+  const int SURFACE = 0, PROBE = 0, GAUGE = 0, ALL = 0, KEEPS = 1;
+  std::vector<double> values = { o.wall_share };
+  const int isos = o.field == MCOR_WEIGHT_SUM ? o.iso_count : 0;
+  values.insert(values.end(), o.iso_values, o.iso_values + isos);
+#define OPTION(member, usual, legal, words, scope, Property)                                       \
+  if ((scope) != KEEPS)                                                                            \
+  {                                                                                                \
+    values.push_back(static_cast<double>(o.member));                                               \
+  }
+#define BOUNDS(member, scope, Property) values.insert(values.end(), o.member, o.member + 6);
+#include "mcor_options.def"
+  return values;
+}
+}
+
+// Gives the input the factors of its smoothing lengths. Those of the last run serve if they hold.
+bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput& input)
+{
+  vtkInternals& kept = *this->Internals;
+  std::vector<std::uint64_t> signature = input.ParticlesSignature;
+  for (const double value : ListFactorOptions(run.Options))
+  {
+    vtkSPHSign(signature, value);
+  }
+  const bool isOther = kept.Widening.Take(signature, !kept.Factors || !this->KeepDeviceData);
+  std::fill_n(kept.FactorsStatistics.seconds, MCOR_PHASE_COUNT, 0.0);
+  kept.FactorsStatistics.build_seconds = 0.0;
+  if (isOther)
+  {
+    auto found = vtkSmartPointer<vtkPointData>::New();
+    kept.Factors = nullptr;
+    if (!this->FindWidening(run, input, found, kept.FactorsStatistics))
+    {
+      return false;
+    }
+    kept.Factors = found;
+  }
+  input.TakeWidening(
+    kept.Factors->GetArray("Widening"), kept.Factors->GetArray("WideningVolume"));
+  return true;
+}
+
 // Reads first what an observer of the progress may change during the run.
 void vtkMarchingCorrectors::Extract(
   vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output)
@@ -297,12 +345,20 @@ void vtkMarchingCorrectors::Extract(
   this->EstimatedCells =
     mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
+  if (options.widen > 1.0 && !this->TakeWidening(run, input))
+  {
+    return;
+  }
   vtkSPHOwned<mcor_surface, mcor_free_surface> surface;
   if (!run.Call(input,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
     return;
+  }
+  if (options.widen > 1.0)
+  {
+    mcor_add_widening(&surface.statistics, &this->Internals->FactorsStatistics);
   }
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   this->Summarize(input, options, surface.statistics);

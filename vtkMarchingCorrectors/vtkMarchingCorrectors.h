@@ -522,6 +522,7 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
+  bool TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput& input);
   /** Finds the arrays of Widen() for this process's particles, and statistics of them. */
   bool FindWidening(vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
     mcor_statistics& statistics);

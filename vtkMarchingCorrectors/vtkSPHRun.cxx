@@ -41,6 +41,7 @@ void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
   this->Particles.Signature.clear();
   this->Scalar.Signature.clear();
   this->Attributes.Signature.clear();
+  this->Factors = nullptr;
   if (status == MCOR_DEVICE_ERROR)
   {
     mcor_free_context(this->Context);
@@ -53,11 +54,10 @@ void vtkSPHAlgorithm::vtkInternals::Release()
   if (this->InRun)
   {
     this->ReleaseAfterRun = true;
+    return;
   }
-  else if (this->Context)
-  {
-    mcor_release_memory(this->Context);
-  }
+  this->Factors = nullptr;
+  mcor_release_memory(this->Context);
 }
 
 void vtkSPHAlgorithm::vtkInternals::EndRun()

@@ -78,7 +78,9 @@ public:
       return isOther;
     }
   };
-  Kept Particles, Scalar, Attributes;
+  Kept Particles, Scalar, Attributes, Widening;
+  vtkSmartPointer<vtkPointData> Factors; // what Widening stands for; null: nothing
+  mcor_statistics FactorsStatistics = {};
 
 private:
   std::string Device; // settings that the context was created for

@@ -31,7 +31,7 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import QUANTITIES, camel
-from marchingcorrectors._call import called
+from marchingcorrectors._call import extracted
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import devices, lib, take_text
 from marchingcorrectors._options import OUTPUTS
@@ -442,6 +442,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if not ends:
             options.wall_share = 0.0
         options.memory_limit = choice.DeviceMemoryLimit << 20
+        lib.mcor_spell_out(ctypes.byref(options))
         return options
 
     def _extract(self, particles, options, output):
@@ -490,7 +491,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 self._versions[1] += before != self._signatures
                 arguments.input.particles_version, arguments.input.scalar_version = self._versions
             arguments.context, arguments.progress = self._context, self._report
-            with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
+            with extracted(arguments) as surface:
                 yield surface
         except BaseException as failure:
             self._signatures = (None, None)

@@ -224,6 +224,15 @@ class Arguments:
         self.kinds = {name: (() if np.ndim(values) == 1 else (view.components,), view.type)
                       for view, (name, values) in zip(views, attributes.items())}
 
+    def set_widening(self, found):
+        """Takes a mcor_widening. Its factors become the last attribute, without one of the kinds."""
+        self.input.widening = self.view(take(found.factor, (found.count,)), "Widening")
+        if found.volume:
+            self.input.volume = self.view(take(found.volume, (found.count,)), None)
+        views = [*self.input.attributes[:len(self.kinds)], self.input.widening]
+        self.kept.append((c.mcor_array * len(views))(*views))
+        self.input.attributes, self.input.attribute_count = self.kept[-1], len(views)
+
     def set_iso_values(self, values):
         values = contiguous(values, "list of iso values").astype(np.float64)
         if values.ndim != 1:
@@ -243,6 +252,7 @@ class Arguments:
                 set_option(target, name, kind_of(name), value)
         if self.options.capping and any(self.options.box):
             self.options.capping = 2  # MCOR_CAP_BOX
+        lib.mcor_spell_out(ctypes.byref(self.options))
 
     def per_neighbours(self, function, *more):
         """Numbers of (particles,) that a function of the core sums over their neighbours."""

@@ -189,8 +189,22 @@ def called(function, kind, arguments, *more):
         finally:
             if own:
                 context.release_memory()
-        if kind is not c.mcor_surface:
+        if kind not in (c.mcor_surface, c.mcor_widening):
             warn_of_particles(arguments, result.statistics)
         yield result
     finally:
         getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
+
+
+@contextlib.contextmanager
+def extracted(arguments):
+    """Yields the core's surface, of widened smoothing lengths if the options ask for that."""
+    found = None
+    if arguments.options.widen != 1:
+        with called(lib.mcor_widen, c.mcor_widening, arguments) as widening:
+            arguments.set_widening(widening)
+            found = c.mcor_statistics.from_buffer_copy(widening.statistics)
+    with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
+        if found:
+            lib.mcor_add_widening(ctypes.byref(surface.statistics), ctypes.byref(found))
+        yield surface

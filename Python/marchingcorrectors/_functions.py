@@ -11,12 +11,12 @@ import numpy as np
 from . import _structs as c
 from ._arrays import (SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all,
                       take_each, take_lines)
-from ._call import called, of_particles, prepare, warn_of_missing
+from ._call import called, extracted, of_particles, prepare, warn_of_missing
 from ._library import ERRORS, InvalidArgument, lib
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
 from ._surface import Derivatives, Projection, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
-from ._warnings import describe_warnings, warn
+from ._warnings import describe_warnings, warn, warn_of_particles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -101,7 +101,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
         if attributes[name].ndim == 0 or len(attributes[name]) != arguments.count:
             raise InvalidArgument(f"The attribute '{name}' has the shape {attributes[name].shape} for "
                                   f"{arguments.count} particles.")
-    with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
+    with extracted(arguments) as surface:
         found = take_surface(surface, arguments)
         sentences = describe_warnings(arguments, surface)
     found.points = found.points.astype(arguments.positions.dtype, copy=False)
@@ -147,6 +147,8 @@ def take_surface(surface, arguments):
     if arrays["triangles"] is None:
         arrays["triangles"] = np.empty((0, 3), np.int32)
     missing, attributes = left_out(surface, arguments), take_each(surface.attributes, arguments, (count,))
+    if arguments.input.widening.data and surface.attributes:
+        arrays["widening"] = take(surface.attributes[len(arguments.kinds)], (count,))
     return Surface(**arrays, **take_lines(surface), attributes={name: attributes[name] for name in attributes if name not in missing},
                    left_out=missing, statistics=statistics(surface.statistics))
 
@@ -267,6 +269,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
         arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
         arguments.set_iso_values(iso)
     with called(lib.mcor_widen, c.mcor_widening, arguments) as result:
+        warn_of_particles(arguments, result.statistics)
         factors = take(result.factor, (result.count,))
         return (factors, take(result.volume, (result.count,))) if return_volume else factors
 

@@ -113,7 +113,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   options.widen = at->smooth & 2 ? 2 : 1;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE;
   CORE_SURFACE surface = { 0 };
-  const mcor_status status = mcor_extract(context, &input, &options, &surface);
+  const mcor_status status = core_extract_widened(context, &input, &options, &surface);
   const mcor_statistics* statistics = &surface.statistics;
   const int trimmed = statistics->trim_vertices > statistics->trim_vertices_linear;
   const int resolved = statistics->joined_faces > 0 && statistics->ambiguous_cells > 0;

@@ -182,11 +182,29 @@ particle_set core_permute(const particle_set* set, const int64_t* order)
   return result;
 }
 
+mcor_status core_extract_widened(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface)
+{
+  mcor_input own = *input;
+  mcor_widening widening = { 0 };
+  mcor_status status = MCOR_OK;
+  if (options->widen != 1)
+  {
+    status = mcor_widen(context, input, options, &widening);
+    own.widening = core_array(widening.factor, 1);
+    own.volume = widening.volume ? core_array(widening.volume, 1) : own.volume;
+  }
+  MCOR_THEN(status, mcor_extract(context, &own, options, surface));
+  mcor_add_widening(&surface->statistics, &widening.statistics);
+  mcor_free_widening(&widening);
+  return status;
+}
+
 mcor_surface core_extract(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   mcor_surface surface = { 0 };
-  CORE_OK(context, mcor_extract(context, input, options, &surface));
+  CORE_OK(context, core_extract_widened(context, input, options, &surface));
   return surface;
 }
 
@@ -254,9 +272,7 @@ uint64_t core_hash(const mcor_surface* surface)
   mcor_list_surface_arrays(&s, arrays);
   for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
   {
-    /* Factors of widening are not there where lengths are given as wide as they become. */
-    const bool hashed = arrays[a].array != (void**)&s.widening;
-    hash = core_hash_bytes(hash, hashed ? *arrays[a].array : NULL, n * arrays[a].width);
+    hash = core_hash_bytes(hash, *arrays[a].array, n * arrays[a].width);
   }
   hash = core_hash_bytes(hash, &s.attribute_count, sizeof s.attribute_count);
   for (int a = 0; a < s.attribute_count; ++a)

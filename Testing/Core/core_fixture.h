@@ -97,7 +97,10 @@ particle_set core_permute(const particle_set* set, const int64_t* order);
 /* A seemingly random order; free with free(). */
 int64_t* core_make_order(int64_t count, uint64_t seed);
 
-/* Extracts; the test fails if that does. */
+/* Calls mcor_widen if the options ask for it, then mcor_extract with its factors. */
+mcor_status core_extract_widened(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface);
+/* Does the same; the test fails if that does. */
 mcor_surface core_extract(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 

@@ -161,7 +161,8 @@ extern "C"
 
     /* Factors of the smoothing lengths, at least 1, as mcor_widen makes them; not given: 1. Kernels
      * are as long as the products; cubes, their levels and the statistics follow the smoothing
-     * lengths. Volumes must be known. */
+     * lengths. Volumes must be known: where they are computed, those that mcor_widen returns. As an
+     * attribute, too, the factors are carried to the surface. */
     mcor_array widening;
 
     /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if
@@ -249,11 +250,9 @@ extern "C"
     mcor_field field;
     mcor_seed_mode seeds;
     mcor_topology topology;
-    /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a
-     * factor up to this, as large as leaves the particle inside of the free surface: see
-     * mcor_widen. Flat surfaces become flat, and drops, threads and sheets stay. Cubes and
-     * volumes are those of the original lengths. With globals or ranks, call mcor_widen before,
-     * and set mcor_input.widening. */
+    /* 1 to 4; default 1: off. The greatest factor that mcor_widen finds for the smoothing length of
+     * a particle. mcor_extract takes these factors from mcor_input.widening, which it needs if this
+     * is not 1. */
     double widen;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
@@ -290,7 +289,7 @@ extern "C"
      * from the middle of its neighbours. Points on the sides of periods, at caps and on borders
      * stay, and are those without this option. Cannot be combined with `filled`. */
     int compact;
-    int smooth; /* nonzero: for pictures; as `compact`, and `widen` of 2 if that is 1 */
+    int smooth; /* nonzero: for pictures; mcor_spell_out sets what this stands for */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision; /* of the field evaluation on the device; MCOR_FLOAT32 by default */
@@ -492,7 +491,6 @@ extern "C"
      * cap alone, see capping, or is a node that is filled around. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
-    double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widen is above 1 */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
     /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: those
@@ -592,6 +590,9 @@ extern "C"
 
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
+  /* With `smooth`, sets `compact`, and `widen` to 2 if that is 1. Call it when the options are
+   * complete; with `smooth`, mcor_widen and mcor_extract fail without it. */
+  void mcor_spell_out(mcor_options* options);
 
   /* Extracts the surface. *surface is overwritten; free what it held before the call. */
   mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
@@ -885,20 +886,23 @@ extern "C"
     mcor_statistics statistics;
   } mcor_widening;
 
-  /* Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps of
+  /* Makes a smoother surface possible: flat surfaces become flat, and drops, threads and sheets
+   * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps of
    * 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
    * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; or less 0.08
    * for particles with many neighbours, all on one side. The factor is then reduced to 1
    * where neighbours are few (drops, threads), and to at most the Shepard mean of the factors
-   * around the particle. A surface with options.widen is, to the last bit, that of an input with
-   * these factors and volumes; or with uniform cubes of the same size, with the products of
-   * smoothing lengths and factors. Reads the options of mcor_extract; a box only with globals,
+   * around the particle. The surface of an input with these factors and volumes has the cubes of the
+   * original lengths; with uniform cubes it is, to the last bit, that of the products of smoothing
+   * lengths and factors in cubes of the same size. Reads the options of mcor_extract; a box only with globals,
    * which are those of mcor_measure_globals with level_limit 0: results are then valid for
    * particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 /
    * h_scale) around, or 1 + widen where volumes are known. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);
+  /* Adds the seconds of mcor_widen, and its particles outside, to the statistics of a surface. */
+  void mcor_add_widening(mcor_statistics* surface, const mcor_statistics* widening);
 
   typedef enum mcor_gradient
   {

@@ -9,7 +9,6 @@
 #include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_plane.h"
-#include "mcor_widen.h"
 
 #include <stdlib.h>
 
@@ -24,6 +23,23 @@ void mcor_set_default_options(mcor_options* options)
 #define OPTION(member, usual, legal, words, scope, property) .member = usual,
 #include "mcor_options.def"
   };
+}
+
+void mcor_spell_out(mcor_options* options)
+{
+  if (options && options->smooth)
+  {
+    options->compact = 1;
+    options->widen = options->widen == 1 ? 2 : options->widen;
+  }
+}
+
+mcor_status mcor_check_spelled_out(mcor_context* context, const mcor_options* options)
+{
+  MCOR_RETURN_IF(options->smooth && (!options->compact || options->widen == 1), context,
+    MCOR_INVALID_ARGUMENT,
+    "options.smooth is set, but not what it stands for. Call mcor_spell_out(&options) first.");
+  return MCOR_OK;
 }
 
 /* Seconds between progress reports: short enough that cancelling is answered at once, long
@@ -75,7 +91,6 @@ void mcor_release_memory(mcor_context* context)
   MCOR_RELEASE_EACH(context, &context->topology);
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE_EACH(context, &context->pairs);
-  mcor_release_widening(context);
   mcor_release(context, &context->scan_sums);
   mcor_drop_kept(context, 0);
   mcor_drop_locked(context);

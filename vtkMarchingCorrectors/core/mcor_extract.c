@@ -10,7 +10,6 @@
 #include "mcor_compact.h"
 #include "mcor_fill.h"
 #include "mcor_plane.h"
-#include "mcor_widen.h"
 
 /* Appends the surface of one iso value. */
 static mcor_status mcor_extract_iso(
@@ -135,17 +134,8 @@ static void mcor_count_below_threshold(mcor_context* context, const mcor_input* 
   context->kept.value = context->kept.nodes = false;
 }
 
-mcor_options mcor_spell_out(const mcor_options* options)
-{
-  mcor_options own = *options;
-  own.widen = options->smooth && options->widen == 1 ? 2 : options->widen;
-  own.compact = options->smooth ? 1 : options->compact;
-  own.smooth = 0;
-  return own;
-}
-
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
-  const mcor_options* asked, mcor_surface* surface)
+  const mcor_options* options, mcor_surface* surface)
 {
   if (!context || !surface)
   {
@@ -153,12 +143,14 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   }
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(
-    !input || !asked, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
-  const mcor_options own = mcor_spell_out(asked), *options = &own;
-  const mcor_status status = options->widen != 1
-    ? mcor_extract_widened(context, input, options, surface)
-    : mcor_run_call(context, input, options, mcor_uses_solids(input, options), &surface->statistics,
-        mcor_extract_all, surface);
+    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  MCOR_TRY(mcor_check_spelled_out(context, options));
+  MCOR_RETURN_IF(options->widen != 1 && !mcor_is_given(&input->widening), context,
+    MCOR_INVALID_ARGUMENT,
+    "options.widen is %g, but input.widening is missing: the factors that mcor_widen finds.",
+    options->widen);
+  const mcor_status status = mcor_run_call(context, input, options,
+    mcor_uses_solids(input, options), &surface->statistics, mcor_extract_all, surface);
   const mcor_statistics* s = &surface->statistics;
   bool may_exist = false;
   for (int i = 0; status == MCOR_OK && i < options->iso_count; ++i)
@@ -167,7 +159,7 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
       (options->iso_values[i] >= s->scalar_min && options->iso_values[i] <= s->scalar_max);
   }
   if (may_exist && s->triangles_before_trimming == 0 && s->fluid_particles > 0 &&
-    options->field != MCOR_WEIGHT_SUM && options->widen == 1 && options->node_threshold > 0 &&
+    options->field != MCOR_WEIGHT_SUM && options->node_threshold > 0 &&
     !options->ranks && !options->globals)
   {
     mcor_count_below_threshold(context, input, options, &surface->statistics);

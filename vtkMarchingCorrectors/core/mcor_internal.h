@@ -200,6 +200,8 @@ typedef mcor_status (*mcor_body)(
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
+/* Fails if options.smooth is set, but not what it stands for, see mcor_spell_out. */
+mcor_status mcor_check_spelled_out(mcor_context* context, const mcor_options* options);
 /* Frees everything on the device, including tables that outlive calls. */
 void mcor_release_all_data(mcor_context* context);
 mcor_status mcor_prepare(
@@ -245,7 +247,6 @@ double mcor_rounding(
  * the same particles as then. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
-bool mcor_same_options(const mcor_options* a, const mcor_options* b);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* mcor_check.c, mcor_measure.c */

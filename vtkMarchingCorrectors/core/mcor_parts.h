@@ -108,9 +108,6 @@ extern "C"
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
-  /* Returns the options without `smooth`, which stands for `widen` and `compact`. */
-  mcor_options mcor_spell_out(const mcor_options* options);
-
   /* Measures an input for options.globals of later calls, in this or another context, with
    * otherwise the same options. Overwrites *globals; free it with mcor_free_globals.
    * MCOR_INVALID_DATA if no rank has any particles. */

@@ -48,7 +48,7 @@ static bool mcor_same_bounds(const double a[6], const double b[6])
 }
 
 /* Whether all options are the same on which the search grid depends. */
-bool mcor_same_options(const mcor_options* a, const mcor_options* b)
+static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 {
   enum
   {

@@ -314,16 +314,6 @@ typedef struct mcor_kept
   bool nodes; /* bricks hold node values of the current scalar */
 } mcor_kept;
 
-/* The factors of the last call with widening, and what they depend on. */
-typedef struct mcor_kept_widening
-{
-  mcor_widening widening; /* empty: none are kept */
-  mcor_input input;
-  mcor_options options;
-  double widest, iso;
-  bool uses_solids;
-} mcor_kept_widening;
-
 struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
@@ -340,7 +330,6 @@ struct mcor_context
 
   /* The particles. */
   mcor_kept kept;
-  mcor_kept_widening kept_widening;
   mcor_sample_list samples[2]; /* of the measured fluid, and of solids */
   mcor_measure measure;
   mcor_lattice lattice;

@@ -48,6 +48,13 @@ void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object)
   signature.push_back(object ? object->GetMTime() : 0);
 }
 
+void vtkSPHSign(std::vector<std::uint64_t>& signature, double number)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof(bits));
+  signature.push_back(bits);
+}
+
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count)
 {
   auto made =

@@ -40,6 +40,7 @@ std::string vtkSPHListNames(vtkPointSet* points);
 
 /** VTK's modification times are unique in a process: object and time identify a state. */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
+void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
 /** Makes an array of this name, type and components for so many tuples. */
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);

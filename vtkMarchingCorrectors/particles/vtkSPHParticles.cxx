@@ -28,13 +28,6 @@ const void* OrEmpty(const void* values)
 }
 
 const char* const MadeName = "vtkSPHMade:";
-
-std::uint64_t BitsOf(double value)
-{
-  std::uint64_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  return bits;
-}
 }
 
 std::string vtkSPHParticles::Quote(const std::string& name)
@@ -234,7 +227,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
          options.periodic[0], options.periodic[1], options.periodic[2], options.periodic[3],
          options.periodic[4], options.periodic[5] })
   {
-    signature.push_back(BitsOf(number));
+    vtkSPHSign(signature, number);
   }
   auto& made = (*this->Description.Made)[name];
   if (made.first == signature && !this->Description.Gather)
@@ -524,7 +517,10 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
     { f.FluidValue, c.smoothing_length.constant, c.mass.constant, c.density.constant,
       1.0 * c.smoothing_length_is_support_radius, 1.0 * c.estimate_smoothing_length,
       1.0 * c.ignore_solids, 1.0 * f.Kernel });
-  std::transform(numbers.begin(), numbers.end(), std::back_inserter(particles), BitsOf);
+  for (const double number : numbers)
+  {
+    vtkSPHSign(particles, number);
+  }
   return particles;
 }
 

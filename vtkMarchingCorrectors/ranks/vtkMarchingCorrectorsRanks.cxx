@@ -373,40 +373,32 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   vtkMarchingCorrectorsChoice& choice, vtkMarchingCorrectorsInput& mine, vtkPolyData* output)
 {
   mcor_options& options = run.Options;
-  options = mcor_spell_out(&options);
-  std::unique_ptr<vtkMarchingCorrectorsInput> widened;
-  std::int64_t outside = 0; // of the particles that this rank was given
+  mcor_statistics widening = {};
+  const auto nameMade = [](const char* name) { return vtkSPHParticles::NameMade(name); };
   if (options.widen > 1.0)
   {
     vtkNew<vtkPointData> found;
-    mcor_statistics statistics = {};
-    if (!this->FindWidening(run, mine, found, statistics))
+    if (!this->FindWidening(run, mine, found, widening))
     {
       return;
     }
-    outside = statistics.widening_outside;
+    mine.TakeWidening(found->GetArray("Widening"), found->GetArray("WideningVolume"));
     for (int i = 0; i < found->GetNumberOfArrays(); ++i)
     {
       vtkAbstractArray* array = found->GetAbstractArray(i);
-      array->SetName(vtkSPHParticles::NameMade(array->GetName()).c_str());
+      array->SetName(nameMade(array->GetName()).c_str());
     }
     vtkSPHAddArrays(found, run.Own->GetPointData());
-    options.widen = 1.0;
-    choice.IsWidened = true;
-    this->FillRequests(choice, run.Own, run.MergeRanges());
-    widened = std::make_unique<vtkMarchingCorrectorsInput>(choice, run.Own);
-    widened->Collect(); // as before
   }
-  const vtkMarchingCorrectorsInput& own = widened ? *widened : mine;
   options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
-  options.outputs |= own.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
-  if (!run.Measure(widened ? *widened : mine, false))
+  options.outputs |= mine.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
+  if (!run.Measure(mine, false))
   {
     return;
   }
-  double least = mcor_least_smoothing_length(&own.Core);
+  double least = mcor_least_smoothing_length(&mine.Core);
   run.Ranks.Reduce(vtkSPHRanks::LEAST, &least, 1);
-  this->EstimatedCells = mcor_estimate_cells(&own.Core, &options, least);
+  this->EstimatedCells = mcor_estimate_cells(&mine.Core, &options, least);
   run.Ranks.Reduce(vtkSPHRanks::SUM, &this->EstimatedCells, 1);
   if (run.IsFirst())
   {
@@ -414,9 +406,9 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   }
   const mcor_options whole = options;
   run.Work = this->Partition == BY_WORK
-    ? vtkSPHExpectWork(run.Ranks, own.Core, options, run.Globals)
-    : vtkSPHCountWork(own.Core, options);
-  run.Scatter(own.Core, run.Own);
+    ? vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals)
+    : vtkSPHCountWork(mine.Core, options);
+  run.Scatter(mine.Core, run.Own);
   // Arrays are found among those that came by the names of this rank's own.
   const bool isNamed =
     choice.Scalar.Name.empty() && choice.Scalar.Array && choice.Scalar.Array->GetName();
@@ -431,20 +423,18 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   {
     return;
   }
+  vtkPointData* const sent = run.Near->GetPointData();
+  if (options.widen > 1.0)
+  {
+    input.TakeWidening(sent->GetArray(nameMade("Widening").c_str()),
+      sent->GetArray(nameMade("WideningVolume").c_str()));
+  }
   vtkSPHOwned<mcor_surface, mcor_free_surface> surface;
   if (run.Call(input,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
-    surface.statistics.widening_outside = outside;
-    if (choice.IsWidened) // as where the core widens by itself
-    {
-      input.Interpolated.pop_back();
-      if (surface.attribute_count > 0) // none where there was nothing to extract
-      {
-        std::swap(surface.widening, surface.attributes[--surface.attribute_count]);
-      }
-    }
+    mcor_add_widening(&surface.statistics, &widening);
     this->FinishDistributed(run, input, whole, surface, output);
   }
 }

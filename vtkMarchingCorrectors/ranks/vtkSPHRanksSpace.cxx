@@ -175,7 +175,8 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   const bool computesVolumes = vtkSPHComputesVolumes(input);
   const bool findsNearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) != 0;
   std::vector<double> radii(Index(ranks.GetCount()), 0.0);
-  if (!computesVolumes && o.widen <= 1.0 && !findsNearest)
+  const bool findsFactors = o.widen > 1.0 && !input.widening.data; // with mcor_widen
+  if (!computesVolumes && !findsFactors && !findsNearest)
   {
     return radii;
   }
@@ -197,9 +198,8 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
     const double cubes = this->Margin;
     const double volumes = computesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
     const double nearest = findsNearest ? radius + cubes : 0.0;
-    // Sums at particles whose lengths are widened: see mcor_widen.
     const double widened =
-      o.widen > 1.0 ? std::max(volumes, radius) * (1.0 + o.widen) + cubes : 0.0;
+      findsFactors ? std::max(volumes, radius) * (1.0 + o.widen) + cubes : 0.0;
     radius = radius > 0.0 ? std::max({ volumes, nearest, widened }) : 0.0;
   }
   return radii;

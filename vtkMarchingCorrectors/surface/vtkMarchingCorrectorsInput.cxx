@@ -13,14 +13,6 @@ bool vtkMarchingCorrectorsInput::Collect()
     return false;
   }
   this->NameScalar();
-  vtkPointData* const data = this->Points->GetPointData();
-  vtkDataArray* const factors = data->GetArray(NameMade("Widening").c_str());
-  if (this->Choice.IsWidened)
-  {
-    this->Core.widening = this->View(factors);
-    vtkDataArray* volumes = data->GetArray(NameMade("WideningVolume").c_str());
-    this->Core.volume = volumes ? this->View(volumes) : this->Core.volume;
-  }
   if (this->Choice.InterpolateAttributes)
   {
     std::vector<std::string> taken = this->Choice.ComputedArrays;
@@ -30,14 +22,23 @@ bool vtkMarchingCorrectorsInput::Collect()
     }
     this->CollectAttributes(taken);
   }
-  if (this->Choice.IsWidened)
-  {
-    this->Interpolate(factors); // the last one
-  }
   vtkSPHSign(this->ScalarSignature, this->Scalar);
   vtkSPHSign(this->ScalarSignature, this->ScalarDot);
   this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
   return true;
+}
+
+void vtkMarchingCorrectorsInput::TakeWidening(vtkDataArray* factors, vtkDataArray* volumes)
+{
+  vtkSPHSign(this->ParticlesSignature, factors);
+  this->Interpolate(factors);
+  this->Interpolated.pop_back();
+  this->Core.widening = this->Core.attributes[this->Core.attribute_count - 1];
+  if (volumes)
+  {
+    this->Core.volume = this->View(volumes);
+    this->Core.volume.name = nullptr; // they were computed, and are told as such
+  }
 }
 
 bool vtkMarchingCorrectorsInput::CollectScalar()

@@ -19,7 +19,6 @@ struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
   bool InterpolateAttributes = true;
   std::vector<std::string> ComputedArrays; // names that the output already uses
   bool ComputeScalars = true;
-  bool IsWidened = false; // the particles have the arrays of vtkMarchingCorrectors::Widen()
 };
 
 class vtkMarchingCorrectorsInput : public vtkSPHParticles
@@ -35,6 +34,12 @@ public:
    * Fills all members. Returns false if something is missing or not usable; Error then says why.
    */
   bool Collect();
+
+  /**
+   * Takes the arrays that vtkMarchingCorrectors::FindWidening() has found. The factors become the
+   * core's last attribute, without being one of Interpolated.
+   */
+  void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   /** Finds the scalar and the fluid particles alone: the range of values depends on these. */
   bool CollectContoured() { return this->CollectScalar() && this->CollectSolids(); }

@@ -58,7 +58,7 @@ vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
 std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
   std::vector<std::string> names;
-  if (mcor_spell_out(&options).widen > 1.0)
+  if (options.widen > 1.0)
   {
     names.emplace_back("Widening");
   }
@@ -109,7 +109,10 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
 #define ADD(bit, member, components, name, flag) add(name, s.member, components);
   vtkMarchingCorrectorsArrays(ADD)
 #undef ADD
-    add("Widening", s.widening, 1);
+  if (this->Input.Core.widening.data && s.attributes)
+  {
+    add("Widening", s.attributes[this->Input.Interpolated.size()], 1);
+  }
   if (areActive)
   {
     pointData->SetActiveNormals("Normals");

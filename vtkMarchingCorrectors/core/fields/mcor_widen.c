@@ -2,9 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays
- * inside of it. A widened surface is the surface of an input with factors: one call makes the
- * factors, then mcor_extract runs. The context keeps the factors for the next call with the same
- * particles. */
+ * inside of it. This call makes the factors; mcor_extract takes them with its input. */
 
 #include "mcor_widen.h"
 #include "mcor_box.h"
@@ -239,7 +237,7 @@ static bool mcor_choose_widening(
   particles->widening = (mcor_array){ 0 };
   particles->attribute_count = 0;
   own->widen = 1;
-  own->compact = 0;
+  own->compact = own->smooth = 0;
   own->node_threshold = 0;
   own->outputs = 0;
   mcor_evaluate_without_scalar(input, own);
@@ -247,8 +245,8 @@ static bool mcor_choose_widening(
   return mcor_uses_solids(input, options);
 }
 
-mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* asked,
-  mcor_widening* widening)
+mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_widening* widening)
 {
   if (!context || !widening)
   {
@@ -256,8 +254,8 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   }
   *widening = (mcor_widening){ 0 };
   MCOR_RETURN_IF(
-    !input || !asked, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
-  const mcor_options spelled = mcor_spell_out(asked), *options = &spelled;
+    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  MCOR_TRY(mcor_check_spelled_out(context, options));
   MCOR_RETURN_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
     "The widening is %g; it must be at least 1 and at most 4.", options->widen);
   const size_t n = (size_t)(input->count > 0 ? input->count : 0);
@@ -295,97 +293,12 @@ void mcor_free_widening(mcor_widening* widening)
   }
 }
 
-void mcor_release_widening(mcor_context* context)
+void mcor_add_widening(mcor_statistics* surface, const mcor_statistics* widening)
 {
-  mcor_free_widening(&context->kept_widening.widening);
-}
-
-/* ---- A surface ---- */
-
-/* Renews the factors, unless those of the last call still hold; kept ones cost this call no
- * time. */
-static mcor_status mcor_renew_widening(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  mcor_kept_widening* kept = &context->kept_widening;
-  const double iso = mcor_widen_iso(options);
-  mcor_input particles;
-  mcor_options own;
-  const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
-  memset(own.box, 0, sizeof own.box);
-  if (kept->widening.factor && mcor_same_particles(&particles, &kept->input) &&
-    mcor_same_options(&own, &kept->options) && kept->widest == options->widen && kept->iso == iso &&
-    kept->uses_solids == uses_solids)
+  surface->widening_outside = widening->widening_outside;
+  surface->build_seconds += widening->build_seconds;
+  for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
   {
-    memset(kept->widening.statistics.seconds, 0, sizeof kept->widening.statistics.seconds);
-    kept->widening.statistics.build_seconds = 0;
-    return MCOR_OK;
+    surface->seconds[p] += widening->seconds[p];
   }
-  mcor_free_widening(&kept->widening);
-  *kept = (mcor_kept_widening){
-    .input = particles, .options = own, .iso = iso, .uses_solids = uses_solids
-  };
-  mcor_widening made;
-  MCOR_TRY(mcor_widen(context, input, options, &made));
-  kept->widening = made;
-  kept->widest = context->measure.cut ? 0 : options->widen; /* 0: they depend on the box */
-  return MCOR_OK;
-}
-
-mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_surface* surface)
-{
-  MCOR_RETURN_IF(options->ranks || options->globals, context, MCOR_INVALID_ARGUMENT,
-    "Widening needs all particles in one process. Run one process, or in C hand in the factors of "
-    "mcor_widen with the input.");
-  MCOR_RETURN_IF(mcor_is_given(&input->widening), context, MCOR_INVALID_ARGUMENT,
-    "Both options.widen and input.widening are set. Leave one of them out.");
-  MCOR_TRY(mcor_renew_widening(context, input, options));
-  const mcor_widening widening = context->kept_widening.widening;
-  /* The context gives back what it keeps if memory runs out. The call reads the factors, so they
-   * are taken out. */
-  context->kept_widening.widening = (mcor_widening){ 0 };
-  const int count = input->attribute_count > 0 ? input->attribute_count : 0;
-  mcor_array* attributes = malloc(((size_t)count + 1) * sizeof *attributes);
-  mcor_input own = *input;
-  mcor_options plain = *options;
-  mcor_status status = mcor_allocated(context, attributes);
-  if (status == MCOR_OK)
-  {
-    own.widening =
-      (mcor_array){ .data = widening.factor, .type = MCOR_FLOAT64, .name = "Widening" };
-    if (widening.volume)
-    {
-      own.volume = (mcor_array){ .data = widening.volume, .type = MCOR_FLOAT64, .name = "volume" };
-    }
-    for (int a = 0; a < count; ++a)
-    {
-      attributes[a] = input->attributes[a];
-    }
-    attributes[count] = own.widening;
-    own.attributes = attributes;
-    own.attribute_count = count + 1;
-    plain.widen = 1;
-    status = mcor_extract(context, &own, &plain, surface);
-  }
-  if (status == MCOR_OK)
-  {
-    mcor_statistics* s = &surface->statistics;
-    const int last = --surface->attribute_count; /* the widening, which has its own array */
-    surface->widening = surface->attributes[last];
-    surface->attributes[last] = NULL;
-    s->widening_outside = widening.statistics.widening_outside;
-    s->build_seconds += widening.statistics.build_seconds;
-    for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
-    {
-      s->seconds[p] += widening.statistics.seconds[p];
-    }
-  }
-  free(attributes);
-  context->kept_widening.widening = widening;
-  if (status != MCOR_OK || input->particles_version == 0)
-  {
-    mcor_release_widening(context);
-  }
-  return status;
 }

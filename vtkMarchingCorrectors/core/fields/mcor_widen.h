@@ -5,11 +5,6 @@
 
 #include "mcor_internal.h"
 
-/* Does mcor_extract with options.widen above 1. */
-mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_surface* surface);
-void mcor_release_widening(mcor_context* context);
-
 /* Volumes that were computed, [count], unit L^3, from the search grid's weights; 1 where a particle
  * is not on the device, or not in the box. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume);

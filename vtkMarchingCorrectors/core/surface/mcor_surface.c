@@ -98,7 +98,6 @@ void mcor_free_surface(mcor_surface* surface)
   free(surface->line_offsets);
   free(surface->line_points);
   free(surface->band_value);
-  free(surface->widening);
   for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
   {
     free(surface->attributes[a]);

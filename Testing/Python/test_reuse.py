@@ -32,7 +32,8 @@ STEPS = (
     {"FreeSurface": 1}, {"FreeSurface": 0}, move(lambda data: data), move(lambda data: data.GetPoints()), grow,
     {"SmoothingLength": 0.15}, {"FluidArrayName": "Type"}, {"FluidValue": 1}, {"FluidArrayName": "Sort"},
     lambda extract, _: extract.ReleaseDeviceMemory(), {"KeepDeviceData": 0}, {"Value": (0, 0.35)}, {"KeepDeviceData": 1},
-    lambda extract, _: extract.Modified())
+    lambda extract, _: extract.Modified(), {"Widening": 2}, {"Value": (0, 0.4)}, {"Kernel": 4}, {"SmoothingLength": 0.14},
+    {"FreeSurface": 1}, {"FreeSurfaceValue": 0.4}, {"Widening": 1})
 
 
 class TestReuse(unittest.TestCase):
@@ -57,6 +58,19 @@ class TestReuse(unittest.TestCase):
                 if step and not (callable(step) or "KeepDeviceData" in step):
                     self.assertFalse(new == before)
                 before = new
+
+    def test_widening(self):
+        """Factors hold for another iso value, and so does the search grid; not for particles that were moved."""
+        phases, data = [], cube()
+        extract = sphere(data)
+        extract.SetWidening(2)
+        extract.AddObserver("ProgressEvent", lambda *_: phases.append(extract.GetProgressText()))
+        for change, makes_grid in (({}, True), ({"Value": (0, 0.4)}, False), (move(lambda data: data), True)):
+            phases.clear()
+            take_step(change, extract, data)
+            run(extract)
+            with self.subTest(change):
+                self.assertEqual("search grid" in phases, makes_grid)
 
     def test_abort(self):
         extract = sphere()

@@ -5,7 +5,7 @@
     make_structs.py mcor_parts.h mcor.h FOLDER
 
 _structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of the shapes of arrays, and
-the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
+the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types, and the codes of mcor_says.def. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
 the functions that the library shows, for the linkers of Linux, Windows and macOS.
 """
 import ctypes
@@ -15,7 +15,7 @@ from pathlib import Path
 
 NUMBERS = {
     "int": "c_int", "unsigned": "c_uint", "double": "c_double", "float": "c_float", "char": "c_char",
-    "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
+    "size_t": "c_size_t", "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
 
 def fail(sentence):
@@ -136,6 +136,10 @@ class Rows:
         options = (folder / "mcor_options.def").read_text(encoding="utf-8")
         kernels = (folder / "grid" / "mcor_sph_kernel.h").read_text(encoding="utf-8")
         kinds = {field: base for field, base, *_ in header.structs["mcor_options"]}
+        says = (folder / "mcor_says.def").read_text(encoding="utf-8")
+        self.slots = sorted({*re.findall(r'^SLOT\("(\w+)', says, re.M)})
+        codes = ["NOTHING", *re.findall(r'^SAYS\((\w+), ', says, re.M), "COUNT"]
+        header.enums["mcor_says"] = {f"MCOR_SAYS_{code}": number for number, code in enumerate(codes)}
         self.statistics = re.findall(r'^STATISTIC\((\w+), (\w+), (\w+), "(\w*)"\)', statistics, re.M)
         self.options, self.types = {}, {}
         for member, legal, words, scope, name in re.findall(
@@ -169,7 +173,9 @@ def shape_of(struct, name, comment, constants):
 def python_module(header, rows):
     lines = ['"""Made by make_structs.py from mcor.h; not to be edited."""',
              "import ctypes", "from typing import Literal, Optional, Sequence, TypedDict, Union", "", f"VERSION = {header.version!r}", "",
-             "Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_char_p)", ""]
+             "Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_char_p)",
+             "Word = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t)",
+             ""]
     for struct, fields in header.structs.items():
         lines += ["", f"class {struct}(ctypes.Structure):", "    _fields_ = ["]
         lines += [f'        ("{name}", {header.ctype(base, pointers, length)}),'
@@ -184,7 +190,7 @@ def python_module(header, rows):
     lines += ["", "class CoreOptions(TypedDict, total=False):",
               *(f"    {name}: {kind}" for name, kind in rows.types.items()), ""]
     for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
-                         ("STATISTICS", rows.statistics), ("OPTIONS", rows.options)):
+                         ("STATISTICS", rows.statistics), ("OPTIONS", rows.options), ("SLOTS", rows.slots)):
         lines += ["", f"{label} = {value!r}"]
     lines += ["", "# {name: (type of the result, types of the parameters)}", "FUNCTIONS = {",
               *(f"    {name!r}: ({result}, [{', '.join(parameters)}])," for name, (result, *parameters) in

@@ -69,6 +69,11 @@ const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
                                                          : nullptr;
 }
 
+void vtkSPHAlgorithm::SetWord(mcor_word word)
+{
+  vtkSPHWord = word;
+}
+
 std::string vtkSPHAlgorithm::ListDevices()
 {
   char* text = nullptr;

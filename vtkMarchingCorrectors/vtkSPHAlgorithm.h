@@ -36,6 +36,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h" // For members
 
+#include <cstddef>    // For sizes
 #include <cstdint>    // For members
 #include <functional> // For members
 #include <map>        // For members
@@ -467,6 +468,14 @@ public:
 
   /** Returns the statistics as text, a line "Name: values" for each. */
   const char* GetStatistics();
+
+#ifndef __VTK_WRAP__
+  /**
+   * Sets what messages call a setting, in place of the panel's labels ("Cube Size" for SetCubeSize):
+   * an mcor_word of mcor.h. For all filters; set it before any of them runs.
+   */
+  static void SetWord(int (*word)(void*, const char*, const char*, char*, std::size_t));
+#endif
 
   /**
    * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.

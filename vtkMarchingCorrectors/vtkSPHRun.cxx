@@ -31,7 +31,7 @@ std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, in
   {
     return "";
   }
-  const std::string why = mcor_last_error(this->Context);
+  const std::string why = vtkSPHTakeText(mcor_last_message(this->Context));
   this->Forget(MCOR_DEVICE_ERROR);
   return why;
 }
@@ -214,7 +214,7 @@ int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
   }
   if (status != MCOR_OK)
   {
-    message = status == MCOR_CANCELLED ? "" : mcor_last_error(context);
+    message = status == MCOR_CANCELLED ? "" : vtkSPHTakeText(mcor_last_message(context));
     internals.Forget(status);
   }
   return status;

@@ -264,6 +264,7 @@ int main(int argc, char* argv[])
   }
   close(descriptor);
   PrepareForEnding();
+  vtkSPHAlgorithm::SetWord(OptionWord);
   bool isGood = false, isMisused = false;
   const std::string failure = FailureOf(
     [&]

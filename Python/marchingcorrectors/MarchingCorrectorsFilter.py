@@ -33,7 +33,7 @@ from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import QUANTITIES, camel
 from marchingcorrectors._call import extracted
 from marchingcorrectors._functions import take_surface
-from marchingcorrectors._library import devices, lib, take_text
+from marchingcorrectors._library import Sentence, devices, lib, take_sentence, take_text
 from marchingcorrectors._options import OUTPUTS
 from marchingcorrectors._vtk_blocks import (describe_mesh, join_blocks, list_all, sets_of, take_vertices, tells_of_walls,
                                              walk)
@@ -390,7 +390,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
             particles.estimate_by_neighbours(options)
         except (Unusable, Error) as sentence:
-            self._fail(str(sentence))
+            self._fail(sentence.args[0])
             return
         finally:
             self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
@@ -404,7 +404,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         except Cancelled:
             pass
         except Error as sentence:
-            self._fail(str(sentence))
+            self._fail(sentence.args[0])
 
     def _choice(self):
         return SimpleNamespace(Made=self._made, ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,
@@ -458,7 +458,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         options.nearest_particle = bool(particles.from_nearest)
         self.UsedVolume = take_text(lib.mcor_describe_volume(ctypes.byref(arguments.input)))
         self.EstimatedCells = particles.estimate_cells(arguments, options)
-        self._warn_once("cells of " + self.BlockName, take_text(lib.mcor_describe_estimate(self.EstimatedCells)))
+        self._warn_once("cells of " + self.BlockName, take_sentence(lib.mcor_describe_estimate(self.EstimatedCells)))
         with self._called(particles, arguments) as surface:
             found, used = take_surface(surface, arguments), ctypes.byref(surface.statistics)
             if particles.scalar is not None:
@@ -507,7 +507,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         precision, data, arrays = particles.choice.OutputPointsPrecision, output.GetPointData(), found.point_arrays()
         if precision == vtkAlgorithm.SINGLE_PRECISION or (
                 precision == vtkAlgorithm.DEFAULT_PRECISION and is_single(particles.positions)):
-            self._warn_once("single points", take_text(lib.mcor_describe_single_points(
+            self._warn_once("single points", take_sentence(lib.mcor_describe_single_points(
                 np.abs(found.points).max(initial=0.0), self.UsedCubeSize)))
             found.points = found.points.astype(np.float32)
         nearest, iso = arrays.pop("NearestParticle", None), arrays.pop("IsoValue", None)
@@ -543,17 +543,23 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _fail(self, sentence):
         """The sentences of all blocks are kept, one a line."""
-        self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + sentence
+        self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + in_panel(sentence)
         self._say(sentence, "Error")
 
     def _say(self, sentence, kind):
         if not vtkObject.GetGlobalWarningDisplay():
             return
+        sentence = in_panel(sentence)
         if self.HasObserver(kind + "Event"):
             self.InvokeEvent(kind + "Event", self.BlockName + sentence)
         else:
             show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
             show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")
+
+
+def in_panel(sentence):
+    """With the panel's words for properties."""
+    return sentence.say(lib.mcor_label_word) if isinstance(sentence, Sentence) else sentence
 
 
 def paraview_plugin(kind):

@@ -75,7 +75,7 @@ def _triangles_in(sections):
 class PointData(FileParticles):
     """The points of a data set as the functions take the particles of files: arrays are told by their names."""
 
-    remedy = "say fluid=('{name}', VALUE)"
+    remedy = "fluid=('{name}', VALUE)"
 
     def __init__(self, data):
         points = data.point_data

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
-from ._library import ERRORS, Error, InvalidArgument, lib, take_text
+from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
 from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of, without_unit
 
@@ -256,12 +256,12 @@ class Arguments:
 
     def per_neighbours(self, function, *more):
         """Numbers of (particles,) that a function of the core sums over their neighbours."""
-        values, why = np.empty(self.count), ctypes.c_void_p()
+        values, why = np.empty(self.count), c.mcor_message()
         status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
-        sentence = take_text(why.value)
+        sentence = take_sentence(why)
         if status:
-            raise ERRORS.get(status, Error)(sentence or "Host memory ran out.")
+            raise ERRORS.get(status, Error)(sentence)
         return values
 
     def estimate_by_neighbours(self, word):

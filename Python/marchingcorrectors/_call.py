@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Unio
 from . import _structs as c
 from ._arrays import QUANTITIES, SUMMED, Arguments, as_bytes, choose
 from ._context import Context, default_context
-from ._library import InvalidArgument, InvalidData, lib
+from ._library import InvalidArgument, InvalidData, lib, word_by
 from ._options import Function, Options, check_names, did_you_mean, show
 from ._warnings import describe_unused_type, warn, warn_of_particles
 
@@ -113,7 +113,7 @@ def _warn_of_unused_type(particles):
         if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
             sentence = describe_unused_type(name, particles.arrays[name])
             if sentence:
-                warn(sentence.replace("select it together with the value of the fluid", particles.remedy.format(name=name)))
+                warn(sentence.say(word_by(lambda slot, name: particles.remedy.format(name=name) if slot == "fluid" else "")))
                 return
 
 

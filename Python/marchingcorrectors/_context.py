@@ -13,7 +13,7 @@ from typing import Union
 import numpy as np
 
 from . import _structs as c
-from ._library import ERRORS, NO_DEVICE, DeviceError, Error, InvalidArgument, _list, lib, start
+from ._library import ERRORS, NO_DEVICE, DeviceError, Error, InvalidArgument, _list, lib, start, take_sentence
 from ._progress import callback_of
 
 
@@ -58,8 +58,7 @@ class Context:
                 self._used_by = None
 
     def _sentence(self):
-        return (lib.mcor_last_error(self._handle) if self._handle else b"").decode(errors="replace") \
-            or "Memory ran out."
+        return take_sentence(lib.mcor_last_message(self._handle))
 
     def release_memory(self) -> None:
         """Drops what is kept on the device between calls; compiled programs stay."""

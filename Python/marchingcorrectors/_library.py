@@ -14,7 +14,12 @@ NO_DEVICE = ("No device was found: this processor has none of the instruction se
 
 
 class Error(RuntimeError):
-    """A call failed; the sentence says what was wrong, with which array or particle, and what to do."""
+    """A call failed; the sentence says what was wrong, with which array or particle, and what to do.
+
+    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for one of this package.
+    """
+
+    code = property(lambda self: getattr(self.args[0], "code", "") if self.args else "")
 
 
 class InvalidArgument(Error, ValueError):
@@ -64,6 +69,43 @@ def take_text(pointer):
         return ctypes.string_at(pointer).decode(errors="replace")
     finally:
         _free(pointer)
+
+
+class Sentence(str):
+    """A sentence of the core, with Python's words for options. code: its name in mcor_says.def; text: with slots."""
+
+    code: str
+    text: bytes
+
+    def say(self, word):
+        """With other words, of a mcor_word."""
+        return take_text(lib.mcor_fill_slots(self.text, word, None))
+
+
+def word_by(function):
+    """A mcor_word of function(name, value), which returns "" where it has no word."""
+    def write(_, name, value, word, size):
+        found = function(name.decode(), value.decode(errors="replace")).encode()[:size - 1]
+        ctypes.memmove(word, found + b"\0", len(found) + 1)
+        return found != b""
+
+    return c.Word(write)
+
+
+@word_by
+def _python_word(name, value):
+    """cube_size, dimension=3, precision="double"."""
+    known = name in c.OPTIONS or name in c.SLOTS
+    return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() else f'{name}="{value}"'
+
+
+def take_sentence(message):
+    """A message of the core, which is freed, as a Sentence; "" if there is none."""
+    text = b"" if not message.code else message.text or lib.mcor_says_text(c.ENUMS["mcor_says"]["MCOR_SAYS_HOST_MEMORY"])
+    sentence = Sentence(take_text(lib.mcor_fill_slots(text, _python_word, None)))
+    sentence.code, sentence.text = lib.mcor_says_name(message.code).decode() if message.code else "", text
+    lib.mcor_free_message(ctypes.byref(message))
+    return sentence
 
 
 _state_lock = threading.Lock()

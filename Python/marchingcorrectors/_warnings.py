@@ -8,11 +8,16 @@ import warnings
 import numpy as np
 
 from . import _structs as c
-from ._library import lib, take_text
+from ._library import Error, lib, take_sentence
 
 
 class InputWarning(UserWarning):
-    """Something about the particles or options is legal, but hardly what was meant."""
+    """Something about the particles or options is legal, but hardly what was meant.
+
+    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for one of this package.
+    """
+
+    code = Error.code
 
 
 def warn(sentence):
@@ -27,10 +32,10 @@ def describe_warnings(arguments, surface):
     """{number: sentence} of what the core finds strange about a surface's input."""
     found = {}
     for number in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"]):
-        text = take_text(lib.mcor_describe_warning(
+        sentence = take_sentence(lib.mcor_describe_warning(
             number, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)))
-        if text:
-            found[number] = text
+        if sentence:
+            found[number] = sentence
     return found
 
 
@@ -48,6 +53,6 @@ def describe_unused_type(name, values):
     if not 2 <= len(kinds) <= 8:  # the core's limit, before arrays are made for it
         return ""
     kinds = np.where(np.isnan(kinds), np.nan, kinds)  # not -nan, which C would print as such
-    return take_text(lib.mcor_describe_unused_type(
+    return take_sentence(lib.mcor_describe_unused_type(
         name.encode(errors="replace"), (ctypes.c_double * len(kinds))(*kinds.tolist()),
         (ctypes.c_int64 * len(kinds))(*counts.tolist()), len(kinds)))

@@ -14,6 +14,9 @@ import unittest
 
 import particle_files as files
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from says import says  # noqa: E402, F401
+
 ISO = ["--scalar", "Radius", "--iso", "0.3"]
 FIRST_COMPILATION = ("marching-correctors: the OpenCL driver compiles its programs for the first time, which may take a "
                      "minute\n")

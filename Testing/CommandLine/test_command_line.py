@@ -12,7 +12,7 @@ import xml.etree.ElementTree
 import zlib
 
 import particle_files as files
-from command_line_test import FIRST_COMPILATION, ISO, CommandLineTest, main
+from command_line_test import FIRST_COMPILATION, ISO, CommandLineTest, main, says
 
 
 def read_png(path):
@@ -219,7 +219,7 @@ class BadData(CommandLineTest):
     def test_correction_that_ends_early(self):
         """Options are as each sentence advises."""
         result = self.extract(*ISO, "--iteration-limit", "1", "--tolerance", "1e-9")
-        self.assertRegex(result.stderr, "warning: .* off the iso value .*Try a higher iteration limit .--iteration-limit")
+        self.assertRegex(result.stderr, says("OFF_ISO_VALUE", "--iteration-limit"))
         statistics = self.succeed(*ISO, "--tolerance", "0.5")
         self.assertEqual(statistics["parameters"]["tolerance"], 0.5)
         self.assertEqual(self.succeed(*ISO, "--iteration-limit", "7")["parameters"]["iteration_limit"], 7)
@@ -466,10 +466,10 @@ class Options(CommandLineTest):
         statistics = self.directory / "statistics.json"
         self.assertEqual(self.succeed(*ISO)["warnings"], [])
         for arguments, words in [
-            (["--smoothing-length", "0.26"], "neighbours.*smoothing length is 0.26.*support radius"),
-            (["--support-radius"], "neighbours.*smoothing length is 0.065"),
-            (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside the range of Radius, 0.0"),
-            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5.* use --field sum --node-threshold 0 --vertex-threshold 0[.]"),
+            (["--smoothing-length", "0.26"], says("NEIGHBOURS_UNUSUAL", "0.26", "--support-radius")),
+            (["--support-radius"], says("NEIGHBOURS_UNUSUAL", "0.065")),
+            (["--scalar", "Radius", "--iso", "0.3,99"], says("ISO_OUTSIDE", "99", "Radius, 0.0")),
+            (["--vertex-threshold", "5"], says("ALL_TRIMMED", "5", "--field sum, --node-threshold 0 and --vertex-threshold 0[.]")),
             (["--density", "1e6"], "node threshold 0.1"),
         ]:
             with self.subTest(arguments):

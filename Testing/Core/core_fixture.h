@@ -59,6 +59,7 @@
 #define CORE_PROJECTION CORE_OWNED(mcor_free_projection) mcor_projection
 #define CORE_WIDENING CORE_OWNED(mcor_free_widening) mcor_widening
 #define CORE_CONTEXT CORE_OWNED(core_free_context) mcor_context*
+#define CORE_MESSAGE CORE_OWNED(mcor_free_message) mcor_message
 #define CORE_FREED CORE_OWNED(core_free_block) /* pointers that free() frees */
 void core_free_context(mcor_context** context);
 void core_free_block(void* pointer);

@@ -158,7 +158,7 @@ class Objects(unittest.TestCase):
         with self.assertRaisesRegex(mc.InvalidArgument, "a.vtk tells no smoothing length. Give .*Arrays: distance, Type"):
             mc.free_surface(particles)
         told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
-        self.assertIn("say solid=particles['Type'] != VALUE", str(told[0].message))
+        self.assertIn("choose solid=particles['Type'] != VALUE", str(told[0].message))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             left = [mc.free_surface(particles, smoothing_length=H, volume=V, only={"Type": 1}),

@@ -20,7 +20,7 @@ def made_of(texts, folder):
     """All that is written, by the files' names."""
     folder.mkdir()
     (folder / "grid").mkdir()
-    for name in ("mcor_statistics.def", "mcor_options.def", "grid/mcor_sph_kernel.h"):
+    for name in ("mcor_statistics.def", "mcor_options.def", "mcor_says.def", "grid/mcor_sph_kernel.h"):
         shutil.copy(core / name, folder / name)
     for name, text in zip(NAMES, texts):
         (folder / name).write_text(text, encoding="utf-8")

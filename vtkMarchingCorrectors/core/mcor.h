@@ -51,6 +51,40 @@ extern "C"
     MCOR_CANCELLED         /* the progress callback asked to stop */
   } mcor_status;
 
+  /* What a sentence of this library says: a code for each row of mcor_says.def. */
+  typedef enum mcor_says
+  {
+    MCOR_SAYS_NOTHING = 0,
+#define SAYS(code, text) MCOR_SAYS_##code,
+#include "mcor_says.def"
+    MCOR_SAYS_COUNT
+  } mcor_says;
+
+  /* A sentence: a failure or a warning. In the text, {cube_size} is a slot for the name of a member
+   * of mcor_options or mcor_input, and {precision double} one for an option with a value: see
+   * mcor_fill_slots. Owned; free with mcor_free_message. */
+  typedef struct mcor_message
+  {
+    mcor_says code; /* MCOR_SAYS_NOTHING: there is no message */
+    char* text;     /* NULL without a message, or if memory ran out */
+  } mcor_message;
+  void mcor_free_message(mcor_message* message);
+
+  /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
+   * stands behind the name in the slot, or "". Returns 0 if there is no word; the slot then stays. */
+  typedef int (*mcor_word)(
+    void* user, const char* name, const char* value, char* word, size_t size);
+  /* The words of C, "cube_size" and "precision=double"; and those of panels, "Cube Size" and "Field
+   * Precision double". */
+  int mcor_member_word(void* user, const char* name, const char* value, char* word, size_t size);
+  int mcor_label_word(void* user, const char* name, const char* value, char* word, size_t size);
+  /* Returns the text with its slots filled; word NULL: mcor_member_word. Free it with free(). NULL
+   * if memory ran out. */
+  char* mcor_fill_slots(const char* text, mcor_word word, void* user);
+  /* The code's name, "ISO_OUTSIDE", and its text, with formats and slots; NULL if there is none. */
+  const char* mcor_says_name(mcor_says code);
+  const char* mcor_says_text(mcor_says code);
+
   /* Element type of an array. */
   typedef enum mcor_type
   {
@@ -519,9 +553,11 @@ extern "C"
    * there is no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* Why the last call on this context that failed did so, in one sentence; "" if none failed. Valid
-   * until the next call on the context. */
+  /* Why the last call on this context that failed did so, in one sentence, with C's words in its
+   * slots; "" if none failed. Valid until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
+  /* The same with its code, and slots to be filled. */
+  mcor_message mcor_last_message(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
@@ -624,15 +660,15 @@ extern "C"
    * those of other ranks, are neighbours only. 0 for particles that play no part. None is longer
    * than the extent of all. Reads the positions and solids of the input, and of the options
    * sph_kernel, dimension and periodic. Not with M'4, whose sum does not grow with h. *why:
-   * NULL, or why it failed, in a sentence; free it with free(). */
+   * why it failed; no message if it did not. */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
-    double eta, int64_t count, double* lengths, char** why);
+    double eta, int64_t count, double* lengths, mcor_message* why);
 
   /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles,
    * unit of mass / L^d. Reads positions, masses, solids, and smoothing lengths [count] of the
    * input, and the same options. */
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
-    int64_t count, double* densities, char** why);
+    int64_t count, double* densities, mcor_message* why);
 
   /* Returns the least smoothing length of the fluid, as the input has it; 1 with
    * estimate_smoothing_length, infinite without fluid. */
@@ -644,11 +680,12 @@ extern "C"
    * that share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
-  /* Words for panels, with six digits: a warning of how long a run of so many cells may take; the
-   * smoothing length and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array
+  /* Warns of how long a run of so many cells may take. */
+  mcor_message mcor_describe_estimate(double cells);
+
+  /* Words for panels, with six digits: the smoothing length and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array
    * Density"; area and volume, or length and area, "" where there is no surface. Free them with
-   * free(). NULL if there is no such warning, or if memory ran out. */
-  char* mcor_describe_estimate(double cells);
+   * free(). NULL if memory ran out. */
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
   char* mcor_describe_measures(const mcor_statistics* statistics);
@@ -669,23 +706,20 @@ extern "C"
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* The warning in words, with numbers; free it with free(). NULL if there is no such warning, or
-   * if memory ran out. Pass the input, options and surface of mcor_extract. The last three kinds
+  /* The warning with numbers; no message if there is no such warning. Pass the input, options and surface of mcor_extract. The last three kinds
    * hold for any call; they read nothing of the surface but its statistics. */
-  char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
+  mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
   /* Warns that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs
-   * counts[i] times, is not used, so that all particles count as fluid; free the sentence with
-   * free(). NULL if the array has only one value or more than MCOR_PARTICLE_TYPES, or if memory
-   * ran out. */
-  char* mcor_describe_unused_type(
+   * counts[i] times, is not used, so that all particles count as fluid. No message if the array has
+   * only one value or more than MCOR_PARTICLE_TYPES. */
+  mcor_message mcor_describe_unused_type(
     const char* name, const double* values, const int64_t* counts, int count);
 
   /* Warns that single precision is too coarse for the points of a surface whose largest
-   * coordinate, in magnitude, is `largest`; free the sentence with free(). NULL if it is fine,
-   * or if memory ran out. */
-  char* mcor_describe_single_points(double largest, double cube_size);
+   * coordinate, in magnitude, is `largest`. */
+  mcor_message mcor_describe_single_points(double largest, double cube_size);
 #define MCOR_PARTICLE_TYPES 8
 /* The array that marks, in blocks joined to one set, the particles of blocks with names of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"

@@ -31,6 +31,22 @@
     }                                                                                              \
   } while (0)
 
+/* A code of mcor_says.def and its text, as two arguments. Texts are arrays, not pointers, so that compilers check the
+ * formats in them. */
+#define MCOR_SAY(code) MCOR_SAYS_##code, mcor_text_of_##code
+#define SAYS(code, text) static const char mcor_text_of_##code[] = text;
+#include "mcor_says.def"
+
+/* Returns with a status and the sentence that explains it: MCOR_SAY(CODE), and what its formats need. */
+#define MCOR_FAIL_IF(condition, context, status, ...)                                              \
+  do                                                                                               \
+  {                                                                                                \
+    if (condition)                                                                                 \
+    {                                                                                              \
+      return mcor_fail_as(context, status, __VA_ARGS__);                                           \
+    }                                                                                              \
+  } while (0)
+
 /* Makes a call unless one before it has failed; for functions that end by freeing something. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
 
@@ -58,6 +74,23 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
   __attribute__((format(printf, 3, 4)))
 #endif
   ;
+mcor_status mcor_fail_as(
+  mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 4, 5)))
+#endif
+  ;
+/* mcor_says.c. Writes a sentence; use as mcor_say(MCOR_SAY(CODE), ...). */
+mcor_message mcor_say(mcor_says code, const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 2, 3)))
+#endif
+  ;
+#define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
+/* Fills slots into out [size], as snprintf does; returns the length. */
+size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
+/* No word is longer; a name that stands in a slot is cut. */
+#define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
 /* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. Arrays: in space, in a plane. */
 typedef struct mcor_kernel_row

@@ -317,7 +317,8 @@ typedef struct mcor_kept
 struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
-  char error[4096];
+  mcor_says code;
+  char error[4096], told[4096]; /* the last failure with slots, and with these filled */
   mcor_run run;
 
   /* The device, and what it holds for any particles. */

@@ -63,21 +63,38 @@ const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel)
   return &mcor_kernel_table[kernel];
 }
 
+static void mcor_keep_failure(
+  mcor_context* context, mcor_says code, const char* format, va_list args)
+{
+  if (context)
+  {
+    context->code = code;
+    vsnprintf(context->error, sizeof context->error, format, args);
+  }
+}
+
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
 {
   va_list args;
   va_start(args, format);
-  if (context)
-  {
-    vsnprintf(context->error, sizeof context->error, format, args);
-  }
+  mcor_keep_failure(context, MCOR_SAYS_NOTHING, format, args);
+  va_end(args);
+  return status;
+}
+
+mcor_status mcor_fail_as(
+  mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  mcor_keep_failure(context, code, format, args);
   va_end(args);
   return status;
 }
 
 mcor_status mcor_allocated(mcor_context* context, bool complete)
 {
-  return complete ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  return complete ? MCOR_OK : mcor_fail_as(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY));
 }
 
 mcor_status mcor_make_room(
@@ -96,7 +113,20 @@ mcor_status mcor_make_room(
 
 const char* mcor_last_error(const mcor_context* context)
 {
-  return context ? context->error : "Host memory ran out.";
+  if (!context)
+  {
+    return mcor_says_text(MCOR_SAYS_HOST_MEMORY);
+  }
+  char* told = (char*)context->told; /* no more than a copy of the failure */
+  mcor_fill_text(context->error, NULL, NULL, told, sizeof context->told);
+  return told;
+}
+
+mcor_message mcor_last_message(const mcor_context* context)
+{
+  return !context     ? mcor_say(MCOR_SAY(HOST_MEMORY))
+    : *context->error ? mcor_say(context->code, "%s", context->error)
+                      : MCOR_NO_MESSAGE;
 }
 
 double mcor_seconds(void)

@@ -114,6 +114,16 @@ std::string vtkSPHTakeText(char* text)
   return taken;
 }
 
+mcor_word vtkSPHWord = mcor_label_word;
+
+std::string vtkSPHTakeText(mcor_message message)
+{
+  const std::string taken = vtkSPHTakeText(mcor_fill_slots(message.text, vtkSPHWord, nullptr));
+  const bool isLost = message.code != MCOR_SAYS_NOTHING && taken.empty();
+  mcor_free_message(&message);
+  return isLost ? mcor_says_text(MCOR_SAYS_HOST_MEMORY) : taken;
+}
+
 // Rounds in place: the surface is the largest object in memory at this time.
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)

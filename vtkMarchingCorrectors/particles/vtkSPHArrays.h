@@ -61,6 +61,10 @@ vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
 /** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);
+/** Takes over a sentence likewise, with its slots filled, see vtkSPHAlgorithm::SetWord(). */
+std::string vtkSPHTakeText(mcor_message message);
+/** What fills the slots. */
+extern mcor_word vtkSPHWord;
 
 /** Hands a malloc'ed buffer over to a VTK array. */
 template <typename ValueT>

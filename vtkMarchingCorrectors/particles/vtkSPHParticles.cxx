@@ -76,7 +76,7 @@ bool vtkSPHParticles::CollectSmoothingLength()
     if (!this->SmoothingLength) // not from Take()
     {
       this->SmoothingLength = this->Compute("SmoothingLength",
-        [this, &f](const mcor_input& all, const mcor_options& options, double* values, char** why)
+        [this, &f](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
         {
           return mcor_find_smoothing_lengths(
             &all, &options, f.NeighborRatio, this->Core.count, values, why);
@@ -165,7 +165,7 @@ bool vtkSPHParticles::IsMade(const char* name)
 
 // Neighbours may be other processes' particles: all get all. Particles that were sent have theirs.
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
-  const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call)
+  const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call)
 {
   vtkPointData* arrays = this->Points->GetPointData();
   vtkNew<vtkDoubleArray> array;
@@ -236,11 +236,10 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
   }
   array->SetName(name);
   array->SetNumberOfValues(this->Points->GetNumberOfPoints());
-  char* why = nullptr;
+  mcor_message why;
   if (call(all, options, array->GetPointer(0), &why) != MCOR_OK)
   {
-    const std::string sentence = vtkSPHTakeText(why);
-    this->Error = sentence.empty() ? "Host memory ran out." : sentence;
+    this->Error = vtkSPHTakeText(why);
     return nullptr;
   }
   made = { signature, array.GetPointer() };
@@ -560,7 +559,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Take(
     // It gives volumes, too, from then on.
     this->Summed = this->CollectSmoothingLength() && this->CollectVolume()
       ? this->Compute("Density",
-          [this](const mcor_input& all, const mcor_options& options, double* values, char** why)
+          [this](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
           { return mcor_sum_densities(&all, &options, this->Core.count, values, why); })
       : nullptr;
     return this->Summed;

@@ -169,7 +169,7 @@ private:
   /** Fills an array of this name by the core's function, unless there is one of the same particles;
    * null, and Error, where it fails. */
   vtkSmartPointer<vtkDataArray> Compute(const char* name,
-    const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call);
+    const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call);
   vtkSmartPointer<vtkDataArray> Summed; // density
   std::string AdviseOnLength() const;
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;

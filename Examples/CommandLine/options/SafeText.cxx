@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SafeText.h"
 
+#include "Job.h"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
@@ -108,27 +112,14 @@ const Advice Advices[] = {
   { "urn capping off", "urn capping off (leave out --capping)", "--capping" },
   { "set the dimension to 3", "set the dimension to 3 (--dimension 3)", "--dimension" },
   { "use three dimensions", "use three dimensions (--dimension 3)", "--dimension" },
-  { "Set Output Points Precision to Double", "Give --output-precision double",
-    "--output-precision" },
-  { "Try double precision", "Try double precision (--precision double)", "--precision" },
   { "hoose another device", "hoose another device (--device)", "--device" },
   { "se single precision", "se single precision (--precision single)", "--precision" },
   { "or single precision", "or single precision (--precision single)", "--precision" },
   { "a higher memory limit", "a higher memory limit (--memory-limit)", "--memory-limit" },
-  { "a higher iteration limit", "a higher iteration limit (--iteration-limit)",
-    "--iteration-limit" },
-  { "a larger tolerance", "a larger tolerance (--tolerance)", "--tolerance" },
   { "choose a larger factor", "choose a larger factor (--h-scale)", "--h-scale" },
   { "masses and densities, or remove",
     "masses and densities (--volume, or --mass and --density), or remove", "--volume" },
-  { "there is an option for that", "there is an option for that: --support-radius",
-    "--support-radius" },
   { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
-  { "use the sum as the field, and 0 as the node threshold and the vertex threshold",
-    "use --field sum --node-threshold 0 --vertex-threshold 0", "--field" },
-  { "use the sum as the field, and thresholds of 0",
-    "use --field sum --node-threshold 0 --vertex-threshold 0", "--field" },
-  { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
   { "pthread_create has failed: Resource temporarily unavailable",
     "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
   { "by a range of positions", "by a range of positions (--within)", "--within" },
@@ -180,6 +171,27 @@ std::string WithOptions(const std::string& sentence)
     }
   }
   return result;
+}
+
+int OptionWord(void*, const char* name, const char* value, char* word, std::size_t size)
+{
+  const std::pair<const char*, const char*> others[] = { { "sph_kernel", "--kernel" },
+    { "level_limit", "--max-level" }, { "cube_size_factor", "--cube-factor" },
+    { "boundary_detection", "--boundary" }, { "iso_values", "--iso" },
+    { "smoothing_length_is_support_radius", "--support-radius" },
+    { "estimate_smoothing_length", "--smoothing-length estimate" } };
+  std::string option = std::string("--") + name;
+  std::replace(option.begin(), option.end(), '_', '-');
+  for (const auto& other : others)
+  {
+    option = std::string(name) == other.first ? other.second : option;
+  }
+  const std::string known = option.substr(0, option.find(' '));
+  const bool isFluid = option == "--fluid" && *value;
+  std::snprintf(word, size, "%s%s%s%s", option.c_str(), *value ? " " : "", value,
+    isFluid ? "=VALUE" : "");
+  return std::any_of(AllOptions().begin(), AllOptions().end(),
+    [&](const Option& row) { return known == row.Name; });
 }
 
 void Say(const std::string& sentence)

@@ -4,6 +4,7 @@
 #define SafeText_h
 
 #include <charconv>
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -14,6 +15,10 @@ std::string Printable(const std::string& text);
 
 /// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
+
+/// Writes the program's word for a slot of a sentence of the core, such as --cube-size, as an
+/// mcor_word of mcor.h. Returns 0 if there is none.
+int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
 /// A sentence of the filters, whose advice is the same for all interfaces, in the words of this
 /// one: with its options.

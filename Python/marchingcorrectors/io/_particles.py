@@ -107,7 +107,7 @@ class Particles:
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
-    remedy = "say solid=particles['{name}'] != VALUE (in a shell --fluid {name}=VALUE)"  # where all count as fluid
+    remedy = "solid=particles['{name}'] != VALUE (in a shell --fluid {name}=VALUE)"  # where all count as fluid
 
     def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
                  **more: Any) -> None:

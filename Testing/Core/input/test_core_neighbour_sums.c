@@ -63,7 +63,7 @@ static particle_set make_clusters(int64_t count, int dimension, uint64_t seed)
 
 static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
 {
-  char* why;
+  mcor_message why;
   const int64_t count = 400;
   CORE_SET set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
   mcor_options options = core_options(NULL);
@@ -170,7 +170,7 @@ static void test_sums(void** state)
 /* With positions and masses alone: where its sphere has its densities at the radii 1 and 3. */
 static void test_plummer(void** state)
 {
-  char* why;
+  mcor_message why;
   const int count = 20000;
   const double radii[2] = { 1, 3 }, isos[2] = { 0.0422, 0.000755 };
   CORE_SET set = particle_set_make(count);
@@ -219,7 +219,7 @@ static void test_plummer(void** state)
 static void test_far_beyond_period(void** state)
 {
   (void)state;
-  char* why;
+  mcor_message why;
   double at[3 * 64], lengths[2][64];
   uint64_t seed = 9;
   for (int i = 0; i < 3 * 64; ++i)
@@ -248,7 +248,7 @@ static void test_far_away(void** state)
   {
     N = 300
   };
-  char* why;
+  mcor_message why;
   double at[3 * N], lengths[2][N];
   uint64_t seed = 9;
   const mcor_options options = core_options(NULL);
@@ -284,7 +284,7 @@ static void test_far_body(void** state)
     BODY = 100,
     N = 5 * BODY
   };
-  char* why;
+  mcor_message why;
   double at[3 * N], turned[3 * N], lengths[3][N];
   uint64_t seed = 9;
   const mcor_options options = core_options(NULL);
@@ -308,17 +308,19 @@ static void test_far_body(void** state)
   }
 }
 
-static void expect_refusal(mcor_status status, mcor_status expected, char** why, const char* words)
+static void expect_refusal(
+  mcor_status status, mcor_status expected, mcor_message* why, const char* words)
 {
-  CORE_CHECK(status == expected && *why && strstr(*why, words), "%d: %s", (int)status, *why);
-  free(*why);
+  CORE_CHECK(
+    status == expected && why->text && strstr(why->text, words), "%d: %s", (int)status, why->text);
+  mcor_free_message(why);
 }
 
 static void test_weird(void** state)
 {
   (void)state;
   double at[6] = { 1, 2, 3, 1, 2, 3 }, out[2] = { -1, -1 };
-  char* why;
+  mcor_message why;
   mcor_options options = core_options(NULL);
   mcor_input input = { .count = 2, .positions = core_array(at, 3) };
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),

@@ -26,20 +26,22 @@ static void begin_call(warning_call* call)
   call->options = core_options(call->iso);
 }
 
-/* Each warning of the call: whether it is given, and then that it holds all of `words`, with | between
- * them. Returns how many are given. */
+/* Each warning of the call: whether it is given, and then its code, and that it holds all of
+ * `words`, with | between them. Returns how many are given. */
 static int check_call(mcor_context* context, warning_call* call, const char* name,
-  mcor_warning expected, const char* words)
+  mcor_warning expected, mcor_says code, const char* words)
 {
   CORE_SURFACE surface = core_extract(context, &call->input, &call->options);
   int count = 0;
   for (int w = 0; w < MCOR_WARNING_COUNT; ++w)
   {
-    CORE_FREED char* text =
+    CORE_MESSAGE message =
       mcor_describe_warning((mcor_warning)w, &call->input, &call->options, &surface);
+    const char* text = message.text;
     count += text != NULL;
     CORE_CHECK((text != NULL) == (words && w == (int)expected), "%s: warning %d: %s", name, w,
       text ? text : "not given");
+    CORE_CHECK(!text || message.code == code, "%s: %s", name, mcor_says_name(message.code));
     char list[200];
     snprintf(list, sizeof list, "%s", words ? words : "");
     for (char* word = strtok(list, "|"); text && word; word = strtok(NULL, "|"))
@@ -57,17 +59,58 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
     warning_call call;                                                                             \
     begin_call(&call);                                                                             \
     statement;                                                                                     \
-    assert_int_equal(check_call(*state, &call, #statement, MCOR_WARNING_COUNT, NULL), 0);          \
+    assert_int_equal(                                                                              \
+      check_call(*state, &call, #statement, MCOR_WARNING_COUNT, MCOR_SAYS_NOTHING, NULL), 0);      \
   } while (0)
 
-#define WARNED(kind, words, statement)                                                             \
+#define WARNED(kind, code, words, statement)                                                       \
   do                                                                                               \
   {                                                                                                \
     warning_call call;                                                                             \
     begin_call(&call);                                                                             \
     statement;                                                                                     \
-    assert_int_equal(check_call(*state, &call, #statement, kind, words), 1);                       \
+    assert_int_equal(check_call(*state, &call, #statement, kind, MCOR_SAYS_##code, words), 1);     \
   } while (0)
+
+/* Slots take words; what is none stays; a value that is cut does no harm. */
+static int word_of(void* user, const char* name, const char* value, char* word, size_t size)
+{
+  (void)user;
+  snprintf(word, size, "<%s|%s>", name, value);
+  return strcmp(name, "unknown") != 0;
+}
+
+static void expect_filled(const char* text, mcor_word word, const char* expected)
+{
+  char* filled = mcor_fill_slots(text, word, NULL);
+  assert_string_equal(filled, expected);
+  free(filled);
+}
+
+static void test_slots(void** state)
+{
+  expect_filled(
+    "a {cube_size} b {unknown}, {x y z}.", word_of, "a <cube_size|> b {unknown}, <x|y z>.");
+  expect_filled("{cube_size} {precision double}", NULL, "cube_size precision=double");
+  expect_filled("{cube_size} {precision double} {field sum} {smoothing_length}", mcor_label_word,
+    "Cube Size Field Precision double Shepard Normalization off Smoothing Length Array");
+  expect_filled("{} { cube_size} {Cube} {no_option} {cube_size", NULL,
+    "{} { cube_size} {Cube} {no_option} {cube_size");
+  char text[600] = "{fluid ";
+  memset(text + 7, 'x', 590);
+  text[597] = '}';
+  expect_filled(text, NULL, text);
+  assert_null(mcor_fill_slots(NULL, NULL, NULL));
+  for (int code = 0; code < MCOR_SAYS_COUNT; ++code)
+  {
+    CORE_FREED char* text_in_c = mcor_fill_slots(mcor_says_text((mcor_says)code), NULL, NULL);
+    CORE_FREED char* label =
+      mcor_fill_slots(mcor_says_text((mcor_says)code), mcor_label_word, NULL);
+    CORE_CHECK(!strpbrk(text_in_c, "{}") && !strpbrk(label, "{}"), "no word: %s", label);
+  }
+  assert_null(mcor_says_text(MCOR_SAYS_COUNT));
+  (void)state;
+}
 
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
                         wide = { .constant = 2.1 }, far_off = { .constant = 0.0013 };
@@ -82,25 +125,25 @@ static void test_neighbours(void** state)
   SILENT(call.input.estimate_smoothing_length = 1);
   SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
   SILENT(call.options.sph_kernel = MCOR_WENDLAND_C6; call.input.smoothing_length = wide);
-  WARNED(MCOR_WARN_NEIGHBOURS, "quartic kernel, 60 to 200|1 to 1.7 times|Or the kernel is wendland",
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "quartic|60 to 200|1 to 1.7|wendland",
          call.options.sph_kernel = MCOR_QUARTIC_SPLINE;
          call.input.smoothing_length = wide);
-  WARNED(MCOR_WARN_NEIGHBOURS,
-    "smoothing length is 2.6|30 to 100|cubic|support radius (there is an option",
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
+    "2.6|30 to 100|cubic|{smoothing_length_is_support_radius}",
     call.input.smoothing_length = twice);
-  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|not the support radius",
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.65|not the support radius",
          call.input.smoothing_length_is_support_radius = 1;
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|unit of the positions",
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.65|unit of the positions",
          call.input.smoothing_length = half;
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_NEIGHBOURS, "has 1 neighbours|no other particle|unit of the positions",
-         call.input.smoothing_length = far_off;
-         call.options.cube_size = 1; call.options.node_threshold = 0;
-         call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_NEIGHBOURS, "Check the volumes, or masses and densities|unit of the positions",
+  WARNED(
+    MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
+    "1 neighbours|no other particle|unit of the positions", call.input.smoothing_length = far_off;
+    call.options.cube_size = 1; call.options.node_threshold = 0; call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_NEIGHBOURS, VOLUMES_TOO_LARGE, "{volume}",
     call.input.volume = (mcor_array){ .constant = 1000 });
-  WARNED(MCOR_WARN_NEIGHBOURS, "All 1000 fluid particles are at the same point",
+  WARNED(MCOR_WARN_NEIGHBOURS, ALL_AT_ONE_POINT, "1000",
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is usual */
@@ -132,10 +175,9 @@ static void tilt(particle_set* set, double height, int off)
 
 static void test_tilted_plane(void** state)
 {
-  WARNED(MCOR_WARN_PLANE, "tilted in space|(0.6, -0.8, |turn them|otherwise set the dimension to 3",
-         tilt(&call.set, 0, 0);
+  WARNED(MCOR_WARN_PLANE, PLANE_TILTED, "(0.6, -0.8, |{dimension 3}", tilt(&call.set, 0, 0);
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_PLANE, "tilted in space|extent along it is 0.0", tilt(&call.set, 0.003, 0);
+  WARNED(MCOR_WARN_PLANE, PLANE_TILTED, "is 0.0", tilt(&call.set, 0.003, 0);
          call.options.vertex_threshold = 0);
   SILENT(tilt(&call.set, 0, 0); call.options.vertex_threshold = 0; call.options.dimension = 3);
   SILENT(tilt(&call.set, 0.2, 0); call.options.vertex_threshold = 0);
@@ -146,10 +188,10 @@ static void test_tilted_plane(void** state)
 
 static void test_plane(void** state)
 {
-  WARNED(MCOR_WARN_PLANE, "along y|0 times", flatten(&call.set, 0);
+  WARNED(MCOR_WARN_PLANE, PLANE_IN_SPACE, "along y|0 times", flatten(&call.set, 0);
          call.options.vertex_threshold = 0; call.options.dimension = 3);
   SILENT(flatten(&call.set, 0)); /* two dimensions */
-  WARNED(MCOR_WARN_PLANE, "along y|is 0.06", flatten(&call.set, 0.01);
+  WARNED(MCOR_WARN_PLANE, PLANE_IN_SPACE, "along y|is 0.06", flatten(&call.set, 0.01);
          call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.01); /* so few may be anything */
@@ -162,20 +204,19 @@ static void test_plane(void** state)
 
 static void test_iso_value(void** state)
 {
-  WARNED(MCOR_WARN_ISO_VALUE, "100 is outside|scalar", call.iso[0] = 100);
-  WARNED(MCOR_WARN_ISO_VALUE, "-1000 is outside|Height|to 8.", call.input.scalar.name = "Height";
+  WARNED(MCOR_WARN_ISO_VALUE, ISO_OUTSIDE, "100|scalar", call.iso[0] = 100);
+  WARNED(MCOR_WARN_ISO_VALUE, ISO_OUTSIDE, "-1000|Height|to 8.", call.input.scalar.name = "Height";
          call.iso[0] = 0; call.iso[1] = -1000; call.options.iso_count = 2);
-  WARNED(MCOR_WARN_ISO_VALUE, "100 (and 1 more)", call.iso[0] = 100; call.iso[1] = -1000;
-         call.options.iso_count = 2);
-  WARNED(MCOR_WARN_ISO_VALUE, "100 is outside", call.iso[0] = 100; call.options.field = MCOR_SUM);
-  WARNED(
-    MCOR_WARN_TRIMMED, "does not reach the iso value where the weight sum", call.iso[0] = 8.4;
-    call.options.field = MCOR_SUM);
+  WARNED(MCOR_WARN_ISO_VALUE, ISO_OUTSIDE, "100 (and 1 more)", call.iso[0] = 100;
+         call.iso[1] = -1000; call.options.iso_count = 2);
+  WARNED(MCOR_WARN_ISO_VALUE, ISO_OUTSIDE, "100", call.iso[0] = 100; call.options.field = MCOR_SUM);
+  WARNED(MCOR_WARN_TRIMMED, ISO_NOT_REACHED, "{node_threshold 0}", call.iso[0] = 8.4;
+         call.options.field = MCOR_SUM);
 }
 
 static void test_precision(void** state)
 {
-  WARNED(MCOR_WARN_PRECISION, "single precision|of the smallest smoothing length|double precision",
+  WARNED(MCOR_WARN_PRECISION, GRID_TOO_LONG_FOR_SINGLE, "{precision double}",
          call.options.level_limit = MCOR_CUBE_LEVELS - 1;
          call.set.smoothing_length[5] = 1.3 / 4000);
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.options.precision = MCOR_FLOAT64;
@@ -248,9 +289,8 @@ static void test_told_residual(void** state)
 static void test_tolerance(void** state)
 {
   SILENT(call.options.tolerance = 1e-9; call.options.preview = 1);
-  WARNED(MCOR_WARN_TOLERANCE, "vertices are off the iso value|tolerance|double precision",
-    call.options.tolerance = 1e-9);
-  WARNED(MCOR_WARN_TOLERANCE, "a higher iteration limit", call.options.iteration_limit = 1);
+  WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{precision double}", call.options.tolerance = 1e-9);
+  WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{iteration_limit}", call.options.iteration_limit = 1);
   SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
   warning_call call; /* what rounding leaves is told by the statistics alone */
   begin_call(&call);
@@ -261,30 +301,30 @@ static void test_tolerance(void** state)
     surface.statistics.vertices_above_tolerance = 2;
     surface.statistics.residual_max =
       (i ? 2e-5 : 2e-6) * (surface.statistics.scalar_max - surface.statistics.scalar_min);
-    CORE_FREED char* text =
+    CORE_MESSAGE message =
       mcor_describe_warning(MCOR_WARN_TOLERANCE, &call.input, &call.options, &surface);
-    CORE_CHECK((text != NULL) == (i == 1), "%s", text ? text : "not given");
+    CORE_CHECK((message.text != NULL) == (i == 1), "%s", mcor_says_name(message.code));
   }
   particle_set_free(&call.set);
 }
 
 static void test_trimmed(void** state)
 {
-  WARNED(MCOR_WARN_TRIMMED, "triangles were trimmed|weight sum|vertex threshold 3",
+  WARNED(MCOR_WARN_TRIMMED, ALL_TRIMMED, "triangles|weight sum|threshold 3",
     call.options.vertex_threshold = 3);
-  WARNED(MCOR_WARN_TRIMMED, "boundary eigenvalue|vertex threshold 3|0.3",
+  WARNED(MCOR_WARN_TRIMMED, ALL_TRIMMED, "eigenvalue|threshold 3|{vertex_threshold 0.3}",
          call.options.vertex_threshold = 3;
          call.options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE);
-  WARNED(MCOR_WARN_TRIMMED, "threshold 0.5, or the solids' share|wall share 0.01",
+  WARNED(MCOR_WARN_TRIMMED, ALL_TRIMMED, "threshold 0.5, or|wall share 0.01",
          call.options.wall_share = 0.01;
          call.set.has_solids = 1; for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
          call.input = core_input(&call.set));
-  WARNED(MCOR_WARN_TRIMMED, "everywhere on the surface, the solids' share|wall share 0.01",
+  WARNED(MCOR_WARN_TRIMMED, ALL_TRIMMED_BY_WALLS, "wall share 0.01",
          call.options.field = MCOR_WEIGHT_SUM;
          call.iso[0] = 0.4; call.options.wall_share = 0.01; call.set.has_solids = 1;
          for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
          call.input = core_input(&call.set));
-  WARNED(MCOR_WARN_TRIMMED, "node threshold 0.1|fill only 0.00",
+  WARNED(MCOR_WARN_TRIMMED, NODES_DISCARD_ALL, "0.1|0.00",
     call.input.volume = (mcor_array){ .constant = 0.001 });
 }
 
@@ -294,20 +334,19 @@ static void test_without_input(void** state)
   warning_call call;
   begin_call(&call);
   CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
-  assert_null(mcor_describe_warning(MCOR_WARNING_COUNT, &call.input, &call.options, &surface));
-  assert_null(mcor_describe_warning(MCOR_WARN_PLANE, NULL, &call.options, &surface));
+  assert_null(mcor_describe_warning(MCOR_WARNING_COUNT, &call.input, &call.options, &surface).text);
+  assert_null(mcor_describe_warning(MCOR_WARN_PLANE, NULL, &call.options, &surface).text);
   particle_set_free(&call.set);
 }
 
 static void test_single_points(void** state)
 {
-  assert_null(mcor_describe_single_points(0, 0.5));
-  assert_null(mcor_describe_single_points(INFINITY, 0.5));
-  assert_null(mcor_describe_single_points(1e6, 6.25));
-  char* text = mcor_describe_single_points(1e6, 6.24);
-  assert_non_null(text);
-  assert_non_null(strstr(text, "as large as 1e+06 to steps of 0.062, and cubes are 6.2:"));
-  free(text);
+  assert_null(mcor_describe_single_points(0, 0.5).text);
+  assert_null(mcor_describe_single_points(INFINITY, 0.5).text);
+  assert_null(mcor_describe_single_points(1e6, 6.25).text);
+  CORE_MESSAGE message = mcor_describe_single_points(1e6, 6.24);
+  assert_int_equal(message.code, MCOR_SAYS_POINTS_SINGLE);
+  assert_non_null(strstr(message.text, "1e+06 to steps of 0.062, and cubes are 6.2:"));
   (void)state;
 }
 
@@ -315,23 +354,21 @@ static void test_unused_type(void** state)
 {
   const double values[9] = { 0, 3, 0.5 };
   const int64_t counts[9] = { 12, INT64_C(5000000000), 1 };
-  char* text = mcor_describe_unused_type("Type", values, counts, 3);
-  assert_non_null(text);
-  assert_string_equal(text,
-    "Point array 'Type' is not used, and all particles count as fluid: it has 12 x 0, 5000000000 x "
-    "3, "
-    "1 x 0.5. If it tells fluid from walls, select it together with the value of the fluid.");
-  free(text);
-  text = mcor_describe_unused_type("Type", values, counts, 2);
-  assert_non_null(
-    strstr(text, "select it together with the value of the fluid, which seems to be 3."));
-  free(text);
-  text = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
-  assert_non_null(strstr(text, "The names of some blocks suggest walls"));
-  free(text);
-  assert_null(mcor_describe_unused_type("Type", values, counts, 1));
-  assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1));
-  assert_null(mcor_describe_unused_type(NULL, values, counts, 3));
+  mcor_message message = mcor_describe_unused_type("Type", values, counts, 3);
+  assert_int_equal(message.code, MCOR_SAYS_TYPE_UNUSED);
+  assert_non_null(strstr(message.text, "'Type'"));
+  assert_non_null(strstr(message.text, " 12 x 0, 5000000000 x 3, 1 x 0.5."));
+  assert_non_null(strstr(message.text, "{fluid Type}"));
+  mcor_free_message(&message);
+  message = mcor_describe_unused_type("Type", values, counts, 2);
+  assert_non_null(strstr(message.text, "seems to be 3."));
+  mcor_free_message(&message);
+  message = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
+  assert_int_equal(message.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
+  mcor_free_message(&message);
+  assert_null(mcor_describe_unused_type("Type", values, counts, 1).text);
+  assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1).text);
+  assert_null(mcor_describe_unused_type(NULL, values, counts, 3).text);
   /* The longest there can be. */
   char name[500];
   double far[MCOR_PARTICLE_TYPES];
@@ -343,19 +380,20 @@ static void test_unused_type(void** state)
     far[i] = -1.23456e-300;
     many[i] = INT64_MAX;
   }
-  text = mcor_describe_unused_type(name, far, many, MCOR_PARTICLE_TYPES);
-  assert_non_null(strstr(text, "9223372036854775807 x -1.23456e-300. If it"));
-  free(text);
+  message = mcor_describe_unused_type(name, far, many, MCOR_PARTICLE_TYPES);
+  assert_non_null(strstr(message.text, "9223372036854775807 x -1.23456e-300. If it"));
+  mcor_free_message(&message);
   (void)state;
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
-    cmocka_unit_test(test_plane), cmocka_unit_test(test_tilted_plane),
-    cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
-    cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
-    cmocka_unit_test(test_told_residual), cmocka_unit_test(test_without_input),
-    cmocka_unit_test(test_single_points), cmocka_unit_test(test_unused_type) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_slots),
+    cmocka_unit_test(test_neighbours), cmocka_unit_test(test_plane),
+    cmocka_unit_test(test_tilted_plane), cmocka_unit_test(test_iso_value),
+    cmocka_unit_test(test_trimmed), cmocka_unit_test(test_tolerance),
+    cmocka_unit_test(test_precision), cmocka_unit_test(test_told_residual),
+    cmocka_unit_test(test_without_input), cmocka_unit_test(test_single_points),
+    cmocka_unit_test(test_unused_type) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

@@ -436,10 +436,10 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
 }
 
 /* In a context that opens no device, but has the sentence. job.eta: 0 for densities. */
-static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, char** why)
+static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor_message* why)
 {
   mcor_context* context = calloc(1, sizeof *context);
-  *why = NULL;
+  *why = MCOR_NO_MESSAGE;
   if (!context)
   {
     return MCOR_OUT_OF_CAPACITY;
@@ -457,17 +457,13 @@ static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, char
   {
     status = mcor_allocated(context, !job->failed[s]);
   }
-  *why = status == MCOR_OK ? NULL : malloc(sizeof context->error);
-  if (*why)
-  {
-    memcpy(*why, context->error, sizeof context->error);
-  }
+  *why = mcor_last_message(context);
   free(context);
   return status;
 }
 
 mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
-  double eta, int64_t count, double* lengths, char** why)
+  double eta, int64_t count, double* lengths, mcor_message* why)
 {
   mcor_neighbour_job job = {
     .input = input, .options = options, .eta = 1, .wanted = count, .out = lengths
@@ -476,7 +472,7 @@ mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_opti
 }
 
 mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options, int64_t count,
-  double* densities, char** why)
+  double* densities, mcor_message* why)
 {
   mcor_neighbour_job job = {
     .input = input, .options = options, .wanted = count, .out = densities

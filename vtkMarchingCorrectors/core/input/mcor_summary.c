@@ -96,13 +96,9 @@ char* mcor_text(const char* format, ...)
   return text;
 }
 
-char* mcor_describe_estimate(double cells)
+mcor_message mcor_describe_estimate(double cells)
 {
-  return !(cells >= MCOR_HUGE_CELLS)
-    ? NULL
-    : mcor_text("The fluid fills about %g cells of the virtual grid, so this may take minutes and "
-                "much memory. A larger cube size takes less; the run can be cancelled.",
-        cells);
+  return cells >= MCOR_HUGE_CELLS ? mcor_say(MCOR_SAY(RUN_HUGE), cells) : MCOR_NO_MESSAGE;
 }
 
 char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics)

@@ -54,7 +54,7 @@ static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool
                                                                                    : "";
 }
 
-static char* mcor_warn_neighbours(const mcor_suspicion* s)
+static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_sph_kernel kernel = s->options->sph_kernel;
@@ -71,27 +71,23 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
   const bool unusual = !s->input->estimate_smoothing_length && (few || many);
   if (n->fluid_particles < MCOR_FEW_PARTICLES || !(unusual || n->filled_median > MCOR_MOST_FILLED))
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
   if (!unusual)
   {
-    return mcor_text("Check the volumes, or masses and densities: they fill the supports of the "
-                     "particles %.3g times (median), so weights in the fluid are about that, not "
-                     "1. Perhaps they are not in the unit of the positions.",
-      n->filled_median);
+    return mcor_say(MCOR_SAY(VOLUMES_TOO_LARGE), n->filled_median);
   }
   if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
   {
-    return mcor_text(
-      "All %lld fluid particles are at the same point. Is this the array of positions?",
-      (long long)n->fluid_particles);
+    return mcor_say(MCOR_SAY(ALL_AT_ONE_POINT), (long long)n->fluid_particles);
   }
   const bool is_radius = s->input->smoothing_length_is_support_radius;
   const char* why = few && is_radius ? "Perhaps the array holds the smoothing length, not the "
                                        "support radius, or is not in the unit of the positions."
     : few || is_radius ? "Perhaps the smoothing length is not in the unit of the positions."
-                       : "Perhaps the array holds the support radius (there is an option for "
-                         "that), or is not in the unit of the positions.";
+                       : "Perhaps the array holds the support radius (then use "
+                         "{smoothing_length_is_support_radius}), or is not in the unit of the "
+                         "positions.";
   const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)
@@ -99,12 +95,9 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
     snprintf(times, sizeof times, "%.3g times the distance %.4g of the nearest particle",
       h / spacing, spacing);
   }
-  return mcor_text("Check the smoothing length: a fluid particle has %.0f neighbours within its "
-                   "support radius; its smoothing length is %.4g, %s (medians). With the %s "
-                   "kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
-    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
-    mcor_kernel_of(kernel)->neighbours[plane], wendland ? 2.2 : 1.7, why,
-    *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
+  return mcor_say(MCOR_SAY(NEIGHBOURS_UNUSUAL), n->neighbours_median, h, times,
+    mcor_sph_kernel_name(kernel), mcor_kernel_of(kernel)->neighbours[plane], wendland ? 2.2 : 1.7,
+    why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 /* Warns where less than so many steps of single precision lie between nearest particles. */
@@ -118,7 +111,7 @@ static double mcor_single_step(double largest)
 
 /* Warns where steps at the largest coordinate are too long, and all of the fluid's coordinates are
  * numbers of single precision. */
-static char* mcor_warn_coarse(const mcor_suspicion* s)
+static mcor_message mcor_warn_coarse(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_input* input = s->input;
@@ -144,19 +137,14 @@ static char* mcor_warn_coarse(const mcor_suspicion* s)
     const double x = mcor_array_at(&coordinates, i, 0);
     coarse = (input->solid && input->solid[i / 3]) || (double)(float)x == x;
   }
-  return !coarse
-    ? NULL
-    : mcor_text("The positions are too coarse: they were stored in single precision, which rounds "
-                "%c to steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and "
-                "volumes are wrong by about as much. Subtract a constant from the coordinates, or "
-                "store them in double precision, where they are written.",
-        "xyz"[axis], step, n -> spacing_median);
+  return coarse ? mcor_say(MCOR_SAY(POSITIONS_COARSE), "xyz"[axis], step, n -> spacing_median)
+                : MCOR_NO_MESSAGE;
 }
 
 /* Particles may lie up to this many smoothing lengths beyond a period. */
 #define MCOR_BEYOND_PERIOD 1
 
-static char* mcor_warn_period(const mcor_suspicion* s)
+static mcor_message mcor_warn_period(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   for (int a = 0; a < 3; ++a)
@@ -165,59 +153,48 @@ static char* mcor_warn_period(const mcor_suspicion* s)
     if (p[1] > p[0] &&
       n->fluid_extent[a] > p[1] - p[0] + MCOR_BEYOND_PERIOD * n->smoothing_length_median)
     {
-      return mcor_text(
-        "The fluid particles extend over %.6g along %c, farther than the period %.6g: those beyond "
-        "it were moved by whole periods, onto others. Is the period right?",
-        n->fluid_extent[a], "xyz"[a], p[1] - p[0]);
+      return mcor_say(MCOR_SAY(PERIOD_EXCEEDED), n->fluid_extent[a], "xyz"[a], p[1] - p[0]);
     }
   }
-  return NULL;
+  return MCOR_NO_MESSAGE;
 }
 
-static char* mcor_warn_plane(const mcor_suspicion* s)
+static mcor_message mcor_warn_plane(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const bool many = n->fluid_particles >= MCOR_FEW_PARTICLES;
   const double h = n->smoothing_length_median, *e = n->fluid_extent;
-  char* flat = NULL;
+  mcor_message flat = MCOR_NO_MESSAGE;
   double normal[3];
   bool tilted = false;
   for (int a = 0; a < 3; ++a)
   {
     const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
-    if (!flat && n->dimension != 2 && many && e[a] < 0.1 * h && other > 8 * h)
+    if (!flat.text && n->dimension != 2 && many && e[a] < 0.1 * h && other > 8 * h)
     {
-      flat = mcor_text("The fluid particles lie in a plane: their extent along %c is %.3g, %.4g "
-                       "times the smoothing length. The kernels are three-dimensional, so in a "
-                       "two-dimensional simulation the weights in the fluid are not about 1.",
-        "xyz"[a], e[a], e[a] / h);
+      const char axis = "xyz"[a];
+      flat = mcor_say(MCOR_SAY(PLANE_IN_SPACE), axis, e[a], e[a] / h, axis);
     }
     normal[a] = floor(n->plane_normal[a] * 1e4 + 0.5) / 1e4;
     tilted = tilted || normal[a] != 0;
   }
-  if (!flat && tilted && s->options->dimension == 0 && many)
+  if (!flat.text && tilted && s->options->dimension == 0 && many)
   {
-    flat =
-      mcor_text("The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, "
-                "%.4g), and their extent along it is %.3g, %.2g times the smoothing length. They "
-                "count as three-dimensional, so the weights in the fluid are not about 1. In a "
-                "two-dimensional simulation, turn them into a plane of constant x, y or z that all "
-                "share exactly; otherwise set the dimension to 3.",
-        normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
+    flat = mcor_say(MCOR_SAY(PLANE_TILTED), normal[0], normal[1], normal[2], n->plane_extent,
+      n->plane_extent / h);
   }
-  char* coarse = flat ? mcor_warn_coarse(s) : NULL;
-  if (coarse) /* rounding made it flat */
+  mcor_message coarse = flat.text ? mcor_warn_coarse(s) : MCOR_NO_MESSAGE;
+  if (coarse.text) /* rounding made it flat */
   {
-    free(flat);
-    flat = NULL;
+    mcor_free_message(&flat);
+    mcor_free_message(&coarse);
   }
-  free(coarse);
   return flat;
 }
 
 /* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies
  * between the particles' values; a sum lies between 0 and somewhat above these. */
-static char* mcor_warn_iso_value(const mcor_suspicion* s)
+static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -235,7 +212,7 @@ static char* mcor_warn_iso_value(const mcor_suspicion* s)
   }
   if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o) || outside == 0 || !(empty || strict))
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
   const char* name = s->input->scalar.name ? s->input->scalar.name : "the scalar";
   char others[40] = "";
@@ -243,32 +220,23 @@ static char* mcor_warn_iso_value(const mcor_suspicion* s)
   {
     snprintf(others, sizeof others, " (and %d more)", outside - 1);
   }
-  return mcor_text("Iso value %.6g%s is outside the range of %s, %.6g to %.6g.",
-    o->iso_values[first], others, name, low, high);
+  return mcor_say(MCOR_SAY(ISO_OUTSIDE), o->iso_values[first], others, name, low, high);
 }
 
 /* Where particles fill a small share of space, no cell has all weights above the threshold. */
-static char* mcor_warn_discarded(const mcor_suspicion* s)
+static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
   if (o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && n->filled_median > 0 &&
     n->filled_median <= o->node_threshold)
   {
-    return mcor_text(
-      "There is no surface, because the node threshold %g discards all cells of lower weight sum: "
-      "the particle volumes fill only %.3g of the supports (median). Are volumes, or masses and "
-      "densities, in the same units as the smoothing length?",
-      o->node_threshold, n->filled_median);
+    return mcor_say(MCOR_SAY(NODES_DISCARD_ALL), o->node_threshold, n->filled_median);
   }
   if (n->triangles_below_threshold > 0)
   {
-    return mcor_text("The node threshold %g removed the whole surface of %lld %s: all its nodes "
-                     "have a lower weight sum. If the fluid ends in a vacuum, as gas and planets "
-                     "do, use the sum as the field, and 0 as the node threshold and the vertex "
-                     "threshold; else check the units of volumes, or of masses and densities.",
-      o->node_threshold, (long long)n->triangles_below_threshold,
-      n->dimension == 2 ? "lines" : "triangles");
+    return mcor_say(MCOR_SAY(NODES_REMOVED_ALL), o->node_threshold,
+      (long long)n->triangles_below_threshold, n->dimension == 2 ? "lines" : "triangles");
   }
   /* Whole bricks may lie below the threshold, and are not looked at. */
   const double* extent = n->fluid_extent; /* 0: all particles are at one point */
@@ -278,17 +246,14 @@ static char* mcor_warn_discarded(const mcor_suspicion* s)
     is_between =
       is_between || (n->scalar_min < o->iso_values[i] && o->iso_values[i] < n->scalar_max);
   }
-  return !(is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
-           !mcor_has_box(o) && o->node_threshold > 0)
-    ? NULL
-    : mcor_text("The field does not reach the iso value where the weight sum is above the node "
-                "threshold %g. If the fluid ends in a vacuum, as gas and planets do, use the sum "
-                "as the field, and 0 as the node threshold and the vertex threshold.",
-        o->node_threshold);
+  return is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
+      !mcor_has_box(o) && o->node_threshold > 0
+    ? mcor_say(MCOR_SAY(ISO_NOT_REACHED), o->node_threshold)
+    : MCOR_NO_MESSAGE;
 }
 
 /* Says which threshold may have removed all of an empty surface. */
-static char* mcor_warn_trimmed(const mcor_suspicion* s)
+static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -303,28 +268,25 @@ static char* mcor_warn_trimmed(const mcor_suspicion* s)
   if (s->surface->triangle_count > 0 || s->surface->line_count > 0 ||
     n->triangles_before_trimming == 0 || mcor_has_box(o))
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
+  }
+  const long long count = (long long)n->triangles_before_trimming;
+  const char *things = plane ? "lines" : "triangles", *where = plane ? "them" : "the surface";
+  if (o->field == MCOR_WEIGHT_SUM)
+  {
+    return mcor_say(MCOR_SAY(ALL_TRIMMED_BY_WALLS), count, things, where, n->wall_share);
   }
   if (wall)
   {
-    snprintf(share, sizeof share, "the solids' share of the weight is above the wall share %g",
-      n->wall_share);
+    snprintf(
+      share, sizeof share, ", or the solids' share is above the wall share %g", n->wall_share);
   }
-  if (o->field == MCOR_WEIGHT_SUM)
-  {
-    return mcor_text("All %lld %s were trimmed: everywhere on %s, %s.",
-      (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
-      plane ? "them" : "the surface", share);
-  }
-  return mcor_text(
-    "All %lld %s were trimmed: everywhere on %s the %s is below the vertex threshold %g%s%s. %s",
-    (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
-    plane ? "them" : "the surface", eigenvalue ? "boundary eigenvalue" : "weight sum",
-    o->vertex_threshold, wall ? ", or " : "", share,
-    eigenvalue ? "Try 0.3."
+  return mcor_say(MCOR_SAY(ALL_TRIMMED), count, things, where,
+    eigenvalue ? "boundary eigenvalue" : "weight sum", o->vertex_threshold, share,
+    eigenvalue ? "Try {vertex_threshold 0.3}."
                : "In the fluid, weights are about 1 if volumes, masses and densities are right. If "
-                 "the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and "
-                 "thresholds of 0.");
+                 "the fluid ends in a vacuum, as gas and planets do, use {field sum}, "
+                 "{node_threshold 0} and {vertex_threshold 0}.");
 }
 
 /* A share of the smallest smoothing length: residuals are then off by about as much of the
@@ -334,20 +296,16 @@ static char* mcor_warn_trimmed(const mcor_suspicion* s)
 /* A share of the cube size; less where the grid is short. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
-static char* mcor_warn_precision(const mcor_suspicion* s)
+static mcor_message mcor_warn_precision(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const double share = n->position_error / n->smoothing_length_min;
   if (s->options->precision != MCOR_FLOAT32 || n->smoothing_length_min == 0 ||
     share <= MCOR_MOST_POSITION_ERROR || n->position_error < MCOR_LONG_GRID_ERROR * n->cube_size)
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
-  return mcor_text(
-    "The virtual grid is so long compared to its cubes of %.3g that single precision rounds "
-    "positions by up to %.3g, %.2g of the smallest smoothing length; surfaces near the smallest "
-    "particles are off by about that much. Try double precision.",
-    n->cube_size, n->position_error, share);
+  return mcor_say(MCOR_SAY(GRID_TOO_LONG_FOR_SINGLE), n->cube_size, n->position_error, share);
 }
 
 /* Bounds the rounding error of the field in single precision, as a share of the scalar's range. */
@@ -355,7 +313,7 @@ static char* mcor_warn_precision(const mcor_suspicion* s)
 
 /* Counts the vertices that the correction could not bring to the iso value (a preview does not
  * try). Rounding alone is worth a warning only if a tolerance asks for more. */
-static char* mcor_warn_tolerance(const mcor_suspicion* s)
+static mcor_message mcor_warn_tolerance(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -364,58 +322,51 @@ static char* mcor_warn_tolerance(const mcor_suspicion* s)
     n->residual_max <= MCOR_ROUNDED * range;
   if (o->preview || n->vertices_above_tolerance == 0 || is_rounding)
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
-  return mcor_text("%lld of %lld vertices are off the iso value by more than the tolerance %.3g, "
-                   "by %.3g at most, of a range of %.4g. Try %s.",
-    (long long)n->vertices_above_tolerance, (long long)n->correction_count, o->tolerance * range,
-    n->residual_max, range,
-    n->iterations_max >= o->iteration_limit ? "a higher iteration limit"
-      : o->precision == MCOR_FLOAT32        ? "double precision"
-                                            : "a larger tolerance");
+  return mcor_say(MCOR_SAY(OFF_ISO_VALUE), (long long)n->vertices_above_tolerance,
+    (long long)n->correction_count, o->tolerance * range, n->residual_max, range,
+    n->iterations_max >= o->iteration_limit ? "a higher {iteration_limit}"
+      : o->precision == MCOR_FLOAT32        ? "{precision double}"
+                                            : "a larger {tolerance}");
 }
 
-static char* mcor_warn_far(const mcor_suspicion* s)
+static mcor_message mcor_warn_far(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
-  const bool one = n->far_particles == 1;
-  return n->far_particles == 0
-    ? NULL
-    : mcor_text("%lld %s so far away from all others that the virtual grid cannot reach %s, and %s "
-                "left out: %sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave "
-                "%s out by a range of positions, or use a larger cube size.",
-        (long long)n->far_particles, one ? "particle is" : "particles are", one ? "it" : "them",
-        one ? "was" : "were", one ? "" : "the first one, ", (long long)n->far_first,
-        n->far_place[0], n->far_place[1], n->far_place[2], one ? "it" : "them");
+  const long long first = (long long)n->far_first;
+  const double* x = n->far_place;
+  return n->far_particles == 0 ? MCOR_NO_MESSAGE
+    : n->far_particles == 1
+    ? mcor_say(MCOR_SAY(PARTICLE_FAR), first, x[0], x[1], x[2])
+    : mcor_say(MCOR_SAY(PARTICLES_FAR), (long long)n->far_particles, first, x[0], x[1], x[2]);
 }
 
-char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
+mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
-  char* (*const checks[MCOR_WARNING_COUNT])(const mcor_suspicion*) = { mcor_warn_neighbours,
+  mcor_message (*const checks[MCOR_WARNING_COUNT])(const mcor_suspicion*) = { mcor_warn_neighbours,
     mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
     mcor_warn_tolerance, mcor_warn_far, mcor_warn_period, mcor_warn_coarse };
   /* With globals, the input is only a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
   return checks[warning](&(mcor_suspicion){ input, options, surface });
 }
 
-char* mcor_describe_unused_type(
+mcor_message mcor_describe_unused_type(
   const char* name, const double* values, const int64_t* counts, int count)
 {
   if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
   {
-    return NULL;
+    return MCOR_NO_MESSAGE;
   }
   if (strcmp(name, MCOR_WALL_BLOCK) == 0)
   {
-    return mcor_text("The names of some blocks suggest walls, but all particles count as fluid. "
-                     "Let the fluid be detected, or select '" MCOR_WALL_BLOCK
-                     "' as the array that marks the fluid, with the value 0.");
+    return mcor_say(MCOR_SAY(WALL_BLOCKS_UNUSED), MCOR_WALL_BLOCK);
   }
   char list[40 * MCOR_PARTICLE_TYPES] = "", seems[50] = "", *end = list;
   double low = values[0], high = values[0], fluid;
@@ -431,23 +382,16 @@ char* mcor_describe_unused_type(
   {
     snprintf(seems, sizeof seems, ", which seems to be %g", fluid);
   }
-  return mcor_text(
-    "Point array '%.200s' is not used, and all particles count as fluid: it has%s. If it tells "
-    "fluid from walls, select it together with the value of the fluid%s.",
-    name, list, seems);
+  return mcor_say(MCOR_SAY(TYPE_UNUSED), name, list, name, seems);
 }
 
 /* Steps of coordinates as a share of the cube size: some triangles are far smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
-char* mcor_describe_single_points(double largest, double cube_size)
+mcor_message mcor_describe_single_points(double largest, double cube_size)
 {
   const double step = mcor_single_step(largest);
-  return !(step > MCOR_MOST_STEP * cube_size)
-    ? NULL
-    : mcor_text(
-        "The surface's points are stored in single precision, which rounds coordinates as large as "
-        "%.3g to steps of %.2g, and cubes are %.2g: triangles are distorted or have no area. Set "
-        "Output Points Precision to Double, or subtract a constant from the coordinates.",
-        largest, step, cube_size);
+  return step > MCOR_MOST_STEP * cube_size
+    ? mcor_say(MCOR_SAY(POINTS_SINGLE), largest, step, cube_size)
+    : MCOR_NO_MESSAGE;
 }

@@ -1,0 +1,169 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The sentences of mcor_says.def, and what fills their slots. */
+
+#include "mcor_internal.h"
+
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct
+{
+  const char *name, *text;
+} mcor_sentences[MCOR_SAYS_COUNT] = {
+  { "NOTHING", "" },
+#define SAYS(code, text) { #code, text },
+#include "mcor_says.def"
+};
+
+/* label: in panels; "": the name in VTK's filters, in words. */
+static const struct
+{
+  const char *slot, *label, *property;
+} mcor_slots[] = {
+#define SLOT(slot, label) { slot, label, "" },
+#include "mcor_says.def"
+#define BOUNDS(member, scope, property) { #member, "", property },
+#define OPTION(member, usual, legal, words, scope, property) { #member, "", property },
+#include "mcor_options.def"
+};
+
+#define MCOR_SLOT_COUNT ((int)(sizeof mcor_slots / sizeof mcor_slots[0]))
+
+const char* mcor_says_name(mcor_says code)
+{
+  return (unsigned)code < MCOR_SAYS_COUNT ? mcor_sentences[code].name : NULL;
+}
+
+const char* mcor_says_text(mcor_says code)
+{
+  return (unsigned)code < MCOR_SAYS_COUNT ? mcor_sentences[code].text : NULL;
+}
+
+/* Returns the number of the slot's row; -1 if there is none. */
+static int mcor_find_slot(const char* slot)
+{
+  for (int i = 0; i < MCOR_SLOT_COUNT; ++i)
+  {
+    if (strcmp(mcor_slots[i].slot, slot) == 0)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+int mcor_member_word(void* user, const char* name, const char* value, char* word, size_t size)
+{
+  (void)user;
+  snprintf(word, size, "%s%s%s", name, *value ? "=" : "", value);
+  return mcor_find_slot(name) >= 0;
+}
+
+int mcor_label_word(void* user, const char* name, const char* value, char* word, size_t size)
+{
+  char whole[MCOR_WORD_SIZE];
+  snprintf(whole, sizeof whole, "%s %s", name, value);
+  const int with_value = mcor_find_slot(whole), row = mcor_find_slot(name);
+  if (with_value >= 0)
+  {
+    snprintf(word, size, "%s", mcor_slots[with_value].label);
+    return 1;
+  }
+  char label[MCOR_WORD_SIZE] = "", *end = label;
+  for (const char* p = row >= 0 ? mcor_slots[row].property : ""; *p; ++p)
+  {
+    const char* gap = end > label && isupper((unsigned char)*p) ? " " : "";
+    end += snprintf(end, sizeof label - (size_t)(end - label), "%s%c", gap, *p);
+  }
+  const char* words = row >= 0 && *mcor_slots[row].label ? mcor_slots[row].label : label;
+  snprintf(word, size, "%s%s%s", words, *value ? " " : "", value);
+  (void)user;
+  return *words != 0;
+}
+
+/* Divides what is between the braces at text[0] and *end into a name and a value; false if there
+ * is no name of a slot. */
+static bool mcor_read_slot(const char* text, const char** end, char* name, const char** value)
+{
+  size_t length = strspn(text + 1, "abcdefghijklmnopqrstuvwxyz_");
+  *end = text[0] == '{' ? strchr(text, '}') : NULL;
+  if (!*end || length == 0 || length >= MCOR_WORD_SIZE / 2 ||
+    (text[1 + length] != ' ' && text[1 + length] != '}') || *end - text >= MCOR_WORD_SIZE)
+  {
+    return false;
+  }
+  memcpy(name, text + 1, length);
+  name[length] = 0;
+  const char* from = text + 1 + length + (text[1 + length] == ' ');
+  char* copy = name + length + 1;
+  memcpy(copy, from, (size_t)(*end - from));
+  copy[*end - from] = 0;
+  *value = copy;
+  return true;
+}
+
+size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size)
+{
+  size_t used = 0;
+  word = word ? word : mcor_member_word;
+  while (*text)
+  {
+    const char *end, *value;
+    char name[2 * MCOR_WORD_SIZE], filled[MCOR_WORD_SIZE] = "";
+    const bool is_slot =
+      mcor_read_slot(text, &end, name, &value) && word(user, name, value, filled, sizeof filled);
+    const char* piece = is_slot ? filled : text;
+    const size_t length = is_slot ? strlen(filled) : 1;
+    for (size_t i = 0; i < length; ++i, ++used)
+    {
+      if (used + 1 < size)
+      {
+        out[used] = piece[i];
+      }
+    }
+    text = is_slot ? end + 1 : text + 1;
+  }
+  if (size > 0)
+  {
+    out[used < size ? used : size - 1] = 0;
+  }
+  return used;
+}
+
+char* mcor_fill_slots(const char* text, mcor_word word, void* user)
+{
+  const size_t size = text ? mcor_fill_text(text, word, user, NULL, 0) + 1 : 0;
+  char* out = text ? malloc(size) : NULL;
+  if (out)
+  {
+    mcor_fill_text(text, word, user, out, size);
+  }
+  return out;
+}
+
+mcor_message mcor_say(mcor_says code, const char* format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = vsnprintf(NULL, 0, format, arguments);
+  va_end(arguments);
+  mcor_message message = { code, length < 0 ? NULL : malloc((size_t)length + 1) };
+  va_start(arguments, format);
+  if (message.text)
+  {
+    vsnprintf(message.text, (size_t)length + 1, format, arguments);
+  }
+  va_end(arguments);
+  return message;
+}
+
+void mcor_free_message(mcor_message* message)
+{
+  free(message->text);
+  *message = MCOR_NO_MESSAGE;
+}

@@ -267,9 +267,8 @@ public:
 
   /**
    * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines:
-   * by lines) where values are above the iso value; they share the points of its border. With
-   * SOLIDS_WALL a free surface is closed at walls, too; lines that end at walls stay open. Trimming
-   * may leave it open. Off by default. An error with PAIRS or Filled.
+   * by lines) where values are above the iso value; they share the points of its border. Trimming
+   * and walls may leave it open. Off by default. An error with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
 

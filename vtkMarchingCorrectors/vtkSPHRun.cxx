@@ -145,6 +145,7 @@ bool vtkSPHAlgorithm::vtkRun::SetPeriod()
 {
   if (!this->Filter->DetectPeriod)
   {
+    mcor_move_period(&this->Options);
     return true;
   }
   std::string problem;
@@ -160,6 +161,7 @@ bool vtkSPHAlgorithm::vtkRun::SetPeriod()
     return false;
   }
   std::copy(period.begin(), period.end(), this->Options.periodic);
+  mcor_move_period(&this->Options);
   return true;
 }
 

@@ -66,8 +66,7 @@ WORDS = {
     "box": "(x0, x1, y0, y1, z0, z1): only the cells with their centres in this box; sides may be infinite.",
     "periodic": "(x0, x1, y0, y1, z0, z1): the particles repeat along each axis with x0 < x1; or three lengths, 0 "
                 "along axes that are not periodic.",
-    "capping": "True: the surface is closed at the sides of the period and of the box; the free surface also at walls "
-               "where it ends there (wall_share).",
+    "capping": "True: the surface is closed at the sides of the period and of the box.",
     "normals": "True: unit normals from the field's gradient.",
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
     "weight_sum": "True: the sum of the weights at the points.",

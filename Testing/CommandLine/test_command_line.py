@@ -124,8 +124,8 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
             ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
             ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
-            ([*good, *ISO, "--capping"], "--capping closes the surface at the sides of a period or a box, and the free "
-             "surface at walls; add --periodic, --box or --solids wall"),
+            ([*good, *ISO, "--capping"], "--capping closes the surface at the sides of a period or a box; add --periodic "
+             "or --box"),
             ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
             ([*good, *ISO, "--periodic", "0,1,1,0,0,1"],
              "--periodic needs a period of 0 or more along y"),

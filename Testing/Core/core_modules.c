@@ -307,7 +307,7 @@ enum
   TANK_LEVELS = 1,
   TANK_FLAT = 2,
   TANK_FILLED = 4 | TANK_FLAT,
-  TANK_CAPS = 8,    /* of whatever sides there are, and at walls */
+  TANK_CAPS = 8,    /* of whatever sides there are */
   TANK_PERIOD = 16, /* along y; in the plane along x */
   TANK_BOX = 32,
   TANK_TOPOLOGY = 64, /* by the field, with noise */
@@ -411,7 +411,6 @@ static int modules_tank(mcor_context* context, const mcor_input* input)
     { "tank_again", MCOR_SHEPARD, TANK_AGAIN },
     { "tank_wall", MCOR_SHEPARD, TANK_WALL },
     { "tank_wall_free_surface", MCOR_WEIGHT_SUM, TANK_WALL },
-    { "tank_wall_caps", MCOR_WEIGHT_SUM, TANK_WALL | TANK_CAPS },
     { "tank_box_caps", MCOR_SHEPARD, TANK_BOX | TANK_CAPS },
     { "tank_period", MCOR_SHEPARD, TANK_PERIOD | TANK_BOX },
     { "tank_period_caps", MCOR_WEIGHT_SUM, TANK_PERIOD | TANK_CAPS },

@@ -343,16 +343,16 @@ extern "C"
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is
      * that of one period and open at the periodic sides, where it meets itself: points a period
      * apart agree in all bits except for the rounded coordinate along the period. Each period is a
-     * whole number of cubes: the cube size is reduced to fit, by less than half. x0 = x1 (default
-     * 0): not periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
+     * whole number of cubes: the cube size is reduced to fit, by less than half. A box may lie across
+     * the sides of a period, which is moved then, see mcor_move_period. x0 = x1 (default 0): not
+     * periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
      * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of
      * whole_box). These caps share the points of the surface's border; their other points are
      * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
-     * Trimming also cuts caps, and leaves its own border open. Where MCOR_WEIGHT_SUM ends at solids
-     * (see wall_share), both values also close that border; the points of these caps lie on lattice
-     * edges, and their normals are those of triangles. With caps, all cubes have the smallest size.
+     * Trimming also cuts caps, and leaves its own border open, as is that at solids (see wall_share).
+     * With caps, all cubes have the smallest size.
      * With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
      * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be
      * combined with MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the
@@ -441,8 +441,6 @@ extern "C"
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
-    /* Triangles without a node threshold; counted only if there are none with it. */
-    int64_t triangles_below_threshold;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
     /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume
      * that a closed surface encloses, less cavities, unit L^3 (negative where values grow
@@ -472,7 +470,7 @@ extern "C"
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
-      /* linear: left at the linear cut, off the iso value; or cuts of caps at walls, off the share */
+      /* linear: left at the linear cut, off the iso value; */
       trim_vertices_linear;
     int64_t device_bytes_peak;
     char device[128], platform[128];

@@ -5,8 +5,6 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_cap.h"
-#include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
@@ -180,6 +178,10 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   mcor_flat flat;
   mcor_status status = mcor_flatten(context, input, options, &flat);
   context->run.options = &flat.options;
+  if (!options->globals)
+  {
+    mcor_move_period(&flat.options);
+  }
   mcor_far far = { 0 };
   if (status == MCOR_OK && flat.options.globals && flat.options.globals->measured.far_count > 0)
   {
@@ -202,11 +204,9 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
   free(far.solid);
-  mcor_end_fill(context);
   context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
-  mcor_end_box(context);
-  mcor_end_caps(context);
+  context->box.of_points = context->box.has_points = false; /* a probe's */
   if (status != MCOR_OK || !is_all)
   {
     context->kept.grid = context->kept.value = context->kept.nodes = false;

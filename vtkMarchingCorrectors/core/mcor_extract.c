@@ -42,9 +42,20 @@ static mcor_status mcor_extract_iso(
   /* [III-D.3] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context));
-  MCOR_TRY(mcor_cap(context));
-  MCOR_TRY(options->compact && mcor_compacts_late(context) ? mcor_compact(context) : MCOR_OK);
-  MCOR_TRY(mcor_take_lines(context));
+  context->mesh.cap_first = context->mesh.vertex_count;
+  context->mesh.cap_triangle_first = context->mesh.triangle_count;
+  if (mcor_makes_caps(context))
+  {
+    MCOR_TRY(mcor_cap(context));
+  }
+  if (options->compact && mcor_compacts_late(context))
+  {
+    MCOR_TRY(mcor_compact(context));
+  }
+  if (options->filled)
+  {
+    MCOR_TRY(mcor_take_lines(context));
+  }
   /* [III-D.4] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
@@ -55,11 +66,9 @@ static mcor_status mcor_extract_iso(
   return mcor_append_output(context, input, false, surface);
 }
 
-static mcor_status mcor_extract_all(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
+static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface)
 {
-  mcor_surface* surface = result;
-  mcor_free_surface(surface); /* left by a failed attempt */
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
@@ -70,7 +79,6 @@ static mcor_status mcor_extract_all(
     return MCOR_OK;
   }
   MCOR_TRY(mcor_prepare(context, input, options)); /* [III-A] */
-  MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   MCOR_RETURN_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
     "Filling needs the points on all edges of the virtual grid, which a compact contour lacks. Turn "
     "one of them off.");
@@ -81,57 +89,55 @@ static mcor_status mcor_extract_all(
     "Pair seeds need cubes of one size, and here cubes have up to %d. Choose uniform cubes, or "
     "complete seeds.",
     context->lattice.levels);
-  MCOR_TRY(context->grid.count > 0 ? mcor_begin_fill(context) : MCOR_OK);
-  for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
+  const bool has_particles = context->grid.count > 0; /* that reach the box */
+  if (has_particles && options->capping)
+  {
+    MCOR_TRY(mcor_check_caps(context));
+  }
+  if (has_particles && options->filled)
+  {
+    MCOR_TRY(mcor_begin_fill(context));
+  }
+  for (int i = 0; i < options->iso_count && has_particles; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
-  MCOR_TRY(mcor_fill_lines(context, input, surface));
-  if (surface->normals)
+  if (options->filled)
   {
-    MCOR_TRY(mcor_is_plane(context) ? mcor_finish_line_normals(context, surface)
-                                    : mcor_finish_normals(context, surface));
+    MCOR_TRY(mcor_fill_lines(context, input, surface));
+  }
+  if (surface->normals && mcor_is_plane(context))
+  {
+    MCOR_TRY(mcor_finish_line_normals(context, surface));
+  }
+  else if (surface->normals)
+  {
+    MCOR_TRY(mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_crop_surface(context, input, surface));
-  MCOR_TRY(mcor_is_plane(context) ? mcor_finish_lines(context, surface) : MCOR_OK);
+  if (mcor_is_plane(context))
+  {
+    MCOR_TRY(mcor_finish_lines(context, surface));
+  }
   MCOR_TRY(mcor_measure_surface(context, surface));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }
 
-/* Reports the progress of a further run inside a run that is nearly done. */
-static int mcor_report_end(void* user, double fraction, const char* phase)
+/* Makes the surface, and ends what phases keep on the host until then. */
+static mcor_status mcor_extract_body(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
 {
-  const mcor_options* options = user;
-  (void)fraction;
-  return options->progress(options->progress_user, 1, phase);
-}
-
-/* Finds whether the node threshold is why a surface is empty, by a run without it. A failure of
- * that run is ignored. */
-static void mcor_count_below_threshold(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics)
-{
-  mcor_surface surface = { 0 };
-  mcor_options own = *options;
-  mcor_input without = *input;
-  if (own.progress)
+  mcor_surface* surface = result;
+  mcor_free_surface(surface); /* left by a failed attempt */
+  const mcor_status status = mcor_extract_all(context, input, options, surface);
+  mcor_end_box(context);
+  if (options->capping || options->filled)
   {
-    own.progress = mcor_report_end;
-    own.progress_user = (void*)(uintptr_t)options;
+    mcor_end_caps(context);
+    mcor_end_fill(context);
   }
-  own.node_threshold = 0;
-  own.preview = 1;
-  own.outputs = 0;
-  own.capping = own.filled = own.compact = 0;
-  without.attribute_count = 0;
-  if (mcor_run_call(context, &without, &own, mcor_uses_solids(input, options), &surface.statistics,
-        mcor_extract_all, &surface) == MCOR_OK)
-  {
-    statistics->triangles_below_threshold = surface.statistics.triangles_before_trimming;
-  }
-  mcor_free_surface(&surface);
-  context->kept.value = context->kept.nodes = false;
+  return status;
 }
 
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
@@ -150,20 +156,7 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     "options.widen is %g, but input.widening is missing: the factors that mcor_widen finds.",
     options->widen);
   const mcor_status status = mcor_run_call(context, input, options,
-    mcor_uses_solids(input, options), &surface->statistics, mcor_extract_all, surface);
-  const mcor_statistics* s = &surface->statistics;
-  bool may_exist = false;
-  for (int i = 0; status == MCOR_OK && i < options->iso_count; ++i)
-  {
-    may_exist = may_exist || options->field != MCOR_SHEPARD ||
-      (options->iso_values[i] >= s->scalar_min && options->iso_values[i] <= s->scalar_max);
-  }
-  if (may_exist && s->triangles_before_trimming == 0 && s->fluid_particles > 0 &&
-    options->field != MCOR_WEIGHT_SUM && options->node_threshold > 0 &&
-    !options->ranks && !options->globals)
-  {
-    mcor_count_below_threshold(context, input, options, &surface->statistics);
-  }
+    mcor_uses_solids(input, options), &surface->statistics, mcor_extract_body, surface);
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

@@ -108,6 +108,11 @@ extern "C"
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
+  /* Moves each period that does not hold the box, of ranks the whole box, so that it does: it
+   * is then in the middle, or begins with the period if it is no shorter. mcor_extract does this by
+   * itself unless globals are given, which are to be measured with the period that is moved. */
+  void mcor_move_period(mcor_options* options);
+
   /* Measures an input for options.globals of later calls, in this or another context, with
    * otherwise the same options. Overwrites *globals; free it with mcor_free_globals.
    * MCOR_INVALID_DATA if no rank has any particles. */

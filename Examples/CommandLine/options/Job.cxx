@@ -154,11 +154,8 @@ const std::vector<Rule> Rules = {
     IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
     "the output is a {endings} file, or .pvd for a film, not '{output}'" },
   { Surfaces,
-    IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box") &&
-      !(j.Surface->GetFreeSurface() &&
-        j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL)),
-    "--capping closes the surface at the sides of a period or a box, and the free surface at "
-    "walls; add --periodic, --box or --solids wall" },
+    IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box")),
+    "--capping closes the surface at the sides of a period or a box; add --periodic or --box" },
   { Surfaces, IF(j.Has("--free-surface") && j.Has("--scalar")),
     "--free-surface contours the weight sum; leave out --scalar" },
   { Surfaces, IF(!j.Has("--free-surface") && !j.Has("--scalar")),

@@ -346,8 +346,7 @@ const std::vector<Option> Table = {
     "field data",
     SetPeriod },
   { "--capping", "",
-    "close the surface at the sides of the period and the box, where values exceed the iso value; "
-    "with --solids wall also the free surface at walls",
+    "close the surface at the sides of the period and the box, where values exceed the iso value",
     DO(j.Surface->CappingOn()) },
   { "--filled", "",
     "in two dimensions, triangles fill the region above the lowest iso value, in bands from each "

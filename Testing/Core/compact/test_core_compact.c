@@ -121,7 +121,7 @@ static const compact_case cases[] = {
     MCOR_FLOAT32, { 0 }, 0.7, 0.168 },
   { "levels", make_graded, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 4, 0, MCOR_TOPOLOGY_TABLE,
     MCOR_FLOAT32, { 0 }, 0.7, 0.002 },
-  { "walls", make_wall, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
+  { "walls", make_wall, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, MCOR_CAP_NONE, MCOR_TOPOLOGY_TABLE,
     MCOR_FLOAT32, { 0 }, 0.9, 0.1 },
   { "period", make_period, MCOR_SHEPARD, { 0.1, 0.1 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
     MCOR_FLOAT32, { 0, 12, 0, 10, 0, 11 }, 0.85, 0.06 },
@@ -141,7 +141,7 @@ static mcor_options options_of(const compact_case* at)
   options.capping = at->capping;
   options.topology = at->topology;
   options.precision = at->precision;
-  options.wall_share = at->capping && at->period[1] == 0 ? 0.3 : 0;
+  options.wall_share = at->make == make_wall ? 0.3 : 0;
   memcpy(options.periodic, at->period, sizeof options.periodic);
   core_ask_for_all(&options);
   return options;
@@ -293,11 +293,25 @@ static void boxes(void** state)
   }
 }
 
+/* Images of particles of several levels lie farther around a period than those of one size. */
+static void boxes_in_period(void** state)
+{
+  const double iso = 0.5, period[6] = { 0, 14, 0, 14, 0, 14 };
+  CORE_SET set = core_make_random(1500, 14, 0.5, 2.4, 9);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.compact = 1;
+  memcpy(options.periodic, period, sizeof period);
+  core_check_these_cuts(*state, "levels in a period", &input, &options, core_cuts, 2);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(surfaces),
     cmocka_unit_test(boxes),
+    cmocka_unit_test(boxes_in_period),
   };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -343,11 +343,32 @@ static void large_sides(void** state)
   assert_int_equal(report.boundary_edges, 0);
 }
 
+/* A box across a side has the surface that it has in a period that is moved by hand. */
+static void test_box_across(void** state)
+{
+  static const double periods[2][6] = { { 0, 12, -3, 7, 0, 11 }, { -6, 6, -5, 5, 0, 11 } };
+  static const double box[6] = { -4, 4, -4.5, 4.5, 2, 9 };
+  const int length[3] = { 12, 10, 11 };
+  const double iso = 0.1;
+  CORE_SET set = core_make_period(length, 4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  memcpy(options.box, box, sizeof box);
+  memcpy(options.periodic, periods[0], sizeof periods[0]);
+  CORE_SURFACE across = core_extract(*state, &input, &options);
+  memcpy(options.periodic, periods[1], sizeof periods[1]);
+  CORE_SURFACE moved = core_extract(*state, &input, &options);
+  assert_true(across.triangle_count > 1000 && core_hash(&across) == core_hash(&moved));
+  options.box[1] = 9; /* longer than the period, which begins with it */
+  mcor_move_period(&options);
+  assert_true(options.periodic[0] == -4 && options.periodic[1] == 8);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
     cmocka_unit_test(shifts), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
-    cmocka_unit_test(large_sides) };
+    cmocka_unit_test(large_sides), cmocka_unit_test(test_box_across) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -233,12 +233,6 @@ static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
   {
     return mcor_say(MCOR_SAY(NODES_DISCARD_ALL), o->node_threshold, n->filled_median);
   }
-  if (n->triangles_below_threshold > 0)
-  {
-    return mcor_say(MCOR_SAY(NODES_REMOVED_ALL), o->node_threshold,
-      (long long)n->triangles_below_threshold, n->dimension == 2 ? "lines" : "triangles");
-  }
-  /* Whole bricks may lie below the threshold, and are not looked at. */
   const double* extent = n->fluid_extent; /* 0: all particles are at one point */
   bool is_between = false;
   for (int i = 0; i < o->iso_count; ++i)

@@ -40,6 +40,22 @@ int mcor_has_box(const mcor_options* options)
   return mcor_is_box(options->box);
 }
 
+void mcor_move_period(mcor_options* options)
+{
+  const double* box = options->ranks ? options->ranks->whole_box : options->box;
+  for (int a = 0; a < 3 && mcor_is_box(box); ++a)
+  {
+    double* period = options->periodic + 2 * a;
+    const double length = period[1] - period[0], side = box[2 * a + 1] - box[2 * a];
+    const bool is_beyond = box[2 * a] < period[0] || box[2 * a + 1] > period[1];
+    if (length > 0 && side < INFINITY && is_beyond)
+    {
+      period[0] = box[2 * a] - fmax(length - side, 0) / 2;
+      period[1] = period[0] + length;
+    }
+  }
+}
+
 /* How far from the ring's nodes the field is evaluated, in cubes: trimming may move a vertex by
  * 3/4. */
 #define MCOR_BOX_MARGIN 1.25
@@ -61,7 +77,7 @@ int mcor_has_box(const mcor_options* options)
 
 #define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, (r)->ring, (r)->ring)
 
-static int mcor_ring_of(const mcor_options* options)
+int mcor_ring_of(const mcor_options* options)
 {
   return options->compact ? MCOR_COMPACT_RING : MCOR_BOX_RING;
 }
@@ -340,7 +356,6 @@ void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);
   context->box.kept = NULL;
-  context->box.of_points = context->box.has_points = false;
 }
 
 void mcor_release_box(mcor_context* context)

@@ -70,6 +70,7 @@ int mcor_list_images(
 /* The cells around the owned ones that are examined, too, are box.ring; and those that caps are
  * made for. */
 #define MCOR_BOX_RING 1
+int mcor_ring_of(const mcor_options* options); /* with a box */
 /* How far from a box a particle matters beyond its support, in cubes of its level. */
 double mcor_box_slack(const mcor_options* options);
 /* The ring with adaptive cubes, in cells of each level. Two of a wide one for each, as a way there

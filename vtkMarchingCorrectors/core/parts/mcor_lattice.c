@@ -132,10 +132,8 @@ static mcor_status mcor_fit_period(
     axis = length[a] > 0 ? a : axis;
   }
   /* Forces one size: large cubes would stick out of periods and boxes and leave no flat side to
-   * close. Caps at walls consist of equal cubes. */
-  const bool walls =
-    options->field == MCOR_WEIGHT_SUM && mcor_asked_share(options) != 0 && m->solid_count > 0;
-  *top = options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX || walls) ? 0 : *top;
+   * close. */
+  *top = options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX) ? 0 : *top;
   if (axis < 0)
   {
     return MCOR_OK;
@@ -145,7 +143,9 @@ static mcor_status mcor_fit_period(
   /* How far from the period an image may be and still be needed, L; see mcor_stage. */
   const double beyond = context->run.widest * (1 + 1 / options->h_scale);
   const double reach = m->support_max * (2 + 1 / options->h_scale + beyond) + 8 * longest;
-  const double margin = *top > 0 ? ldexp(8 * longest, *top) : 0;
+  const double margin = longest *
+    (*top > 0 ? ldexp(mcor_box_slack(options) + 1.5, *top)
+              : mcor_ring_of(options) - MCOR_BOX_RING);
   for (int a = 0; a < 3; ++a)
   {
     if (length[a] > 0)

@@ -12,13 +12,6 @@
 /* Boundary flag of vertices that only caps have. */
 #define MCOR_CAP_FLAG 8
 
-/* Whether the free surface is closed where it ends at solids, see mcor_cap_wall.c. */
-static inline bool mcor_caps_walls(const mcor_context* context)
-{
-  return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
-    context->space.axes == 3 && mcor_fluid_share(context) > 0;
-}
-
 /* Adds the caps to the trimmed mesh. */
 mcor_status mcor_cap(mcor_context* context);
 
@@ -114,8 +107,8 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick of nodes that particles reach, on a side or one node further in; or near walls, where
- * both fluid and solids reach it. Bits of masks are those of a brick. */
+/* A brick of nodes that particles reach, on a side or one node further in. Bits of masks are those
+ * of a brick. */
 typedef struct mcor_cap_brick
 {
   uint64_t key; /* the first member: by the side's second axis, then the first; of its first cell */
@@ -133,13 +126,13 @@ typedef struct mcor_cap_brick
 #define MCOR_SIDE_NODES (MCOR_BRICK * MCOR_BRICK)
 typedef struct mcor_cap_nodes
 {
-  int axis, upper;  /* axis: -1 near walls; upper: of the two sides, the higher one */
+  int axis, upper;  /* upper: of the two sides, the higher one */
   int plane, inner; /* numbers along the axis: of the side's nodes, and of those one further in */
   int across[2];    /* the other two axes, so that across[0], across[1], axis are right-handed */
   int range[3][2];  /* first and last node along each axis */
   mcor_table index; /* numbers of bricks by place */
   MCOR_LIST(mcor_cap_brick) bricks; /* those on the side come first */
-  int64_t side_count, node_count;   /* bricks on the side; nodes there, or near walls all */
+  int64_t side_count, node_count;   /* bricks and nodes on the side */
   double* margin;                   /* [node_count], trim margins of nodes above */
 } mcor_cap_nodes;
 
@@ -194,9 +187,6 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
  * is loaded. */
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
-/* Loads the nodes near walls. Of these, those above are known by marching, or are evaluated. */
-mcor_status mcor_load_cap_walls(
-  mcor_context* context, mcor_cap_points* points, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 
 #endif

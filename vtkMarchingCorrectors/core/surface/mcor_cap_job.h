@@ -26,15 +26,6 @@ typedef struct mcor_cap_line
   bool done;
 } mcor_cap_line;
 
-/* The edges, each from one vertex to another, that cutting a cell's faces leaves; for a cap at a
- * wall. */
-#define MCOR_CAP_BORDER 64
-typedef struct mcor_cap_border
-{
-  int count;
-  int32_t ends[MCOR_CAP_BORDER][2];
-} mcor_cap_border;
-
 typedef struct mcor_cap_triangle
 {
   cl_int corner[3];
@@ -49,21 +40,20 @@ typedef struct mcor_cap_job
   mcor_table edges[3];
   mcor_table nodes, cuts;
   MCOR_LIST(mcor_cap_vertex) vertices;
-  MCOR_LIST(mcor_cap_line) lines; /* of cuts that are placed exactly: at walls, or in a plane */
+  MCOR_LIST(mcor_cap_line) lines; /* of cuts that are placed exactly, in a plane */
   MCOR_LIST(mcor_cap_triangle) triangles;
   /* Squares of triangles, numbered behind all cells, see mcor_triangle_cell.c. */
   MCOR_LIST(cl_ulong) cells;
   int64_t owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
-  cl_ulong number;                      /* its number, or that of a cell of a cap at a wall */
+  cl_ulong number;                      /* its number */
   uint64_t lookups;                     /* how often it has looked up a vertex */
   /* Views of the surface's vertices, and of the edges that its cuts are on, ascending. */
   void *node, *offset, *quantity, *cut_edges;
   double threshold;
-  mcor_cap_border* border; /* where cuts are collected in place of triangles; NULL: nowhere */
 } mcor_cap_job;
 
-/* A square of a side, or of a cell's face. node: its lowest one. above, margin: of its nodes, in
+/* A square of a side. node: its lowest one. above, margin: of its nodes, in
  * the order (0, 0), (1, 0), (1, 1), (0, 1). */
 typedef struct mcor_cap_square
 {
@@ -74,13 +64,11 @@ typedef struct mcor_cap_square
   bool is_joined; /* an ambiguous square joins its nodes above */
 } mcor_cap_square;
 
-/* mcor_cap_square.c. Begins a square, or a cell of a cap at a wall. node: its lowest one;
- * across: the side's axis, along which the box does not end; -1: none. */
+/* mcor_cap_square.c. Begins a square. node: its lowest one; across: the side's axis, along which
+ * the box does not end. */
 void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across);
 /* Adds what trimming leaves of a square to the cap. */
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);
-mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c);
-mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
 /* Splits a place, in cubes, into a node and an offset. */
 void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3]);
 /* Makes the line from one corner to another, and finds the place on it where a linear margin would
@@ -90,8 +78,5 @@ void mcor_begin_cap_line(
 /* Moves the cuts to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
 void mcor_free_cap_job(mcor_cap_job* job);
-
-/* mcor_cap_wall.c. Adds caps where the surface ends at solids. */
-mcor_status mcor_cap_walls(mcor_cap_job* job);
 
 #endif

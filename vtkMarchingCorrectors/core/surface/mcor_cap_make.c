@@ -16,13 +16,11 @@
 
 #include <stdlib.h>
 
-/* Enters the surface's vertices on the sides into tables by lattice edge; with caps at walls,
- * all vertices. */
+/* Enters the surface's vertices on the sides into tables by lattice edge. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 {
   const mcor_context* context = job->context;
   const cl_int* nodes = job->node;
-  const bool all = mcor_caps_walls(context);
   int plane[6];
   for (int i = 0; i < 6; ++i)
   {
@@ -32,7 +30,7 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   {
     const cl_int* node = nodes + 4 * (size_t)v;
     const int axis = node[3] & 3;
-    bool on_side = all;
+    bool on_side = false;
     for (int a = 0; a < 3; ++a)
     {
       on_side = on_side || (a != axis && (node[a] == plane[2 * a] || node[a] == plane[2 * a + 1]));
@@ -119,13 +117,7 @@ void mcor_free_cap_job(mcor_cap_job* job)
 
 mcor_status mcor_cap(mcor_context* context)
 {
-  mcor_end_caps(context);
-  context->mesh.cap_first = context->mesh.vertex_count;
-  context->mesh.cap_triangle_first = context->mesh.triangle_count;
-  if (!mcor_makes_caps(context))
-  {
-    return MCOR_OK;
-  }
+  mcor_end_caps(context); /* those of the last iso value */
   mcor_cap_job job = { .context = context,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
   const mcor_mesh* mesh = &context->mesh;
@@ -162,7 +154,6 @@ mcor_status mcor_cap(mcor_context* context)
   }
   const bool places = context->space.axes == 2 && !context->run.options->preview;
   status = status == MCOR_OK && places ? mcor_place_cap_cuts(&job) : status;
-  status = status == MCOR_OK && mcor_caps_walls(context) ? mcor_cap_walls(&job) : status;
   status = mcor_unmap_all(context, views, mapped, status);
   MCOR_THEN(status, mcor_append_caps(&job));
   mcor_free_cap_job(&job);

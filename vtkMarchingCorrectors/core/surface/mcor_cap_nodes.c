@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The nodes where caps may be: those of one side of a period or box, those of a plane that is
- * filled, and those near walls. They are kept in the bricks that some particle reaches. Where no
+/* The nodes where caps may be: those of one side of a period or box, or those of a plane that is
+ * filled. They are kept in the bricks that some particle reaches. Where no
  * particle reaches there is nothing to close, so memory and time go with what is there, not with
  * the area of a side. Where marching has evaluated a brick its answer is taken, so that the cap
  * fits the surface. */
@@ -27,7 +27,7 @@ bool mcor_makes_caps(const mcor_context* context)
   {
     makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
   }
-  return makes || mcor_caps_walls(context);
+  return makes;
 }
 
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
@@ -37,7 +37,7 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
   free(nodes->margin);
 }
 
-/* Places a side, or, with axis -1, the nodes near walls: those of the box and its ring. */
+/* Places a side. */
 static void mcor_set_cap_extent(
   const mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
 {
@@ -45,7 +45,7 @@ static void mcor_set_cap_extent(
   const mcor_box* box = &context->box;
   *nodes = (mcor_cap_nodes){ .axis = axis,
     .upper = upper,
-    .plane = axis < 0 ? -1 : mcor_cap_plane(context, axis, upper),
+    .plane = mcor_cap_plane(context, axis, upper),
     .across = { (axis + 1) % 3, (axis + 2) % 3 } };
   nodes->inner = nodes->plane + (upper ? -1 : 1);
   for (int a = 0; a < 3; ++a)
@@ -66,18 +66,6 @@ static void mcor_set_cap_extent(
 }
 
 /* ---- Bricks ---- */
-
-/* Most bricks near walls, and most clusters near solids. */
-#define MCOR_WALL_LIMIT (1 << 20)
-
-static mcor_status mcor_limit_walls(mcor_context* context, size_t count, const char* what)
-{
-  MCOR_RETURN_IF(count > MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "More than %d nodes are near %s, with cube size %g: too many for caps. Use a larger cube size, "
-    "or turn capping off.",
-    MCOR_WALL_LIMIT * MCOR_BRICK_NODES, what, context->lattice.cube);
-  return MCOR_OK;
-}
 
 /* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4
  * to 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
@@ -101,10 +89,9 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick.
- * among: only clusters that are in this set are added, too; NULL: all. */
+/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
-  const double low[3], const double high[3], const mcor_table* among, mcor_table* clusters)
+  const double low[3], const double high[3], mcor_table* clusters)
 {
   int from[3], to[3], c[3];
   for (int a = 0; a < 3; ++a)
@@ -118,39 +105,29 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
     {
       for (c[0] = from[0] & ~3; c[0] <= to[0]; c[0] += MCOR_CLUSTER)
       {
-        if (among && !mcor_table_find(among, mcor_cap_key(c)))
-        {
-          continue;
-        }
         uint64_t* bricks = mcor_table_add(clusters, mcor_cap_key(c));
         MCOR_TRY(mcor_allocated(context, bricks));
         *bricks |= mcor_bricks_between(from, to, c);
-        MCOR_TRY(nodes->axis < 0 ? mcor_limit_walls(context, clusters->count, "solids")
-                                 : mcor_limit_side(context, nodes, clusters->count));
+        MCOR_TRY(mcor_limit_side(context, nodes, clusters->count));
       }
     }
   }
   return MCOR_OK;
 }
 
-/* Adds the bricks that particles may reach: near walls to one set for fluid and one for solids; all
- * to the first set else. A support lies within a cube, whose half edge is rounded up a little. It
- * is widened by one node, because a square or cell is looked up by its lowest node, and by another
- * one for rounding. Most particles are far from a side, which its axis tells first. Solids come
- * first: where they reach too much, fluid often does, too, and this would take minutes. */
+/* Adds the bricks that particles may reach. A support lies within a cube, whose half edge is rounded
+ * up a little. It is widened by one node, because a square is looked up by its lowest node, and by
+ * another one for rounding. Most particles are far from a side, which its axis tells first. */
 static mcor_status mcor_add_reached(
-  mcor_context* context, const mcor_cap_nodes* nodes, mcor_table clusters[2])
+  mcor_context* context, const mcor_cap_nodes* nodes, mcor_table* clusters)
 {
   const mcor_grid* g = &context->grid;
   const mcor_lattice* lattice = &context->lattice;
   const size_t bytes = (size_t)g->count *
     context->cl.real_size; /* positions are fixed-point numbers of the same size */
-  void* views[5] = { NULL };
-  const mcor_mapping mappings[5] = { { &g->px, bytes, &views[0] }, { &g->py, bytes, &views[1] },
-    { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] },
-    { &g->fluid_weight, bytes, &views[4] } };
-  const bool parts = nodes->axis < 0; /* there are solids then */
-  const int count = parts ? 5 : 4, first_axis = parts ? 0 : nodes->axis;
+  void* views[4] = { NULL };
+  const mcor_mapping mappings[4] = { { &g->px, bytes, &views[0] }, { &g->py, bytes, &views[1] },
+    { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] } };
   const bool is_long = context->cl.real_size == sizeof(cl_double);
   double reach_of[3], per_step[3]; /* in nodes */
   for (int a = 0; a < 3; ++a)
@@ -159,40 +136,38 @@ static mcor_status mcor_add_reached(
       1.001 * mcor_support_factor(context->run.options->sph_kernel) / mcor_edge_of(lattice, a);
     per_step[a] = 1 / (double)lattice->step[a];
   }
-  mcor_status status = mcor_map_all(context, mappings, count);
-  for (int64_t n = 0; n < (parts ? 2 : 1) * (int64_t)g->count && status == MCOR_OK; ++n)
+  mcor_status status = mcor_map_all(context, mappings, 4);
+  for (int64_t i = 0; i < g->count && status == MCOR_OK; ++i)
   {
-    const int64_t i = n % g->count;
     const double h = 1 / mcor_get_real(context, views[3], i);
-    const bool is_solid = parts && mcor_get_real(context, views[4], i) == 0;
     double low[3], high[3];
-    bool is_near = !parts || is_solid == (n < g->count);
+    bool is_near = true;
     for (int k = 0; k < 3 && is_near; ++k)
     {
-      const int a = (first_axis + k) % 3, *range = nodes->range[a];
+      const int a = (nodes->axis + k) % 3, *range = nodes->range[a];
       const double x = per_step[a] *
         (is_long ? (double)((const cl_long*)views[a])[i] : (double)((const cl_int*)views[a])[i]);
       low[a] = x - h * reach_of[a] - 2;
       high[a] = x + h * reach_of[a] + 2;
       is_near = low[a] <= range[1] && high[a] >= range[0];
     }
-    const mcor_table* among = parts && !is_solid ? &clusters[1] : NULL;
-    status = is_near ? mcor_add_cap_bricks(context, nodes, low, high, among, &clusters[is_solid])
-                     : MCOR_OK;
+    if (is_near)
+    {
+      status = mcor_add_cap_bricks(context, nodes, low, high, clusters);
+    }
   }
-  return mcor_unmap_all(context, mappings, count, status);
+  return mcor_unmap_all(context, mappings, 4, status);
 }
 
-/* Lists the bricks of clusters: near walls those near both fluid and solids. */
+/* Lists the bricks of clusters. */
 static mcor_status mcor_list_cap_bricks(
-  mcor_context* context, const mcor_table clusters[2], mcor_cap_nodes* nodes)
+  mcor_context* context, const mcor_table* clusters, mcor_cap_nodes* nodes)
 {
   MCOR_APPEND(context, &nodes->bricks, (mcor_cap_brick){ .key = 0 });
-  for (size_t i = 0; i < clusters[0].capacity; ++i)
+  for (size_t i = 0; i < clusters->capacity; ++i)
   {
-    const mcor_entry cluster = clusters[0].entries[i];
+    const mcor_entry cluster = clusters->entries[i];
     uint64_t rest = cluster.value;
-    rest &= nodes->axis < 0 ? mcor_table_find(&clusters[1], cluster.key) : UINT64_MAX;
     for (int bit = 0; rest; ++bit, rest >>= 1)
     {
       mcor_cap_brick brick = { .key = 0 };
@@ -204,16 +179,10 @@ static mcor_status mcor_list_cap_bricks(
       {
         continue;
       }
-      MCOR_TRY(nodes->axis < 0
-          ? mcor_limit_walls(context, (size_t)nodes->bricks.count, "both fluid and solids")
-          : MCOR_OK);
-      const cl_int node[4] = { brick.at[0] * MCOR_BRICK, brick.at[1] * MCOR_BRICK,
-        brick.at[2] * MCOR_BRICK, 0 };
-      const bool on_side = nodes->axis >= 0 && brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
+      const bool on_side = brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
       nodes->side_count += on_side;
-      brick.key = nodes->axis < 0 ? mcor_node_key(&context->lattice, node)
-                                  : (uint64_t)!on_side << 63 |
-          (uint64_t)brick.at[nodes->across[1]] << 32 | (uint64_t)brick.at[nodes->across[0]];
+      brick.key = (uint64_t)!on_side << 63 | (uint64_t)brick.at[nodes->across[1]] << 32 |
+        (uint64_t)brick.at[nodes->across[0]];
       MCOR_APPEND(context, &nodes->bricks, brick);
     }
   }
@@ -232,9 +201,7 @@ static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes*
 {
   mcor_cap_brick* of = nodes->bricks.of;
   const int32_t count = (int32_t)nodes->bricks.count;
-  const int per_brick = nodes->axis < 0 ? MCOR_BRICK_NODES : MCOR_SIDE_NODES;
-  nodes->node_count =
-    nodes->axis < 0 ? (int64_t)count * per_brick : (1 + nodes->side_count) * per_brick;
+  nodes->node_count = (1 + nodes->side_count) * MCOR_SIDE_NODES;
   nodes->margin = calloc((size_t)nodes->node_count, sizeof *nodes->margin);
   MCOR_TRY(mcor_allocated(context, nodes->margin));
   qsort(of + 1, (size_t)count - 1, sizeof *of, mcor_compare_keys);
@@ -252,10 +219,7 @@ static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes*
       of[i].up[d] = d == 0 ? i : mcor_cap_brick_at(nodes, up);
     }
     cl_int inner[3] = { of[i].at[0], of[i].at[1], of[i].at[2] };
-    if (nodes->axis >= 0)
-    {
-      inner[nodes->axis] = nodes->inner / MCOR_BRICK;
-    }
+    inner[nodes->axis] = nodes->inner / MCOR_BRICK;
     of[i].inner = mcor_cap_brick_at(nodes, inner);
   }
   return MCOR_OK;
@@ -270,14 +234,12 @@ mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_c
     low[a] = nodes->range[a][0];
     high[a] = nodes->range[a][1];
   }
-  mcor_table clusters[2] = { { 0 }, { 0 } };
-  mcor_status status = empty_is_above
-    ? mcor_add_cap_bricks(context, nodes, low, high, NULL, &clusters[0])
-    : mcor_add_reached(context, nodes, clusters);
-  MCOR_THEN(status, mcor_list_cap_bricks(context, clusters, nodes));
+  mcor_table clusters = { 0 };
+  mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters)
+                                      : mcor_add_reached(context, nodes, &clusters);
+  MCOR_THEN(status, mcor_list_cap_bricks(context, &clusters, nodes));
   MCOR_THEN(status, mcor_number_cap_bricks(context, nodes));
-  mcor_table_free(&clusters[0]);
-  mcor_table_free(&clusters[1]);
+  mcor_table_free(&clusters);
   return status;
 }
 
@@ -450,38 +412,4 @@ mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
     nodes->margin[to] = opposite->margin[(int64_t)number * MCOR_SIDE_NODES + to % MCOR_SIDE_NODES];
   }
   return mcor_ask_cap_nodes(context, nodes, true, points);
-}
-
-/* Takes the field at node points->to[i] near walls, which counts the nodes of all bricks. */
-static void mcor_take_wall_node(
-  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
-{
-  mcor_cap_nodes* nodes = data;
-  const int64_t to = points->to[i];
-  mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_BRICK_NODES];
-  const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
-  brick->above |= (cl_ulong)is_above << to % MCOR_BRICK_NODES;
-  nodes->margin[to] = mcor_cap_margin(context, points, i);
-}
-
-mcor_status mcor_load_cap_walls(
-  mcor_context* context, mcor_cap_points* points, mcor_cap_nodes* nodes)
-{
-  points->take = mcor_take_wall_node;
-  points->data = nodes;
-  mcor_set_cap_extent(context, -1, 0, nodes);
-  MCOR_TRY(mcor_find_cap_bricks(context, INFINITY, nodes));
-  MCOR_TRY(mcor_take_cap_masks(context, nodes));
-  for (int64_t i = MCOR_BRICK_NODES; i < nodes->node_count; ++i)
-  {
-    const mcor_cap_brick* brick = &nodes->bricks.of[i / MCOR_BRICK_NODES];
-    const int n = (int)(i % MCOR_BRICK_NODES);
-    if (!brick->is_known || (brick->above >> n & 1))
-    {
-      const cl_int node[3] = { brick->at[0] * MCOR_BRICK + (n & 3),
-        brick->at[1] * MCOR_BRICK + (n >> 2 & 3), brick->at[2] * MCOR_BRICK + (n >> 4) };
-      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, i));
-    }
-  }
-  return mcor_take_cap_points(context, points);
 }

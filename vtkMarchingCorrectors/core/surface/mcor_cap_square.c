@@ -2,9 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Cuts one square of a cap: along the lines between the surface's own vertices (see
- * mcor_cap_make.c), and where the surface is trimmed. Cuts of lattice edges in two dimensions,
- * and of caps at walls, begin at the linear estimate and are then moved to where the trim margin
- * is 0. */
+ * mcor_cap_make.c), and where the surface is trimmed. Cuts of lattice edges in two dimensions
+ * begin at the linear estimate and are then moved to where the trim margin is 0. */
 
 #include "mcor_cap_job.h"
 #include "mcor_vector.h"
@@ -125,9 +124,8 @@ static mcor_status mcor_cap_cut(
   mcor_begin_cap_line(low, high, &line, cut->at);
   const int64_t before = job->vertices.count;
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
-  MCOR_TRY(mcor_find_cap_vertex(
-    job, &job->cuts, key, cut->at, job->border ? MCOR_CAP_FLAG : 2, &cut->vertex));
-  if ((!job->border && job->context->space.axes == 3) || job->vertices.count == before)
+  MCOR_TRY(mcor_find_cap_vertex(job, &job->cuts, key, cut->at, 2, &cut->vertex));
+  if (job->context->space.axes == 3 || job->vertices.count == before)
   {
     return MCOR_OK;
   }
@@ -138,7 +136,7 @@ static mcor_status mcor_cap_cut(
 
 /* ---- Polygons ---- */
 
-mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c)
+static mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c)
 {
   MCOR_APPEND(job->context, &job->triangles, (mcor_cap_triangle){ { a, b, c } });
   MCOR_APPEND(job->context, &job->cells, job->number);
@@ -146,30 +144,13 @@ mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32
   return MCOR_OK;
 }
 
-mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
-{
-  mcor_cap_border* border = job->border;
-  MCOR_RETURN_IF(border->count == MCOR_CAP_BORDER, job->context, MCOR_DEVICE_ERROR,
-    "A cell of a cap has more than %d edges. Please report this.", MCOR_CAP_BORDER);
-  border->ends[border->count][0] = from;
-  border->ends[border->count++][1] = to;
-  return MCOR_OK;
-}
-
-/* Adds a polygon as a fan; corners go round as seen from above the axis. For a cap at a wall it
- * adds only the polygon's last edge, if that is a cut. */
+/* Adds a polygon as a fan; corners go round as seen from above the axis. */
 static mcor_status mcor_add_cap_fan(
   void* data, const mcor_cap_corner* corners, int count, bool is_cut)
 {
   mcor_cap_job* job = data;
   const mcor_cap_square* square = job->square;
-  if (job->border)
-  {
-    const int32_t first = corners[0].vertex, last = corners[count - 1].vertex;
-    return is_cut
-      ? mcor_add_cap_border(job, square->upper ? first : last, square->upper ? last : first)
-      : MCOR_OK;
-  }
+  (void)is_cut;
   if (job->context->space.flat)
   {
     /* A line along the plane's side, with the inside on its left, is a triangle whose last two
@@ -306,8 +287,7 @@ static void mcor_move_cut(
   mcor_cap_line* line = &job->lines.of[points->to[i]];
   mcor_cap_vertex* vertex = &job->vertices.of[line->vertex];
   const double margin = mcor_cap_margin(context, points, i), before = line->at;
-  const bool found = fabs(margin) < MCOR_CAP_ROOT, is_cap = vertex->flag & MCOR_CAP_FLAG;
-  vertex->flag = (uint8_t)((is_cap ? MCOR_CAP_FLAG : 0) | (found ? !is_cap : 2));
+  vertex->flag = fabs(margin) < MCOR_CAP_ROOT ? 1 : 2;
   line->done = fabs(margin) < MCOR_PLACE_ROOT;
   if (line->done)
   {

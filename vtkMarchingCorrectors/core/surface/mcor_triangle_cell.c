@@ -15,8 +15,7 @@
 
 bool mcor_follows_cells(const mcor_context* context)
 {
-  return context->box.is_part || mcor_wants(context, MCOR_OUT_TRIANGLE_KEYS) ||
-    mcor_caps_walls(context);
+  return context->box.is_part || mcor_wants(context, MCOR_OUT_TRIANGLE_KEYS);
 }
 
 /* ---- Mesh ---- */

@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """python -m marchingcorrectors convert IN... OUT.vtp|OUT.pvd: a solver's files for ParaView and the shell program.
+python -m marchingcorrectors convert FILM.pvd|STEPS.vtp FILM.usdc [--help]: surfaces for Blender, Houdini and other readers of USD.
+python -m marchingcorrectors surface IN... FILM.usdc [--help]: a film of surfaces, with the program's words.
 python -m marchingcorrectors surface | gauge | slice | line IN... OUT [--help]: of one file, with the program's words.
 
-For convert, several files become the times of a .pvd; else they are bodies of one set (.vtp, .vtu, .vtk)."""
+Several files are the times of a .pvd, and of a film (.usdc, .usda, .usd); else they are bodies of one set (.vtp, .vtu, .vtk)."""
 import signal
 import sys
 import warnings
@@ -27,9 +29,9 @@ def main(arguments):
     warnings.showwarning = lambda sentence, *_: print(f"marchingcorrectors: warning: {sentence}", file=sys.stderr)
     try:
         if is_convert:
-            from .io.convert import convert
+            from ._film import run_convert
 
-            convert(arguments[1:-1], arguments[-1])
+            run_convert(arguments[1:])
         else:
             from ._command import run
 

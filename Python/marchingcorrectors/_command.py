@@ -1,18 +1,19 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """python -m marchingcorrectors surface, gauge, slice, line: the functions for files, with the words of the program
-marching-correctors, whose options for films, pieces, pictures and several processes are not here."""
+marching-correctors, whose options for pieces, pictures and several processes are not here."""
 import argparse
 import csv
 import os
 import re
 import sys
 import warnings
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
-from . import _structs as c, io
+from . import _film, _structs as c, io
 from ._arrays import choose
 from ._functions import free_surface, isosurface, probe
 from ._library import InvalidArgument
@@ -20,6 +21,7 @@ from ._meters import gauge
 from .io._outputs import Outputs
 from .io._particles import TILTED
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, Options, words_of
+from ._usd import is_usd
 
 
 def quantity(text):
@@ -93,7 +95,8 @@ OPTIONS = {"--" + OTHER_WORDS.get(name, name.replace("_", "-")): (name, OTHER_VA
            for name in ("scalar_component", "smoothing_length_is_support_radius", "weight_sum", "boundary_eigenvalue",
                         "gradients", *c.OPTIONS) if name not in ("memory_limit", "triangle_normals")}
 COMMANDS = {
-    "surface": (ISOSURFACE, "the free surface, or with --scalar and --iso an isosurface", ".ply, .vtp, .stl, .obj, .npz, ..."),
+    "surface": (ISOSURFACE, "the free surface, or with --scalar and --iso an isosurface; of several steps a film",
+                ".ply, .vtp, .stl, .obj, .npz, ...; for a film .usdc, .usda or .usd"),
     "gauge": (GAUGE, "where lines cross the free surface", ".csv"),
     "slice": (PROBE, "the field on a plane", ".vti or .npz"),
     "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
@@ -103,7 +106,8 @@ def make_parser(command):
     names, text, endings = COMMANDS[command]
     parser = argparse.ArgumentParser(prog=f"python -m marchingcorrectors {command}", description=text, allow_abbrev=False)
     add = parser.add_argument
-    add("input", nargs="+", metavar="IN", help="a solver's file, or files of bodies that are one set")
+    add("input", nargs="+", metavar="IN", help="a solver's file, or files of bodies that are one set; for a film its steps, or "
+        "what holds several" if command == "surface" else "a solver's file, or files of bodies that are one set")
     add("output", metavar="OUT", help=endings)
     add("--smoothing-length", metavar="NAME|VALUE|estimate|neighbours[=ETA]", type=quantity,
         help="an array, one value, an estimate of one, or of each by its neighbours")
@@ -125,6 +129,11 @@ def make_parser(command):
         add("--free-surface", action="store_true", help="contour the sum of the weights, as without --scalar")
         add("--cubes", choices=("uniform", "adaptive"), help="cubes of one size, or larger ones where h is (default)")
         add("--curvature", action="store_true", help="the mean and the Gaussian curvature at the points")
+        _film.add_options(parser)
+        add("--times", metavar="T[,T...]|BEGIN:END:STEP", type=_film.to_times, help="a film: at these times, which may lie between "
+            "two steps, where particles have ids")
+        add("--spray", metavar="N", nargs="?", const=8, type=int, help="a film: particles of drops of fewer than N (8), and lone ones, "
+            "are balls beside the surface")
         add("--solids", choices=("auto", "weight", "ignore", "wall"), help="what solids do where they meet the surface")
     if command in ("surface", "gauge"):
         add("--iso", metavar="V[,V...]", type=numbers, help="values of the scalar, or of the sum of the weights (0.5)")
@@ -206,21 +215,26 @@ def find_words(given, names, particles):
     return {**words, "device": given.device}
 
 
-def attributes_of(given, particles):
-    names = list(particles.arrays) if given.attributes is None else given.attributes
-    return [name for name in names if particles.array(name).dtype.kind in "fiub"]
+def attributes_of(given, particles, more=()):
+    names = list(particles.arrays) if given.attributes is None else [*given.attributes, *more]
+    return [name for name in dict.fromkeys(names) if particles.array(name).dtype.kind in "fiub"]
+
+
+def surface_of(given, particles, more=()):
+    """The surface, and the words that made it."""
+    names = FREE_SURFACE if given.scalar is None else ISOSURFACE
+    words = {**find_words(given, names, particles), "attributes": attributes_of(given, particles, more)}
+    words.setdefault("iso_value", len(given.iso or ()) > 1)
+    words.update({"nearest_particle": True} if given.spray is not None else {})
+    if given.scalar is None:
+        return free_surface(particles, given.iso or 0.5, **words), words
+    if given.iso is None or given.free_surface:
+        raise InvalidArgument("With --scalar give --iso, and leave --free-surface out.")
+    return isosurface(particles, given.scalar, given.iso, **words), words
 
 
 def run_surface(given, particles):
-    names = FREE_SURFACE if given.scalar is None else ISOSURFACE
-    words = {**find_words(given, names, particles), "attributes": attributes_of(given, particles)}
-    words.setdefault("iso_value", len(given.iso or ()) > 1)
-    if given.scalar is None:
-        surface = free_surface(particles, given.iso or 0.5, **words)
-    elif given.iso is None or given.free_surface:
-        raise InvalidArgument("With --scalar give --iso, and leave --free-surface out.")
-    else:
-        surface = isosurface(particles, given.scalar, given.iso, **words)
+    surface, _ = surface_of(given, particles)
     surface.save(given.output)
     return f"{len(surface.points)} points, {len(surface.triangles)} triangles"
 
@@ -301,11 +315,16 @@ def run(arguments):
     if given.threads is not None:
         os.environ["MCOR_THREADS"] = str(given.threads)
     output = given.output
-    with warnings.catch_warnings(), Outputs([*given.input, *given.walls], [output]) as files:
+    with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_: print(f"marchingcorrectors: warning: {message}", file=sys.stderr)
-        particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
-        given.output = files.beside(output)
-        said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](
-            given, particles)
+        if arguments[0] == "surface" and is_usd(output):
+            said = _film.run_particles(given, partial(surface_of, given))
+        else:
+            _film.refuse_options(given)
+            with Outputs([*given.input, *given.walls], [output]) as files:
+                particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
+                given.output = files.beside(output)
+                said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](
+                    given, particles)
     if not given.quiet:
         print(f"{output}: {said}")

@@ -160,7 +160,7 @@ class Surface(Result):
 
         .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of
         numbers as properties of the points, as the program writes them. .vtp, .vtk, .stl, .obj: by
-        PyVista. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
+        PyVista. .usdc, .usda, .usd: by usd-core, with all arrays. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
         """
         path = Path(path)
         ending = path.suffix.lower()
@@ -173,6 +173,11 @@ class Surface(Result):
             np.savez_compressed(path, **arrays, **{f"attributes/{k}": v for k, v in self.attributes.items()})
         elif ending == ".ply":
             _save_ply(path, self)
+        elif ending in (".usdc", ".usda", ".usd"):
+            from ._usd import Film
+
+            with Film(path) as film:
+                film.add(self)
         elif ending in (".vtp", ".vtk", ".stl", ".obj"):
             self.to_pyvista().save(path)
         elif ending:

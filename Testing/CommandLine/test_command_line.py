@@ -68,6 +68,7 @@ class Usage(CommandLineTest):
             ([], "needs INPUT and OUTPUT"),
             ([self.input], "needs INPUT and OUTPUT"),
             ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
+            ([self.input, "film.usdc", *ISO], "marchingcorrectors surface INPUT... film.usdc .*convert FILM.pvd film.usdc"),
             ([self.input, "surface.png", *ISO],
              "output is a .vtp, .stl, .ply, .obj or .csv file, or .pvd for a film, not 'surface.png'"),
             ([self.input, self.input, *ISO], "would overwrite the input"),

@@ -16,7 +16,7 @@ from pathlib import Path
 
 # Certificates that the system trusts, where these are more than pip's own.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
-EXTRAS = "pyvista,vtk"
+EXTRAS = "pyvista,usd,vtk"
 # Packages that users have beside it: tests alone need these.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
           "pyright[nodejs]")

@@ -144,6 +144,10 @@ const std::vector<Rule> Rules = {
   { Projections, IF(j.IsFilm() && !IsCollectionFile(j.Output) && !HasStepNumber(j.Output)),
     "the output of several steps is a .pvd file, or has %04d in its name, unlike '{output}'" },
 
+  { Surfaces, IF(IsTo(j, ".usdc") || IsTo(j, ".usda") || IsTo(j, ".usd")),
+    "'{output}' is written by Python: python -m marchingcorrectors surface INPUT... {output} "
+    "[OPTIONS], or, of surfaces that this program wrote, python -m marchingcorrectors convert "
+    "FILM.pvd {output}" },
   { Surfaces,
     IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
       !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),

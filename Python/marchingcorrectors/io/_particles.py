@@ -103,7 +103,7 @@ class Particles:
     the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
     solid: None, or for each particle whether it is a wall. cell: nine numbers, the sides of a tilted
     cell, which is no period here. times: of a file that holds several, all of
-    them. parameters: all else that the file says
+    them. up: the axis that points up, as far as the layout tells. parameters: all else that the file says
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
@@ -127,6 +127,7 @@ class Particles:
         self.time: Optional[float] = None
         self.times: Optional[Sequence[float]] = None
         self.dimension: int = 3
+        self.up = "z"
         self.parameters: Dict[str, Any] = {}
         for name, value in more.items():
             if not hasattr(self, name):

@@ -44,4 +44,4 @@ def read_bgeo(path):
 
     arrays = by_name(path.name, ((name, column(i, size)) for i, (name, _, size) in enumerate(fields) if i))
     return Particles(path.name, "bgeo", lambda: np.ascontiguousarray(table["0"][:, :3]).astype("=f4"), arrays,
-                     density="density" if "density" in arrays else None)
+                     density="density" if "density" in arrays else None, up="y")

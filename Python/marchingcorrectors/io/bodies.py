@@ -89,7 +89,7 @@ def column(name, bodies, fluids):
 def read_bodies(paths, walls, step):
     every = paths + [path for path in walls if path not in paths]
     bodies = [load(path, step) for path in every]
-    if not any(len(body.points) or body.times for body in bodies):  # a step of a film may be empty
+    if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # a step of a film may be empty
         raise FileError(f"{paths[0].name} has no points.")
     marked = [path in walls or not walls and len(every) > 1 and bool(WALL.search(path.stem)) for path in every]
     counts = [len(body.points) for body in bodies]

@@ -1,0 +1,242 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Films in one USD file, of particles (python -m marchingcorrectors surface STEPS film.usdc) or of surfaces that the program
+wrote (python -m marchingcorrectors convert film.pvd film.usdc)."""
+import argparse
+import re
+import sys
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from . import io
+from ._between import between, frames
+from ._library import Error, InvalidArgument
+from ._spray import take_spray
+from ._surface import Surface
+from ._usd import Film, find_velocity, is_usd
+from .io._particles import TIMES
+from .io.vtk_xml import XmlFile, list_pieces, list_times
+
+# Options of films: name, the value's name, its type, and what it is.
+OPTIONS = (("--fps", "N", float, "frames of a second of film (24)"),
+           ("--slow", "S", float, "seconds of film that a unit of time takes (1)"),
+           ("--up", "y|z", str, "the axis that points up (z; y for SPlisHSPlasH's .bgeo)"),
+           ("--meters-per-unit", "M", float, "the unit of the positions, in metres (1)"),
+           ("--velocity", "NAME", str, "the array that is the velocity, for motion blur (one of a usual name)"),
+           ("--time-step", "DT", float, "time between files (theirs, or 1)"))
+
+
+def add_options(parser):
+    for word, metavar, kind, text in OPTIONS:
+        parser.add_argument(word, metavar=metavar, type=kind, help="a film: " + text)
+
+
+def refuse_options(given):
+    """Of a single surface that is no USD file."""
+    for word in (*(option[0] for option in OPTIONS), "--spray", "--times"):
+        if getattr(given, word[2:].replace("-", "_"), None) is not None:
+            raise InvalidArgument(f"{word} is for films: give an output that ends in .usdc, .usda or .usd.")
+
+
+def open_film(given, inputs):
+    names = ("fps", "slow", "meters_per_unit", "velocity")
+    return Film(given.output, inputs, **{name: getattr(given, name) for name in names if getattr(given, name) is not None})
+
+
+def in_order(paths):
+    """By the numbers in their names, as the program takes them: drop_9 before drop_10."""
+    return sorted(paths, key=lambda path: [(0, int(part), "") if part.isdigit() else (1, 0, part)
+                                           for part in re.split(r"(\d+)", str(path))])
+
+
+def run(given, inputs, steps, make):
+    """Adds each of the steps, which are pairs (label, what make() takes). Where one fails, says so, and does the others."""
+    failed = 0
+    with open_film(given, inputs) as film:
+        for i, (label, step) in enumerate(steps):
+            try:
+                said = make(film, step, i * (1.0 if given.time_step is None else given.time_step))
+                if not getattr(given, "quiet", False):
+                    print(f"{given.output}: {label}, {said}", flush=True)
+            except (Error, OSError) as error:
+                failed += 1
+                print(f"marchingcorrectors: step {i} ({label}): {error}", file=sys.stderr)
+        made = film.steps
+        if not made:
+            raise InvalidArgument(f"{given.output} was not written, because none of its steps could be made.")
+    if failed:
+        raise InvalidArgument(f"{given.output} lacks {failed} of {made + failed} steps, which failed.")
+    return f"{made} step{'s' * (made > 1)}"
+
+
+def tell(surface, time):
+    return f"time {time:g}: {len(surface.points)} points, {len(surface.triangles)} triangles"
+
+
+# -- of particles --
+
+def run_particles(given, surface_of):
+    """surface_of(particles, more): the surface, with these arrays beside those that are wanted, and the words for it."""
+    if given.spray is not None and (given.scalar is not None or given.spray < 1):
+        raise InvalidArgument("--spray needs a number of particles from 1 on." if given.scalar is None else
+                              "--spray is for the free surface: leave --scalar out.")
+    paths = in_order(given.input)
+
+    def load(path, step, time):
+        particles = io.read(path, step=step, walls=given.walls)
+        return particles, time if particles.time is None or given.time_step is not None else particles.time
+
+    def make(film, step, _):
+        particles, time = step()
+        film.up = given.up or film.up if film.steps else given.up or particles.up
+        arrays = particles.arrays if len(particles) else {}
+        velocity = find_velocity(arrays, film.velocity) if arrays else None
+        surface, words = surface_of(particles, [velocity] if velocity else [])
+        spray = None
+        if given.spray is not None and len(particles):
+            surface, spray = take_spray(surface, particles, words, min(given.iso or [0.5]), given.spray, velocity)
+        wanted = set(arrays if given.attributes is None else given.attributes)
+        velocities = surface.attributes.get(velocity)
+        surface.attributes = {name: array for name, array in surface.attributes.items() if name in wanted}
+        film.add(surface, time, velocities, spray)
+        return tell(surface, time) + ("" if spray is None else f", {len(spray.positions)} particles beside them")
+
+    stored = [(path, step) for path in paths for step in range(io.count_steps(path))]
+    unit = 1.0 if given.time_step is None else given.time_step
+    steps = [(Path(path).name, partial(load, path, step, i * unit)) for i, (path, step) in enumerate(stored)]
+    if given.times or given.slow is not None:
+        steps = between_steps(steps, given.times, (given.fps or 24.0) * (given.slow or 1.0), given.velocity)
+    return run(given, [*paths, *given.walls], steps, make)
+
+
+def between_steps(steps, times, rate, velocity):
+    """Steps at these times, or, without any, at each frame of this rate from the first one on; no more than two are in memory."""
+    before, number, label = None, 0, ""
+    for label, load in steps:
+        try:
+            after = load()
+        except (Error, OSError) as error:
+            yield label, partial(fail, error)
+            continue
+        begin = after[1] if before is None else begin
+        while True:
+            time = float(f"{begin + number / rate:.15g}") if not times else times[number] if number < len(times) else np.inf
+            if time > after[1]:
+                break
+            number += 1
+            if time == after[1]:
+                yield label, lambda: after
+            elif before is None:
+                yield label, partial(fail, InvalidArgument(f"The time {time:g} lies before the first step, which is at {begin:g}."))
+            else:
+                yield label, lambda: (between(before[0], after[0], before[1], after[1], time, velocity), time)
+        before = after
+    for time in (times or [])[number:]:
+        yield label, partial(fail, InvalidArgument(f"The time {time:g} lies beyond the last step."))
+
+
+def fail(error):
+    raise error
+
+
+def to_times(text):
+    """T[,T...]|BEGIN:END:STEP"""
+    found = set()
+    for part in text.split(","):
+        ends = [float(each) for each in part.split(":")]
+        if len(ends) not in (1, 3) or ends[2:] and not 0 <= (ends[1] - ends[0]) / ends[2] < 1e6:
+            raise ValueError(text)
+        found.update(ends if len(ends) == 1 else frames(*ends))
+    return sorted(found)
+
+
+to_times.__name__ = to_times.__doc__  # which argparse names where a value is wrong
+
+
+# -- of surfaces --
+
+def run_convert(arguments):
+    """python -m marchingcorrectors convert: particles to .vtp and .pvd, surfaces to USD."""
+    parser = argparse.ArgumentParser(prog="python -m marchingcorrectors convert", allow_abbrev=False)
+    parser.add_argument("input", nargs="+", metavar="IN", help="particles in any format, or, for a film, .vtp files of surfaces, or "
+                        "a .pvd file of them")
+    parser.add_argument("output", metavar="OUT", help=".vtp or .pvd of particles; for a film of surfaces .usdc, .usda or .usd")
+    add_options(parser)
+    given = parser.parse_args(arguments)
+    if is_usd(given.output):
+        print(f"{given.output}: {convert(given)}")
+    else:
+        refuse_options(given)
+        from .io.convert import convert as convert_particles
+
+        convert_particles(given.input, given.output)
+
+
+def convert(given):
+    """Of .vtp files, or of lists of them."""
+    paths, steps = [Path(path) for path in in_order(given.input)], []
+    for path in paths:
+        times = list_times(path) if path.suffix.lower() == ".pvd" else {None: [path]}
+        steps += [(files[0].name, (time, files)) for time, files in times.items()]
+
+    def make(film, step, time):
+        found, surface = read_surface(step[1])
+        film.up = given.up or film.up
+        known = found if step[0] is None else step[0]
+        time = time if known is None or given.time_step is not None else known
+        film.add(surface, time)
+        return tell(surface, time)
+
+    return run(given, [*paths, *(path for _, (_, files) in steps for path in files)], steps, make)
+
+
+def read_surface(paths):
+    """The time of VTK's XML poly data, None where it is not told, and the surface of all of their pieces."""
+    time, points, triangles, line_points, lengths, arrays, count = None, [], [], [], [], {}, 0
+    for path in [piece for path in paths for piece in (list_pieces(path) if path.suffix.lower() == ".pvtp" else [path])]:
+        if path.suffix.lower() != ".vtp" or not path.is_file():
+            raise io.FileError(f"'{path}' is no .vtp file of a surface." if path.is_file() else f"There is no file '{path}'.")
+        try:
+            file = XmlFile(path)
+            for array in file.field:
+                time = float(file.values(array).ravel()[0]) if array.name in TIMES and array.count else time
+            for piece in file.pieces:
+                cells = {}
+                for name in ("Polys", "Lines"):
+                    own = {array.name: array for array in piece[name]}
+                    ends = file.values(own["offsets"]) if piece["counts"][name] else np.zeros(0, int)
+                    if len(ends):
+                        own["connectivity"].count = int(ends[-1])
+                        file.check([own["connectivity"]])
+                    cells[name] = ends, file.values(own["connectivity"]) + count if len(ends) else np.zeros(0, int)
+                ends, corners = cells["Polys"]
+                if len(ends) and (np.diff(ends, prepend=0) != 3).any():
+                    raise ValueError("it has faces that are no triangles")
+                if piece["count"] and not len(ends) and not len(cells["Lines"][0]):
+                    raise ValueError("it has points, but no triangles and no lines; of particles, make surfaces: python -m "
+                                     "marchingcorrectors surface")
+                if piece["count"]:
+                    points.append(file.values(piece["Points"][0]))
+                    for array in piece["PointData"]:
+                        arrays.setdefault(array.name, []).append(file.values(array))
+                triangles.append(corners.reshape(-1, 3))
+                lengths.append(np.diff(cells["Lines"][0], prepend=0))
+                line_points.append(cells["Lines"][1])
+                count += piece["count"]
+            for corners in (*triangles, *line_points):
+                if corners.size and not 0 <= corners.min() <= corners.max() < count:
+                    raise ValueError("a cell names a point that is not there")
+        except (io.FileError, ImportError, MemoryError):
+            raise
+        except Exception as error:
+            raise io.FileError(f"{path.name} is no surface, or damaged: {error}.") from None
+    arrays = {name: np.concatenate(parts) for name, parts in arrays.items() if len(parts) == len(points)}
+    lengths = np.concatenate([[0], *lengths]).astype(int)
+    normals = arrays.pop("Normals", None)
+    is_plane = len(lengths) > 1
+    return time, Surface(
+        points=np.concatenate(points) if points else np.empty((0, 3), np.float32), triangles=np.concatenate(triangles),
+        normals=normals, attributes=arrays, line_offsets=np.cumsum(lengths) if is_plane else None,
+        line_points=np.concatenate(line_points) if is_plane else None)

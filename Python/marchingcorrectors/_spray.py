@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Spray: particles in small drops, or alone, which a film shows as balls beside the surface of the others."""
+import dataclasses
+
+import numpy as np
+
+from ._functions import probe
+from ._library import InvalidArgument
+from ._options import PROBE
+from ._surface import CELLS
+from ._usd import Spray
+from .io._particles import usual
+
+KEYWORDS = ("smoothing_length", "volume", "mass", "density", "solid", "within", "only", "device")
+
+
+def take_spray(surface, particles, words, iso, least, velocity=None):
+    """The surface without its closed pieces that enclose fewer than `least` fluid particles, and these particles, with those
+    that no piece encloses, as the sum of the weights is below `iso` there, and that are nearest to no point of the surface, as
+    the tips of pieces are.
+
+    words: those of free_surface(), which made the surface of these particles, with nearest_particle. velocity: its array's name.
+    """
+    if surface.line_offsets is not None:
+        raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
+    own, every = particles.words(words), particles.positions
+    fluid = np.ones(len(every), bool) if own.get("solid") is None else np.asarray(own["solid"]) == 0
+    if own.get("only") is not None:
+        fluid &= own["only"]
+    if own.get("within") is not None:
+        fluid &= ((every >= own["within"][::2]) & (every <= own["within"][1::2])).all(axis=1)
+    fluid = np.flatnonzero(fluid)
+    kept = {name: value for name, value in words.items() if name in PROBE or name in KEYWORDS}
+    is_spray = probe(particles, every[fluid], **kept).weight_sum < iso
+    label = label_pieces(surface.triangles, len(surface.points))
+    small = small_pieces(surface, label, every, fluid, least)
+    is_small = np.isin(label, [piece for piece, _ in small])
+    is_spray &= ~np.isin(fluid, surface.nearest_particle[~is_small])
+    is_spray |= np.isin(fluid, np.concatenate([np.zeros(0, int), *(own for _, own in small)]))
+    surface = dataclasses.replace(surface, nearest_particle=None)
+    chosen = fluid[is_spray]
+    ids = usual([name for name in particles.arrays if particles.arrays[name].dtype.kind in "iu"], "particle_id")
+    return without_points(surface, is_small), Spray(
+        every[chosen], find_widths(surface, own, len(every))[chosen],
+        None if velocity is None else particles.arrays[velocity][chosen], None if ids is None else particles.arrays[ids][chosen])
+
+
+def label_pieces(triangles, count):
+    """The lowest point of the piece of each point: pieces are triangles that share points."""
+    label = np.arange(count)
+    edges = np.concatenate([triangles[:, :2], triangles[:, 1:]]).astype(np.int64)
+    while True:
+        ends = label[edges]
+        lowest = ends.min(axis=1)
+        if (ends == lowest[:, None]).all():
+            return label
+        np.minimum.at(label, ends.ravel(), np.repeat(lowest, 2))
+        while (label[label] != label).any():
+            label = label[label]
+
+
+def small_pieces(surface, label, positions, fluid, least):
+    """(piece, its particles) of each closed piece of fewer than `least`: those that it encloses, or that are nearest to its
+    points. A cavity is no such piece, but goes with the one around it."""
+    piece = label[surface.triangles[:, 0]]
+    corners = surface.points[surface.triangles].astype(float)
+    volume = np.bincount(piece, np.linalg.det(corners), len(label))
+    nearest = np.unique(np.stack([label, surface.nearest_particle], axis=1), axis=0)
+    begins = np.searchsorted(nearest[:, 0], np.arange(len(label) + 1))
+    order, along = np.argsort(piece, kind="stable"), fluid[np.argsort(positions[fluid, 0], kind="stable")]
+    ends = np.searchsorted(piece[order], np.arange(len(label) + 1))
+    found, x = [], positions[along, 0]
+    for each in np.flatnonzero((np.diff(begins) > 0) & (np.diff(begins) < least) & (np.diff(ends) > 0)):
+        own = order[ends[each]:ends[each + 1]]
+        low, high = corners[own].min(axis=(0, 1)), corners[own].max(axis=(0, 1))
+        near = along[np.searchsorted(x, low[0]):np.searchsorted(x, high[0], "right")]
+        near = near[((positions[near] >= low) & (positions[near] <= high)).all(axis=1)]
+        if is_closed(surface.triangles[own]):
+            inside = near[encloses(corners[own], positions[near].astype(float))]
+            found.append((each, np.union1d(inside, nearest[begins[each]:begins[each + 1], 1]), low, high))
+    small = [one for one in found if volume[one[0]] > 0 and len(one[1]) < least]
+    small += [one for one in found if volume[one[0]] <= 0 and any(
+        (one[2] >= other[2]).all() and (one[3] <= other[3]).all() for other in small)]
+    return [one[:2] for one in small]
+
+
+def is_closed(triangles):
+    """Whether each edge has a triangle on either side."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
+    there, back = (np.sort(edges[:, i] << 32 | edges[:, 1 - i]) for i in range(2))
+    return np.array_equal(there, back)
+
+
+def encloses(corners, points):
+    """Whether triangles go around each of the points: their solid angles from there add up to that of a sphere."""
+    a, b, c = np.moveaxis(corners[None] - points[:, None, None], 2, 0)
+    la, lb, lc = (np.linalg.norm(each, axis=-1) for each in (a, b, c))
+    dot = lambda one, other: np.einsum("...i,...i", one, other)  # noqa: E731
+    angle = np.arctan2(dot(a, np.cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+    return np.abs(angle.sum(axis=1)) > np.pi
+
+
+def without_points(surface, left_out):
+    """The surface without points, and triangles that have one."""
+    if not left_out.any():
+        return surface
+    number = np.cumsum(~left_out) - 1
+    kept = ~left_out[surface.triangles[:, 0]]
+    arrays = {f.name: getattr(surface, f.name)[~left_out] for f in dataclasses.fields(surface)
+              if isinstance(getattr(surface, f.name), np.ndarray) and (f.name == "points" or f.name not in CELLS)}
+    return dataclasses.replace(
+        surface, **arrays, triangles=number[surface.triangles[kept]].astype(surface.triangles.dtype),
+        triangle_keys=None if surface.triangle_keys is None else surface.triangle_keys[kept],
+        attributes={name: array[~left_out] for name, array in surface.attributes.items()})
+
+
+def find_widths(surface, words, count):
+    """Diameters of balls with the particles' volumes; where these are not given, of a spacing of h / 1.3."""
+    volume = words.get("volume")
+    if volume is None or isinstance(volume, str):
+        mass, density = words.get("mass"), words.get("density")
+        has_volume = volume is None and mass is not None and density is not None
+        volume = mass / density if has_volume else (surface.statistics["smoothing_length_max"] / 1.3) ** 3
+    return np.broadcast_to(np.cbrt(6 / np.pi * np.asarray(volume, float)), count)

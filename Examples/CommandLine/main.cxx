@@ -47,6 +47,10 @@ bool Make(Sharing& sharing)
   {
     return MakeMeterTable(sharing);
   }
+  if (job.IsPointTable())
+  {
+    return MakePointTable(sharing);
+  }
   isProjection || job.IsProbe() ? MakeField(sharing) : MakeSurface(sharing);
   return true;
 }
@@ -166,8 +170,8 @@ void MakeSurface(Sharing& sharing)
     wallSeconds.push_back(run.WallSeconds);
     if (!job.Quiet && sharing.IsFirst())
     {
-      std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
-                << std::flush;
+      std::cout << (i == 0 ? DescribeRun(runs.back(), job.Verbose) : "")
+                << DescribeSeconds(runs.back(), job.Verbose) << std::flush;
     }
   }
   const double peakResidentBytes = PeakResidentBytes();

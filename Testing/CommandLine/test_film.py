@@ -108,6 +108,52 @@ class Film(CommandLineTest):
         self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "only --times asks for; leave out --ids")
 
+    def test_ranges_of_times(self):
+        """A range is its times; frames are as many as the unit of time and the slow motion say."""
+        paths = self.write_steps(3)
+        film = [*paths, self.film, *FREE, "--quiet", "--time-step", "0.1"]
+        for options, times in ((["--times", "0:0.2:0.05"], [0, 0.05, 0.1, 0.15, 0.2]), (["--times", "0.2,0:0.1:0.04"], [0, 0.04, 0.08, 0.2]),
+                               (["--fps", "10"], [0, 0.1, 0.2]), (["--fps", "10", "--slow", "2"], [0, 0.05, 0.1, 0.15, 0.2]),
+                               (["--fps", "12"], [0, 1 / 12, 2 / 12])):
+            self.run_good(*film, *options)
+            self.assertEqual([round(time, 9) for time, _ in self.listed()], [round(time, 9) for time in times])
+        for options, sentence in ((["--times", "0:0.2"], "times, or BEGIN:END:STEP"), (["--times", "0:0.2:0"], "must be greater than 0"),
+                                  (["--times", "0.2:0:0.1"], "a range with 1 to"), (["--times", "0:1:1e-9"], "a range with 1 to"),
+                                  (["--fps", "1e9"], "more than a million frames"), (["--slow", "2"], "--fps"),
+                                  (["--fps", "2", "--times", "0"], "--times")):
+            self.one_sentence(self.run_program(*film, *options), 2, sentence)
+
+    def test_points_over_time(self):
+        """--probe with several steps and a .csv output: a row for each step and point, empty where there is no fluid."""
+        paths = self.write_steps(3)
+        (self.directory / "points.csv").write_text("x,y,z,name\n0,0,0,middle\n0.2,0.1,0,side\n9,0,0,far\n")
+        table = self.directory / "table.csv"
+
+        def rows(*arguments):
+            self.run_good(*arguments, "--probe", "points.csv", "--quiet")
+            with open(table, encoding="utf-8") as stream:
+                return list(csv.DictReader(stream))
+        found = rows(*paths, table, "--time-step", "0.1", "--times", "0:0.2:0.05")
+        self.assertEqual([(float(row["time"]), row["point"], row["name"], row["valid"]) for row in found],
+                         [(0.05 * i if i != 3 else 0.15, str(k), name, str(int(k < 2))) for i in range(5) for k, name in enumerate(("middle", "side", "far"))])
+        self.assertEqual({row["Density"] for row in found if row["valid"] == "0"}, {""})
+        for row in found:
+            if row["name"] == "side":
+                self.assertAlmostEqual(float(row["Velocity:0"]), -0.2, delta=0.02)  # 2 / s around z
+                self.assertAlmostEqual(float(row["Velocity:2"]), -float(row["time"]), delta=0.01)
+        alone = rows(paths[1], table)
+        for one, row in zip(alone, found[6:9]):
+            self.assertEqual({**one, "time": ""}, {**row, "time": ""})
+        self.one_sentence(self.run_program(*paths, "o.vtp", "--probe", "points.csv"), 2, ".csv")
+
+    def test_color_names(self):
+        """A name that no array has is told before a surface is made; one that differs in case is offered."""
+        files.write_vtp(self.input, *files.drop_at(0.0))
+        for name, sentence in (("velocity", "no array 'velocity' to colour by; did you mean 'Velocity'?"), ("Nope", "there are .*Velocity")):
+            result = self.run_program(self.input, self.input, "film_%04d.ply", "--free-surface", "--color-by", name)
+            self.assertRegex(result.stderr, sentence.replace("?", "[?]"))
+            self.assertEqual((result.returncode, result.stdout), (1, ""))
+
     def test_period_between_steps(self):
         """Particles that cross the side of a period go on beyond it, not back through the box."""
         points, arrays = files.lattice(6)

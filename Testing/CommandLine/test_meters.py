@@ -41,11 +41,27 @@ class Meter(CommandLineTest):
         self.one_sentence(result, 0, "warning: .*The (gauge|section) 'far' is outside of all fluid")
         self.assertEqual(len(self.read_rows()), 2)
         many = [word for i in range(300) for word in (self.one[0], f"far{i}=9,0,{i}:9,0,{i + 1}" + f":9,1,{i}" * (self.one[0] == "--flux"))]
-        result = self.run_program(self.source, self.source, self.table, *many, *self.one)
+        result = self.run_program(self.source, self.source, self.table, *many, *self.one, "--time-step", "1")
         lines = result.stderr.splitlines()
         self.assertRegex(lines[0], "300 of 301 (gauges|sections), the first of them 'far0', are outside of all fluid")
         self.assertRegex(lines[1], "1 more step: warning: places are outside of all fluid")
         self.assertEqual(len(lines), 2)
+
+    def test_times(self):
+        """The time of a single file counts; where files tell none, one line says so, and what velocities say."""
+        for step in range(3):
+            points, arrays = files.drop_at(0.05 * step)
+            files.write_vtp(self.directory / f"step_{step}.vtp", points, arrays)
+            text = (self.directory / f"step_{step}.vtp").read_text()
+            told = files.xml_array("TimeValue", [0.5 + 0.05 * step], form='format="ascii" NumberOfTuples="1"')
+            (self.directory / f"timed_{step}.vtp").write_text(text.replace("<PolyData>", f"<PolyData><FieldData>{told}</FieldData>"))
+        steps, timed = ([f"{name}_{i}.vtp" for i in range(3)] for name in ("step", "timed"))
+        untold = "^marching-correctors: warning: the files tell no times, so the steps are at 0, 1, 2, .*--time-step, which is about 0.05.* by 'Velocity'\n$"
+        for source, says, times in ((steps, untold, [0, 1, 2]), (timed, "^$", [0.5, 0.55, 0.6]), (timed[1:2], "^$", [0.55]),
+                                    (["timed_1.vtp#0"], "^$", [0.55]), (steps[:1], "^$", [0])):
+            self.run_good(*source, self.table, *self.one, says=says)
+            self.assertEqual([round(float(row["time"]), 9) for row in read_table(self.table)], times)
+        self.run_good(*steps, self.table, *self.one, "--time-step", "0.05")
 
     def test_steps_without_fluid(self):
         """A step without particles of the type, or without any, is a step like others; in a plane, too."""
@@ -162,7 +178,7 @@ class Gauge(Meter):
 
     def test_a_step_that_fails(self):
         """The others are in the table."""
-        result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP)
+        result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP, "--time-step", "1")
         self.one_sentence(result, 1, "marching-correctors: missing.vtp cannot be read: ")
         self.assertEqual([row["time"] for row in self.read_rows()], ["0", "2"])
 

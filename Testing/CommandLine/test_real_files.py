@@ -367,6 +367,18 @@ class RealFiles(CommandLineTest):
                           source=file)
         steps = "".join(f"{25 * n}\nTime={0.1 * n}\n" + "".join(f"A {x} {y} {z}\n" for x, y, z in block((5, 5, n)))
                         for n in (4, 6, 9))
+        two = self.directory / "two.xyz"  # water and air, told apart by a text
+        both = [("O", *p) for p in points] + [("N", x, y, z + 3) for x, y, z in points] + [("H", x, y, z + 6) for x, y, z in points]
+        two.write_text(f"{len(both)}\n\n" + "".join("%s %r %r %r\n" % row for row in both))
+        for words, volume in (("O",), 0.216), (("O", "H"), 0.432), (("X",), None):
+            numbers = self.directory / "numbers.csv"
+            self.run_good(two, "film.pvd", "--free-surface", *H, "--quiet", "--numbers", numbers, *[w for word in words for w in ("--only", f"species={word}")],
+                          says="^$" if volume else "No particle is left")
+            row, = read_table(numbers)
+            self.assertAlmostEqual(float(row["volume"]), volume or 0, delta=0.06)
+        self.assertNotIn('"species"', (self.directory / "film_0000.vtp").read_text())
+        self.one_sentence(self.extract("--free-surface", *H, "--only", "x=O", source=file), 1, "no point array 'x'")
+        self.one_sentence(self.extract("--free-surface", *H, "--only", "id=O", source=file), 1, "--only id=O chooses a text, and the array has numbers")
         film = self.directory / "film.xyz"
         film.write_text(steps)
         self.assertEqual([(round(t, 9), round(level, 1)) for t, _, level in self.levels([film], *H)],

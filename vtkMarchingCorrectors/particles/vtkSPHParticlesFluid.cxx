@@ -235,6 +235,12 @@ std::string vtkSPHParticles::DescribeUnusedType(const vtkSPHGather& gather)
   vtkPointData* data = this->Points->GetPointData();
   for (const std::string& name : ListTypes(this->Description, data))
   {
+    const std::vector<vtkSPHOnly>& chosen = this->Description.Only;
+    if (std::any_of(chosen.begin(), chosen.end(),
+          [&name](const vtkSPHOnly& only) { return only.Name == name; }))
+    {
+      continue; // it is used, to choose particles
+    }
     vtkDataArray* array = data->GetArray(name.c_str());
     std::vector<double> mine;
     for (const auto& count : CountValues(array))

@@ -60,10 +60,12 @@ bool IsTo(const Job& j, const char* ending)
 }
 
 const std::vector<Rule> Rules = {
-  { All, IF(j.Times.empty()), "particles are matched between steps, which only --times asks for",
+  { All, IF(!j.HasTimes()), "particles are matched between steps, which only --times asks for",
     { "--ids" } },
   { All, IF(!j.Walls.empty()), "--walls tells which particles are fluid", { "--fluid" } },
   { All, IF(!j.IsFlux()), "--velocity is for --flux and --fluxes", { "--velocity" } },
+  { All, IF(!j.Has("--fps")), "--slow is for --fps", { "--slow" } },
+  { All, IF(j.Has("--times")), "--times says which times", { "--fps" } },
   { All, IF(!j.Has("--dp")), "--coefh is for --dp", { "--coefh" } },
   { All, IF(!j.Has("--slice") && !j.Has("--line") && !j.Has("--project")),
     "--resolution is for --slice, --line and --project", { "--resolution" } },
@@ -114,9 +116,10 @@ const std::vector<Rule> Rules = {
   { Others, IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
 
   { Probes,
-    IF(j.Inputs.size() > 1 || IsListOfSteps(j.Inputs.front()) || !j.Times.empty() ||
-      j.TimeStep != 1.0),
-    "{mode} takes one INPUT of one time" },
+    IF(!j.IsPointTable() &&
+      (j.Inputs.size() > 1 || IsListOfSteps(j.Inputs.front()) || j.HasTimes() ||
+        j.TimeStep != 1.0)),
+    "{mode} takes one INPUT of one time, unless it is --probe and the output is a .csv table" },
   { Probes, IsAny, "{mode} makes no surface",
     { "--scalar", "--iso", "--free-surface", "--stats", "--repeat", "--widening" } },
   { Probes, IF(j.Has("--probe")), "{mode} has points already", { "--slice", "--line" } },
@@ -130,7 +133,7 @@ const std::vector<Rule> Rules = {
 
   { Films, IF(!j.IsFilm()),
     "the output is not a film, which is a .pvd file or has %04d in its name",
-    { "--times", "--time-step" } },
+    { "--times", "--fps", "--time-step" } },
   { Films, IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsListOfSteps)),
     "a .pvd or .series file must be the only INPUT, because it lists the steps" },
   { Films, IF(IsListOfSteps(j.Inputs.front()) && j.TimeStep != 1.0),
@@ -319,6 +322,11 @@ const char* Job::Mode() const
     }
   }
   return "";
+}
+
+bool Job::IsPointTable() const
+{
+  return !this->ProbeFile.empty() && EndsWith(this->Output, ".csv");
 }
 
 bool Job::IsFilm() const

@@ -81,6 +81,8 @@ struct Job
   {
     return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
   }
+  /// Whether OUTPUT is a table of the field at the points of a file, a row a step and point.
+  bool IsPointTable() const;
   bool IsGauge() const { return this->HasGauges() && this->NumbersFile.empty(); }
   bool IsFlux() const { return !this->Fluxes.empty() || !this->FluxFile.empty(); }
   /// Whether OUTPUT is a table of one row a step and place.
@@ -105,9 +107,12 @@ struct Job
   std::vector<std::string>
     Walls; ///< files whose particles are walls, at all times; or of each step: .pvd, %04d
   std::string Output;
-  std::vector<double> Times; ///< of a film or table, ascending; empty: all that are stored
-  double TimeStep = 1.0;     ///< between the steps of a film of particle files
-  std::string IdArray;       ///< that particles are matched by between steps; empty: found
+  std::vector<double> Times;    ///< of a film or table, ascending; empty: all that are stored
+  double FramesPerSecond = 0.0; ///< of a film; 0: not asked for
+  double SlowMotion = 1.0;      ///< how many times slower it runs than time passes
+  bool HasTimes() const { return !this->Times.empty() || this->FramesPerSecond > 0.0; }
+  double TimeStep = 1.0; ///< between the steps of a film of particle files
+  std::string IdArray;   ///< that particles are matched by between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;
   std::vector<Place> Gauges;
@@ -140,6 +145,7 @@ struct Job
   PictureOptions Picture;
   int Repeat = 1;
   bool Quiet = false;
+  bool Verbose = false;
   bool ListArrays = false; ///< of the only input
 };
 

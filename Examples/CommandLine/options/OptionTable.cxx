@@ -5,12 +5,16 @@
 #include "Job.h"
 
 #include "OptionValue.h"
+#include "ParticleFile.h"
 #include "SafeText.h"
 #include "mcor.h"
 
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -50,10 +54,52 @@ void AddOnly(Job& job, Text option, Text text)
   const std::size_t equals = NameEnd(option, text, "NAME=VALUE or NAME=LOW:HIGH");
   const std::size_t colon = text.find(':', equals);
   const std::string name = Printable(text.substr(0, equals));
-  const double low = ToNumber(option, text.substr(equals + 1, colon - equals - 1));
-  const double high = colon == std::string::npos ? low : ToNumber(option, text.substr(colon + 1));
+  double value = 0.0;
+  const std::string word = text.substr(equals + 1);
+  if (colon == std::string::npos && !ParseNumber(word, value) && word != "inf" && word != "-inf")
+  {
+    Need(!word.empty(), option, "NAME=VALUE, NAME=LOW:HIGH or NAME=WORD", text);
+    std::vector<std::string>& words = ChosenWords()[name];
+    words.push_back(word);
+    const auto place = static_cast<double>(words.size());
+    SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), place, place);
+    return;
+  }
+  const auto toLimit = [&option](const std::string& number)
+  {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return number == "inf" ? infinity : number == "-inf" ? -infinity : ToNumber(option, number);
+  };
+  const double low = toLimit(text.substr(equals + 1, colon - equals - 1));
+  const double high = colon == std::string::npos ? low : toLimit(text.substr(colon + 1));
   Need(low <= high, option, "the lower value first", text);
   SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
+}
+
+/// Times and ranges of times, ascending, each once.
+std::vector<double> ToTimes(Text option, Text text)
+{
+  std::set<double> times;
+  for (const std::string& item : ItemsOf(text))
+  {
+    const std::vector<std::string> parts = ItemsOf(item, ':');
+    Need(parts.size() == 1 || parts.size() == 3, option, "times, or BEGIN:END:STEP", text);
+    const double begin = ToNumber(option, parts[0]);
+    times.insert(begin);
+    if (parts.size() == 3)
+    {
+      const double step = ToPositive(option, parts[2]);
+      const double count = std::floor((ToNumber(option, parts[1]) - begin) / step + 1e-9);
+      Need(count >= 0.0 && count < 1e6, option, "a range with 1 to 1,000,000 times", text);
+      for (double i = 1.0; i <= count; ++i)
+      {
+        char digits[32];
+        std::snprintf(digits, sizeof(digits), "%.15g", begin + i * step); // 3 * 0.05 is 0.15
+        times.insert(std::strtod(digits, nullptr));
+      }
+    }
+  }
+  return { times.begin(), times.end() };
 }
 
 void SetPeriod(Job& job, Text option, Text text)
@@ -288,8 +334,9 @@ const std::vector<Option> Table = {
     SetFluid },
   { "--within", "X0,X1,Y0,Y1,Z0,Z1",
     "leave out particles that are not in these bounds, whose sides may be inf or -inf", SetWithin },
-  { "--only", "NAME=VALUE[:VALUE]",
-    "leave out particles whose value in this array is another one, or not in this range; may be "
+  { "--only", "NAME=VALUE[:VALUE]|WORD",
+    "leave out particles whose value or text in this array is another one, or not in this range; "
+    "may be "
     "given more than once: of several ranges of one array any counts, of several arrays all do",
     AddOnly, true },
   { "--walls", "FILE",
@@ -431,11 +478,16 @@ const std::vector<Option> Table = {
   { "--numbers", "TABLE.csv",
     "for a film: write a row for each step: area, volume, pieces, and readings of --gauge",
     DO(j.NumbersFile = v) },
-  { "--times", "T[,T...]",
+  { "--times", "T[,T...]|BEGIN:END:STEP",
     "for a film, gauges or fluxes: at these times, which may lie between two steps",
-    DO(const std::vector<double> times = ToNumbers(n, v);
-       const std::set<double> sorted(times.begin(), times.end());
-       j.Times.assign(sorted.begin(), sorted.end())) },
+    DO(j.Times = ToTimes(n, v)) },
+  { "--fps", "N",
+    "for a film, gauges, fluxes or a table of points: N frames for each unit of time, between "
+    "steps, "
+    "too",
+    DO(j.FramesPerSecond = ToPositive(n, v)) },
+  { "--slow", "K", "with --fps, slow motion: K times as many frames",
+    DO(j.SlowMotion = ToPositive(n, v)) },
   { "--ids", "NAME",
     "with --times, array of ids that tell which particle of a step is which of the next",
     DO(j.IdArray = Printable(v)) },
@@ -447,6 +499,9 @@ const std::vector<Option> Table = {
   { "--repeat", "N", "run N times, and write the statistics of each run (default 1)",
     DO(j.Repeat = ToCount(n, v, 1)) },
   { "--quiet", "", "print errors and warnings only", DO(j.Quiet = true) },
+  { "--verbose", "",
+    "print the device, the grid, the correction and the seconds of each phase, too",
+    DO(j.Verbose = true) },
 
   { "", "", "Pictures and colours", {} },
   { "--screenshot", "FILE.png",

@@ -120,6 +120,8 @@ const Advice Advices[] = {
   { "masses and densities, or remove",
     "masses and densities (--volume, or --mass and --density), or remove", "--volume" },
   { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
+  { "for the fluid. Point arrays",
+    "for the fluid; leave out --fluid if all particles are fluid. Point arrays", "--fluid" },
   { "pthread_create has failed: Resource temporarily unavailable",
     "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
   { "by a range of positions", "by a range of positions (--within)", "--within" },

@@ -12,6 +12,7 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -19,7 +20,9 @@
 #include "vtkPolyData.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
+#include "vtkStringArray.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -163,6 +166,33 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
   }
 }
 
+/// The array with its texts as numbers, where --only chooses words of it.
+vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstractArray* array)
+{
+  const auto chosen = ChosenWords().find(array->GetName());
+  if (chosen == ChosenWords().end())
+  {
+    return array;
+  }
+  auto* texts = vtkStringArray::SafeDownCast(array);
+  if (!texts)
+  {
+    FailToRead(file,
+      "--only " + chosen->first + "=" + chosen->second.front() +
+        " chooses a text, and the array has numbers; give a number or a range");
+  }
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName(array->GetName());
+  for (vtkIdType i = 0; i < texts->GetNumberOfValues(); ++i)
+  {
+    const std::vector<std::string>& words = chosen->second;
+    const auto found = std::find(words.begin(), words.end(), std::string(texts->GetValue(i)));
+    numbers->InsertNextValue(
+      found == words.end() ? 0 : 1 + static_cast<int>(found - words.begin()));
+  }
+  return numbers.Get();
+}
+
 /// The points' arrays alone, all that is used of the data: no cells (one per particle, for
 /// nothing), and nothing that was not checked.
 vtkSmartPointer<vtkPointSet> TakeParticles(
@@ -185,7 +215,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   vtkPointData* arrays = data->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
-    particles->GetPointData()->AddArray(arrays->GetAbstractArray(i));
+    particles->GetPointData()->AddArray(AsNumbers(file, arrays->GetAbstractArray(i)));
   }
   vtkFieldData* field = data->GetFieldData();
   for (int i = 0; field && i < field->GetNumberOfArrays(); ++i)
@@ -270,6 +300,12 @@ std::vector<std::string> ListParts(const std::string& name)
 
 }
 
+std::map<std::string, std::vector<std::string>>& ChosenWords()
+{
+  static std::map<std::string, std::vector<std::string>> words;
+  return words;
+}
+
 void CheckRegularFile(const std::string& file)
 {
   std::error_code error;
@@ -337,10 +373,15 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::vector<std::string>& files
   return JoinSets(sets);
 }
 
-std::vector<double> ListTimes(const std::string& file)
+std::vector<double> ListTimes(const std::string& name)
 {
+  const auto [file, step] = StepOf(name);
   const Kind* kind = KindOf(ParticleFormats, file);
-  return kind && kind->ListTimes ? kind->ListTimes(file) : std::vector<double>();
+  const std::vector<double> times =
+    kind && kind->ListTimes ? kind->ListTimes(file) : std::vector<double>();
+  return file == name     ? times
+    : step < times.size() ? std::vector<double>{ times[step] }
+                          : std::vector<double>();
 }
 
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files)

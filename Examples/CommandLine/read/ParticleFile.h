@@ -5,6 +5,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct vtkSPHPeriod;
 /// ".vtp, .vtu, ... or .vtk": the endings of the files that ReadParticles knows.
 std::string ParticleFileEndings();
 
+/// The words that --only NAME=WORD chooses, by the names of their arrays. An array of texts with such a
+/// name is read as the numbers of these words, from 1 on, and 0 for all others.
+std::map<std::string, std::vector<std::string>>& ChosenWords();
+
 /// Reads particles and their arrays from files that each hold a part of them. Arrays that are not
 /// in all of them are left out, and so are particles that a part marks as another one's
 /// (vtkGhostType). Throws std::runtime_error with one sentence if a file cannot be read, is
@@ -26,8 +31,8 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, bool mayBeEmpty = false);
 
 /// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ... where there
-/// are several; none where it tells of none. Throws std::runtime_error.
-std::vector<double> ListTimes(const std::string& file);
+/// are several; none where it tells of none. Of FILE#2 that is one time. Throws std::runtime_error.
+std::vector<double> ListTimes(const std::string& name);
 
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);

@@ -9,6 +9,7 @@
 #include "Messages.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
+#include "ParticleTimes.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
@@ -27,6 +28,7 @@
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
@@ -185,6 +187,127 @@ std::string DrawField(
   colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
   colors.Include(shown);
   return picture.Draw(file, shown, frame, colors, axis);
+}
+
+namespace
+{
+
+/// The field at the points of a file at each time: a table with a row for each step and point.
+class PointTable : public Series
+{
+public:
+  explicit PointTable(Sharing& sharing)
+    : Series(sharing)
+    , File(this->Options.Output)
+  {
+    sharing.OnFirst(
+      [this]
+      {
+        this->Times.OpenFiles();
+        CheckOutputs({ this->Options.Output });
+        this->Points = ReadDataSet(this->Options.ProbeFile);
+      });
+  }
+
+  bool Make()
+  {
+    const bool isGood = this->MakeAll();
+    this->Shared.OnFirst(
+      [this]
+      {
+        if (this->Text.empty())
+        {
+          throw std::runtime_error("no step could be probed, so no table was written");
+        }
+        this->File.Write([this] { return this->Text; }, true);
+        if (!this->Options.Quiet)
+        {
+          const std::size_t steps = this->Times.Get().size();
+          std::cout << this->Points->GetNumberOfPoints() << " points, " << steps
+                    << (steps == 1 ? " step\n" : " steps\n");
+        }
+      });
+    return isGood;
+  }
+
+private:
+  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
+  {
+    vtkSPHProbe* probe = this->Options.Probe;
+    const std::string progress =
+      this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
+    this->Shared.OnAll(
+      [&]
+      {
+        probe->SetInputDataObject(1, SetUpParticles(probe, this->Options, particles));
+        probe->SetInputDataObject(0, this->Points);
+        Update(probe, this->Shared, progress);
+      });
+    const std::vector<std::string>& told = Messages().Warnings;
+    warnings.insert(warnings.end(), told.begin(), told.end());
+    this->Shared.OnFirst(
+      [&]
+      {
+        this->AddRows(this->Times.Get()[i], vtkDataSet::SafeDownCast(probe->GetOutput()));
+        this->File.Write([this] { return this->Text; }, false);
+      });
+  }
+
+  /// Adds a row for each point. The columns are those of the first step; a value is empty where there is
+  /// no fluid, or no such array.
+  void AddRows(double time, vtkDataSet* points)
+  {
+    vtkPointData* arrays = points->GetPointData();
+    if (this->Columns.empty())
+    {
+      this->Text = "time,point,x,y,z,valid";
+      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+      {
+        vtkAbstractArray* array = arrays->GetAbstractArray(i);
+        const int components = array->GetNumberOfComponents();
+        for (int c = 0; std::string(array->GetName()) != MaskName && c < components; ++c)
+        {
+          this->Columns.emplace_back(array->GetName(), c);
+          this->Text +=
+            "," + TableField(array->GetName() + (components > 1 ? ":" + std::to_string(c) : ""));
+        }
+      }
+      this->Text += "\n";
+    }
+    vtkDataArray* mask = arrays->GetArray(MaskName);
+    for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
+    {
+      const double* x = points->GetPoint(p);
+      const bool isValid = mask && mask->GetComponent(p, 0) > 0.0;
+      this->Text += DigitsOf(time) + "," + std::to_string(p);
+      for (int a = 0; a < 3; ++a)
+      {
+        this->Text += "," + DigitsOf(x[a]);
+      }
+      this->Text += isValid ? ",1" : ",0";
+      for (const auto& [name, component] : this->Columns)
+      {
+        vtkAbstractArray* array = arrays->GetAbstractArray(name.c_str());
+        const bool isOwn = this->Points->GetPointData()->HasArray(name.c_str());
+        this->Text +=
+          "," + (array && (isValid || isOwn) ? TableField(array, p, component) : std::string());
+      }
+      this->Text += "\n";
+    }
+  }
+
+  static constexpr const char* MaskName = "vtkValidPointMask";
+  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< others have none
+  std::vector<std::pair<std::string, int>> Columns; ///< arrays and components
+  std::string Text;
+  GrowingFile File;
+};
+
+}
+
+bool MakePointTable(Sharing& sharing)
+{
+  return PointTable(sharing).Make();
 }
 
 void MakeField(Sharing& sharing)

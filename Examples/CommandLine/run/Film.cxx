@@ -121,6 +121,11 @@ private:
     return this->Surfaces[i] + " (time " + TimeText(this->Times.Get()[i]) + ")";
   }
 
+  bool IsOfTimes() const override
+  {
+    return !this->Options.NumbersFile.empty() || !this->Options.ComponentFile.empty();
+  }
+
   void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
   {
     const std::string progress = "step " + std::to_string(i + 1) + " of " +

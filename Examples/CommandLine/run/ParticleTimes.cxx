@@ -22,6 +22,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -85,8 +86,9 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Steps of files given one by one, at the times that the files tell of.
-Steps GivenSteps(const Job& job, std::vector<std::string>& warnings)
+/// Steps of files given one by one, at the times that the files tell of. isTold: whether they do, or
+/// --time-step does.
+Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTold)
 {
   // If names differ in numbers alone, these tell the order: shells list tank_10 before tank_9.
   std::vector<std::string> inputs = job.Inputs;
@@ -108,10 +110,7 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings)
     {
       files.push_back(isFilm ? file + "#" + std::to_string(k) : file);
     }
-    if (isFilm || inputs.size() > 1)
-    {
-      times.insert(times.end(), steps.begin(), steps.end());
-    }
+    times.insert(times.end(), steps.begin(), steps.end());
   }
   if (job.Has("--time-step"))
   {
@@ -126,6 +125,7 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings)
       std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
       ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
   }
+  isTold = files.size() == 1 || job.Has("--time-step") || (!times.empty() && areAll && ascend);
   Steps steps;
   for (std::size_t i = 0; i < files.size(); ++i)
   {
@@ -185,7 +185,21 @@ void AddStepWalls(
 std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
-  for (std::size_t i = 0; job.Times.empty() && i < steps.size(); ++i)
+  if (job.FramesPerSecond > 0.0)
+  {
+    const double first = steps.front().Time, frame = 1.0 / (job.FramesPerSecond * job.SlowMotion);
+    const double count = std::floor((steps.back().Time - first) / frame + 1e-9);
+    if (!(count < 1e6))
+    {
+      throw UsageError("--fps makes more than a million frames of the times " + TimeText(first) +
+        " to " + TimeText(steps.back().Time) + "; give fewer, or another --time-step");
+    }
+    for (double i = 0.0; i <= count; ++i)
+    {
+      times.push_back(first + i * frame);
+    }
+  }
+  for (std::size_t i = 0; !job.HasTimes() && i < steps.size(); ++i)
   {
     times.push_back(steps[i].Time);
   }
@@ -272,7 +286,8 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
   const Job& job = sharing.Options;
   std::vector<std::string> notes;
   const bool haveTimes = IsListOfSteps(job.Inputs.front());
-  this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes);
+  this->Steps =
+    haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes, this->AreTold);
   for (const std::string& walls : job.Walls)
   {
     AddStepWalls(walls, haveTimes, this->Steps, notes);
@@ -344,6 +359,37 @@ void ParticleTimes::Reset()
   }
 }
 
+std::string ParticleTimes::CheckTold()
+{
+  if (this->AreTold)
+  {
+    return "";
+  }
+  std::string found;
+  std::vector<std::string> told;
+  if (this->Shared.GetCount() == 1 &&
+    !FailureOf([&] { this->At(0.5 * (this->Steps[0].Time + this->Steps[1].Time), told); }).empty())
+  {
+    this->Reset(); // without ids the particles tell nothing
+  }
+  for (const std::string& sentence : told)
+  {
+    const std::string moved = "the particles moved ", name = " times as far as '";
+    const std::size_t begin = sentence.find(moved), end = sentence.find(name, begin);
+    const std::size_t close =
+      end == std::string::npos ? end : sentence.find('\'', end + name.size());
+    if (close != std::string::npos)
+    {
+      found = ", which is about " +
+        sentence.substr(begin + moved.size(), end - begin - moved.size()) + " by '" +
+        sentence.substr(end + name.size(), close - end - name.size()) + "'";
+    }
+  }
+  return "the files tell no times, so the steps are at 0, 1, 2, ...; give the time between them "
+         "with --time-step" +
+    found;
+}
+
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
   Messages() = {};
@@ -375,9 +421,32 @@ Series::Series(Sharing& sharing)
 {
 }
 
+std::string Series::Label(std::size_t i) const
+{
+  const double time = this->Times.Get()[i];
+  return this->Times.ListFiles(time).front() +
+    (this->Options.HasTimes() ? " (time " + TimeText(time) + ")" : "");
+}
+
+void Series::Miss(std::size_t, const std::string& error)
+{
+  if (this->Times.Get().size() == 1)
+  {
+    throw std::runtime_error(error);
+  }
+}
+
 bool Series::MakeAll()
 {
   bool isGood = true;
+  if (!this->Options.HasTimes() && this->IsOfTimes())
+  {
+    const std::string untold = this->Times.CheckTold();
+    if (!untold.empty() && this->Shared.IsFirst())
+    {
+      Say("warning: " + untold);
+    }
+  }
   std::map<std::string, int> counts; // of each sentence, which is said once, with the first step
   for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
   {

@@ -43,6 +43,10 @@ public:
   /// Opens all that is read, see OpenSources().
   void OpenFiles() const;
 
+  /// A sentence where the times of several steps are nobody's: of tables, in which they count. Says
+  /// what they should be, where velocities tell.
+  std::string CheckTold();
+
   /// Returns the particles at a time. Throws std::runtime_error; call Reset() then, so that nothing
   /// is left of the failure.
   Sharing::Particles At(double time, std::vector<std::string>& warnings);
@@ -52,6 +56,7 @@ private:
   const Sharing& Shared;
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
+  bool AreTold = true; ///< by the files, a .pvd file or --time-step
   Sharing::Particles Walls;
   std::vector<std::string>
     WallFiles; ///< that Walls were read from: once where all steps have the same
@@ -72,10 +77,14 @@ public:
   bool MakeAll();
 
 protected:
-  virtual std::string Label(std::size_t i) const = 0;
+  /// A step in sentences: its file, and its time where it was asked for.
+  virtual std::string Label(std::size_t i) const;
   virtual void MakeStep(
     std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
-  virtual void Miss(std::size_t i, const std::string& error) = 0;
+  /// Takes note of a step that failed. The error of an only one is that of the program.
+  virtual void Miss(std::size_t i, const std::string& error);
+  /// Whether the times are numbers of the results, and not only the order of the steps.
+  virtual bool IsOfTimes() const { return true; }
 
   Sharing& Shared;
   const Job& Options;

@@ -254,7 +254,7 @@ std::string Fill(vtkFieldData* run, const std::string& form)
   return text;
 }
 
-std::string DescribeSeconds(vtkFieldData* run)
+std::string DescribeSeconds(vtkFieldData* run, bool atLength)
 {
   vtkDataArray* seconds = run->GetArray("Seconds");
   if (!seconds)
@@ -263,14 +263,17 @@ std::string DescribeSeconds(vtkFieldData* run)
   }
   std::ostringstream line;
   line << "seconds     " << std::fixed << std::setprecision(3);
-  for (int i = 0; i < seconds->GetNumberOfComponents(); ++i)
+  const int last = seconds->GetNumberOfComponents() - 1; // the total
+  for (int i = atLength ? 0 : last; i <= last; ++i)
   {
-    line << (i ? ", " : "") << seconds->GetComponentName(i) << " " << seconds->GetComponent(0, i);
+    line << (atLength && i > 0 ? ", " : "")
+         << (atLength ? seconds->GetComponentName(i) + std::string(" ") : "")
+         << seconds->GetComponent(0, i);
   }
   return line.str() + "\n";
 }
 
-std::string DescribeRun(vtkFieldData* run)
+std::string DescribeRun(vtkFieldData* run, bool atLength)
 {
   if (!run->GetArray("Seconds"))
   {
@@ -300,19 +303,21 @@ std::string DescribeRun(vtkFieldData* run)
       "[ (array {SmoothingLengthArray})]; volume: [array {VolumeArray}|{ParticleVolume}|"
       "{Mass} / {Density}|computed from {Mass}|computed]\n"
       "contour     [{Scalar}|weight sum][ = {IsoValues}]"
-      "[; range {ScalarRange:0} .. {ScalarRange:1}; field {Field}]"
-      "; kernel {Kernel}; cube size {CubeSize}\n"
-      "device      {Device} ({Platform})\n"
-      "cells       {VirtualCells} of the virtual grid, {SeedCells} seeds "
-      "({SeedCellsNotIntersected} without surface), {CellsUsed} with surface\n"
-      "correction  " +
-      (isPreview ? "none (preview)"
-                 : "vertices moved by: mean {CorrectionMean}, max {CorrectionMax}, deviation "
-                   "{CorrectionStandardDeviation}; iterations: mean {IterationsMean}, max "
-                   "{IterationsMax}; largest remaining error {ResidualMax}") +
+      "[; range {ScalarRange:0} .. {ScalarRange:1}]" +
+      (atLength ? "[; field {Field}]; kernel {Kernel}; cube size {CubeSize}\n"
+                  "device      {Device} ({Platform})\n"
+                  "cells       {VirtualCells} of the virtual grid, {SeedCells} seeds "
+                  "({SeedCellsNotIntersected} without surface), {CellsUsed} with surface\n"
+                  "correction  " +
+            std::string(isPreview
+                ? "none (preview)"
+                : "vertices moved by: mean {CorrectionMean}, max {CorrectionMax}, deviation "
+                  "{CorrectionStandardDeviation}; iterations: mean {IterationsMean}, max "
+                  "{IterationsMax}; largest remaining error {ResidualMax}")
+                : "") +
       "\n[lines       {Points} points, {Lines} lines|"
       "surface     {Points} points, {Triangles} triangles]" +
-      trimming + "[; length {Length}][; {Pieces} " + pieces +
+      (atLength ? trimming : "") + "[; length {Length}][; {Pieces} " + pieces +
       " of area {Area}|; area {Area}][, volume {Volume}]\n");
 }
 

@@ -120,13 +120,6 @@ public:
   }
 
 private:
-  std::string Label(std::size_t i) const override
-  {
-    const double time = this->Times.Get()[i];
-    return this->Times.ListFiles(time).front() +
-      (this->Options.Times.empty() ? "" : " (time " + TimeText(time) + ")");
-  }
-
   void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
   {
     const double time = this->Times.Get()[i];
@@ -165,15 +158,6 @@ private:
     }
     AppendTable(this->Text, table);
     this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
-  }
-
-  /// The error of an only time is that of the program.
-  void Miss(std::size_t, const std::string& error) override
-  {
-    if (this->Times.Get().size() == 1)
-    {
-      throw std::runtime_error(error);
-    }
   }
 
   const bool IsFlux, IsImage;

@@ -34,6 +34,10 @@ bool MakeFilm(Sharing& sharing);
 /// image. False if a step failed, of which all was said; the table has the others.
 bool MakeMeterTable(Sharing& sharing);
 
+/// Writes a table of the field at the points of a file at each time. False if a step failed, of which all
+/// was said; the table has the others.
+bool MakePointTable(Sharing& sharing);
+
 /// Writes a data set with the field: its points are those of a file, of a slice or of a line, or
 /// pixels, through which it is seen.
 void MakeField(Sharing& sharing);
@@ -102,11 +106,12 @@ vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* p
 /// [A|B|C] is the first one of these whose names all have values, or nothing.
 std::string Fill(vtkFieldData* run, const std::string& form);
 
-/// Describes a run's field data in a few lines; empty if the run had no particles to use.
-std::string DescribeRun(vtkFieldData* run);
+/// Describes a run's field data in three lines, or, at length, in more, for those who know the method;
+/// empty if the run had no particles to use.
+std::string DescribeRun(vtkFieldData* run, bool atLength);
 
-/// "seconds     input 0.010, search grid 0.020, ..., total 0.500\n", or empty as above.
-std::string DescribeSeconds(vtkFieldData* run);
+/// "seconds     0.500\n", at length "seconds     input 0.010, ..., total 0.500\n", or empty as above.
+std::string DescribeSeconds(vtkFieldData* run, bool atLength);
 
 /// The statistics of the last of `runs` as JSON, with the seconds of each. wallSeconds has one
 /// entry per run: the time of the filter as a whole, with what VTK adds to the phases.

@@ -21,6 +21,8 @@
 #include "vtkPoints.h"
 #include "vtkSPHFound.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -28,6 +30,7 @@
 #include <cstdio>
 #include <future>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -126,6 +129,10 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   {
     filter->AddExcludedArray(WallArrayName); // the same on the whole surface
   }
+  for (const auto& words : ChosenWords())
+  {
+    filter->AddExcludedArray(words.first); // has the numbers of texts
+  }
   for (const std::string& name : names)
   {
     if (particles->GetNumberOfPoints() > 0 && !data->HasArray(name.c_str()))
@@ -153,6 +160,32 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
       filter->AddExcludedArray(name);
     }
   }
+}
+
+/// Refuses an array to colour by that the surface will not have, before it is made.
+void CheckColorName(const Job& job, vtkPointSet* particles)
+{
+  static const char* const made[] = { "Normals", "IsoValue", "Gradients", "WeightSum",
+    "BoundaryEigenvalue", "MeanCurvature", "GaussCurvature", "CorrectionLength", "Residual",
+    "BoundaryFlag", "Widening", "BandValue", "ComponentId" };
+  const std::string& name = job.Picture.ColorBy;
+  vtkPointData* arrays = particles->GetPointData();
+  if (name.empty() || particles->GetNumberOfPoints() == 0 || arrays->HasArray(name.c_str()) ||
+    std::find(std::begin(made), std::end(made), name) != std::end(made) ||
+    (!job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0))
+  {
+    return;
+  }
+  std::string names, alike;
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    const std::string other = arrays->GetArrayName(i) ? arrays->GetArrayName(i) : "";
+    names += (i > 0 ? ", " : "") + other;
+    alike =
+      vtksys::SystemTools::LowerCase(other) == vtksys::SystemTools::LowerCase(name) ? other : alike;
+  }
+  throw std::runtime_error("there is no array '" + name + "' to colour by" +
+    (alike.empty() ? "; there are " + names : "; did you mean '" + alike + "'?"));
 }
 
 /// Returns why there is no surface, as far as the ranges tell.
@@ -274,6 +307,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
 void SetUpSurface(const Job& job, vtkPointSet* input)
 {
   vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
+  CheckColorName(job, particles);
   vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
   bare->SetPoints(particles->GetPoints());
   bare->GetPointData()->ShallowCopy(particles->GetPointData());

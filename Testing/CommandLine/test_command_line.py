@@ -255,7 +255,11 @@ class Options(CommandLineTest):
     def test_summary(self):
         result = self.extract_good(*ISO)
         self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles; area 0\.98\d*, volume -0\.09\d*$")
-        trimmed = self.extract("--scalar", "Radius", "--iso", "0.55")
+        self.assertEqual([line.split()[0] for line in result.stdout.splitlines()], ["particles", "contour", "surface", "seconds"])
+        self.assertRegex(result.stdout, r"; volume: Mass / Density\ncontour     Radius = 0.3; range [\d.]+ [.][.] [\d.]+\nsurface")
+        self.assertRegex(result.stdout, r"(?m)^seconds     \d+[.]\d+$")
+        result = self.extract_good(*ISO, "--verbose")
+        trimmed = self.extract("--scalar", "Radius", "--iso", "0.55", "--verbose")
         self.assertRegex(trimmed.stdout,
                          r"(?m)^surface     .* triangles \(\d+ before trimming, which cuts some in two\); area [\d.]+$")
         self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
@@ -330,7 +334,7 @@ class Options(CommandLineTest):
         if "Portable" not in self.run_program("--list-devices").stdout:
             self.skipTest("there is no PoCL")
         environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}
-        result = self.extract_good(*ISO, "--device", "Portable", env=environment, told=True, says=".*")
+        result = self.extract_good(*ISO, "--device", "Portable", "--verbose", env=environment, told=True, says=".*")
         if float(re.search(r"program build ([\d.]+)", result.stdout)[1]) > 10:
             self.assertEqual(result.stderr, FIRST_COMPILATION)
 

@@ -83,9 +83,9 @@ class RealFiles(CommandLineTest):
         self.assertEqual((large > 900, small), (True, 2))
         self.volume(file, *H, "--only", "Kind=99", words="No particle is left by Kind=99, so there is no fluid")
         self.volume(file, *H, "--within", "0,0,0,0,0,0", words="No particle is within 0,0,0,0,0,0, so there is no fluid")
-        self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=a"], "finite number")],
+        self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=1:a"], "finite number")],
                         *FREE, *H, "--only", source=file)
-        self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice")], *FREE, *H, "--only", source=file)
+        self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice"), (["Kind=a"], "chooses a text, and the array has numbers")], *FREE, *H, "--only", source=file)
 
     # ---- films ----
 

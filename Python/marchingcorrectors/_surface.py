@@ -3,6 +3,7 @@
 """Results of the functions: a surface, samples, derivatives, an image."""
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import dataclass, field as dataclass_field, fields
 from pathlib import Path
@@ -159,7 +160,8 @@ class Surface(Result):
         """Writes a file, whose name's end tells the format.
 
         .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of
-        numbers as properties of the points, as the program writes them. .vtp, .vtk, .stl, .obj: by
+        numbers as properties of the points, as the program writes them. .csv: the points of lines, of
+        particles in a plane, with their arrays as columns. .vtp, .vtk, .stl, .obj: by
         PyVista. .usdc, .usda, .usd: by usd-core, with all arrays. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
         """
         path = Path(path)
@@ -173,6 +175,8 @@ class Surface(Result):
             np.savez_compressed(path, **arrays, **{f"attributes/{k}": v for k, v in self.attributes.items()})
         elif ending == ".ply":
             _save_ply(path, self)
+        elif ending == ".csv":
+            _save_csv(path, self)
         elif ending in (".usdc", ".usda", ".usd"):
             from ._usd import Film
 
@@ -201,6 +205,27 @@ class Surface(Result):
 
 PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "char", "u4": "uint", "u2": "ushort",
              "u1": "uchar"}
+
+
+def _save_csv(path, surface):
+    """The columns that the program writes: a row for each point of each line."""
+    if surface.line_offsets is None and len(surface.triangles):
+        raise InvalidArgument(f"{path.name} was not written: .csv holds the points of lines, which particles in a plane give, but this "
+                              "is a surface. Formats that hold all arrays are .npz, .ply and .vtp.")
+    taken = np.empty(0, int) if surface.line_offsets is None else surface.line_points
+    counts = [] if surface.line_offsets is None else np.diff(surface.line_offsets)
+    arrays = {name: array.reshape(len(array), int(np.prod(array.shape[1:]))) for name, array in surface.point_arrays().items()}
+    wide = [(f"{name}:{i}", array[:, i]) for name, array in arrays.items() if array.shape[1] > 1 for i in range(array.shape[1])]
+    columns = {"Line": np.repeat(np.arange(len(counts)), counts).tolist()}
+    for name, values in [*zip("XYZ", surface.points.T), *wide, *((name, array[:, 0]) for name, array in arrays.items()
+                                                                   if array.shape[1] == 1)]:
+        while name in columns:
+            name += "_"
+        values = (values.astype(np.uint8) if values.dtype == bool else values)[taken]
+        columns[name] = [("" if each != each else each + 0.0) if values.dtype.kind == "f" else each for each in values.tolist()]
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # no formulas
+        csv.writer(file, lineterminator="\n").writerows([head, *zip(*columns.values())])
 
 
 def _save_ply(path, surface):

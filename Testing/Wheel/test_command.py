@@ -48,6 +48,29 @@ class Command(unittest.TestCase):
             self.assertEqual(b"property float Velocity_z\n" in mine, words[0] != "--no-attributes")
             self.assertTrue(mine == its, words)
 
+    def test_lines(self):
+        """The program's columns and numbers; a surface has no place in a table."""
+        line = np.arange(20) * 0.1
+        data = pyvista.PolyData(np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3))
+        data["R"], data["V"] = np.linalg.norm(data.points - [0.9, 0.9, 0], axis=1), data.points
+        data["=f"] = data["R"]
+        given = str(Path(self.folder.name) / "in.vtp")
+        data.save(given)
+        paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4", given=given)
+        mine, its = (list(csv.reader(Path(path).read_text().splitlines())) for path in paths)
+        mine, its = ({column[0]: column[1:] for column in zip(*table)} for table in (mine, its))
+        self.assertEqual(set(mine), set(its))
+        self.assertLess({"Line", "X", "Y", "Z", "V:0", "V:2", "R", "'=f", "Normals:1"}, set(mine))
+        for name, column in mine.items():
+            found, wanted = ([float(value) for value in each] for each in (column, its[name]))
+            if name == "R":  # means here, the iso value there
+                np.testing.assert_allclose(found, wanted, rtol=1e-6)
+            else:
+                self.assertEqual(found, wanted, name)
+        self.assertGreater(len(mine["Line"]), 20)
+        self.run_it("surface", "b.csv", *FLUID, status=1)
+        self.assertIn("but this is a surface", self.said)
+
     def test_period_and_curvature(self):
         """The period of the file."""
         line = np.arange(12) * 0.1

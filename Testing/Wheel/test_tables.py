@@ -606,7 +606,8 @@ class AsTheProgram(Case):
                 (b"float z", b"float w", "positions only x and y is found", ""), (b"little", b"mixed_", "format", ""),
                 (b"float z", b"list uchar float z", "has lists", ""), (b"float z", b"half z", "of its head", "line 'property half z'"),
                 (b"double vx", b"double vy", "have the same name", ""), (b"vertex", b"vortex", "no vertices", ""),
-                (b"ply\n", b"play\n", "is no .ply file", ""), (whole[-9:], b"", "ends", "too early")):
+                (b"ply\n", b"play\n", "is no .ply file", ""),
+                (b"element camera 1\nproperty float x", b"element camera 999999999999", "has no properties", "has 0 columns"), (whole[-9:], b"", "ends", "too early")):
             with self.subTest(new):
                 self.at("a.ply").write_bytes(whole.replace(old, new))
                 self.assertIn(words, self.list_arrays(self.at("a.ply")).stderr)

@@ -161,6 +161,10 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
   for (const Element& element : elements)
   {
     const bool isVertex = element.Name == "vertex";
+    if (element.Names.empty() && !element.HasLists && element.Count > 0)
+    {
+      FailToRead(file, "its element " + element.Name + " has no properties");
+    }
     if (element.HasLists && (isVertex || element.Count > 0))
     {
       FailToRead(file,

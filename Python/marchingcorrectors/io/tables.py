@@ -65,7 +65,7 @@ def columns_of(file, lines, names, separator=None):
         letters = "".join(letter for letter in name.lower() if letter.isalpha())
         is_identifier = bool(IS_IDENTIFIER.search(letters))
         if column.dtype.kind == "f" and (is_identifier or (np.abs(column) >= 2 ** 53).any()):
-            column = as_integers(column, [split(line, separator)[i] for line in lines])
+            column = as_integers(column, lambda: [split(line, separator)[i] for line in lines])
             if is_identifier and column.dtype.kind == "f" and (np.abs(column) >= 2 ** 53).any():
                 raise FileError(f"{file}: its column {name} has numbers from 2^53 on, where some of it are not whole or are 2^63 "
                                 "and more: different ones would become equal.")
@@ -86,8 +86,11 @@ def numbers_or_words(file, cells, separator):
 
 def as_integers(values, cells):
     """By their own digits, of which no double has all from 2^53 on; as they are where one is no integer."""
-    if all(re.fullmatch(r"-?[0-9]+", cell) and abs(int(cell[:20])) < 2 ** 63 for cell in cells):
-        return np.array([int(cell) for cell in cells], np.int64)
+    if (np.abs(values) < 2 ** 53).all():
+        return values.astype(np.int64) if (values == np.floor(values)).all() else values
+    words = cells()
+    if all(re.fullmatch(r"-?[0-9]+", word) and abs(int(word[:20])) < 2 ** 63 for word in words):
+        return np.array([int(word) for word in words], np.int64)
     return values
 
 

@@ -76,9 +76,14 @@ class Film:
         self.velocity, self.steps = velocity, 0
         self._first = self._last = None  # time codes
         self._parts: Dict[str, _Part] = {}
+        self._stage: Any = None
         self._outputs, self._unsaved, self._left_out = Outputs(inputs, [path]), 0, set()
 
     def __enter__(self) -> Film:
+        self._open()
+        return self
+
+    def _open(self):
         from pxr import Sdf, Tf, Usd, UsdGeom
 
         self._beside = self._outputs.beside(self.path)
@@ -90,7 +95,6 @@ class Film:
         self._layer.comment = "by marching-correctors"
         self._stage = Usd.Stage.Open(self._layer)
         self._stage.SetDefaultPrim(UsdGeom.Xform.Define(self._stage, "/film").GetPrim())
-        return self
 
     def add(self, surface: Surface, time: float = 0.0, velocities: Optional[np.ndarray] = None,
             spray: Optional[Spray] = None) -> None:
@@ -99,6 +103,8 @@ class Film:
         velocities: (points, 3); without them the array of the surface that is the velocity.
         spray: particles beside the surface.
         """
+        if self._stage is None:
+            self._open()
         code = round(float(time) * self.fps * self.slow, 6)  # so that a whole frame is no bit beside it
         if not np.isfinite(code) or self._last is not None and code <= self._last:
             raise InvalidArgument(f"The time {time:g} does not come after that of the step before. Put the steps in order, or give the "
@@ -213,7 +219,7 @@ class Film:
             self._outputs.__exit__(None if is_whole else Exception)
 
     def close(self) -> None:
-        """Ends a film that has no with block."""
+        """Ends a film that has no with block: the file takes its place."""
         self.__exit__(None)
 
 

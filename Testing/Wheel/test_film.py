@@ -180,7 +180,8 @@ class Films(unittest.TestCase):
         wanted = [*range(len(points), len(points) + 3), count - 1]
         ball, given = (6 / np.pi) ** (1 / 3) * DX, ["--volume", str(1.5 * DX ** 3)]  # of which small drops have no surface
         for i, (words, there, width) in enumerate(((["--spray"], wanted, ball), (["--spray", "1"], [], ball),
-                                    (["--spray", "1", *given], wanted, 1.5 ** (1 / 3) * ball))):
+                                                   (["--spray", "200"], [*range(len(points), count)], ball),
+                                                   (["--spray", "1", *given], wanted, 1.5 ** (1 / 3) * ball))):
             self.run_it("surface", "in.vtp", f"film{i}.usdc", "--smoothing-length", str(1.3 * DX), *words)
             _, prims = self.open(f"film{i}.usdc")
             spray = prims["spray"]
@@ -191,7 +192,8 @@ class Films(unittest.TestCase):
             self.assertEqual(ids.tolist(), there)
             mesh = self.values(prims["surface"], "points", 0)
             self.assertEqual((mesh[:, 0] > 0.7).any(), not there)
-            self.assertTrue((mesh[:, 1] > 0.7).any() and (np.linalg.norm(mesh, axis=1) < 0.2).any())
+            self.assertEqual((mesh[:, 1] > 0.7).any(), len(there) < 5)
+            self.assertTrue((np.linalg.norm(mesh, axis=1) < 0.2).any())
             self.assertEqual(len(np.unique(self.values(prims["surface"], "faceVertexIndices", 0))), len(mesh))
         for words, sentence in ((["--scalar", "Idp", "--iso", "1"], "leave --scalar out"), (["--spray", "0"], "from 1 on")):
             self.assertRegex(self.run_it("surface", "in.vtp", "no.usdc", *WORDS, "--spray", *words, status=1), sentence)
@@ -199,16 +201,21 @@ class Films(unittest.TestCase):
     def test_lines(self):
         line = np.arange(8) * 0.1
         points = np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3)
-        with Film(self.at("lines.usdc")) as film:
-            for i in range(2):
-                surface = mc.free_surface(points * (1 + i), smoothing_length=0.13 * (1 + i), attributes={"velocity": points})
-                film.add(surface, i)
+        film = Film(self.at("lines.usdc"))
+        for i in range(2):
+            surface = mc.free_surface(points * (1 + i), smoothing_length=0.13 * (1 + i), attributes={"velocity": points})
+            film.add(surface, i)
+        film.close()
         _, prims = self.open("lines.usdc")
         curves = prims["lines"]
         self.assertNotIn("surface", prims)
         self.assertEqual([each.GetTypeName() for each in prims.values()], ["Xform", "BasisCurves"])
         self.assertEqual(self.values(curves, "curveVertexCounts", 24).tolist(), [len(each) for each in surface.lines])
-        np.testing.assert_allclose(self.values(curves, "points", 24), surface.points[surface.line_points], rtol=1e-6)
+        points, width = surface.points[surface.line_points], self.values(curves, "widths", 24)[0]
+        np.testing.assert_allclose(self.values(curves, "points", 24), points, rtol=1e-6)
+        np.testing.assert_allclose(self.values(curves, "extent", 24), [points.min(axis=0) - width / 2, points.max(axis=0) + width / 2],
+                                   rtol=1e-6)
+        self.assertTrue(0 < width < 0.1)
         self.assertEqual(self.values(curves, "velocities", 24).shape, (len(surface.line_points), 3))
 
     def test_save(self):

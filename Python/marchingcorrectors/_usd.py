@@ -159,7 +159,7 @@ class Film:
                 if name not in self._left_out:
                     warn(f"The array '{name}' is left out of {os.path.basename(self.path)}, whose integers have 32 bits.")
                 self._left_out.add(name)
-            elif array.dtype.kind in "fiub":
+            elif array.dtype.kind in "fiub" and (name != "velocity" or self.slow == 1 or velocities is None):  # Blender's name of velocities
                 width = int(np.prod(array.shape[1:]))
                 kind = "Float" if array.dtype.kind == "f" else "Int"
                 values["primvars:" + name] = (f"{kind}{width}" if 1 < width < 5 else kind, of_points(array))

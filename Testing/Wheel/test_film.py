@@ -201,7 +201,7 @@ class Films(unittest.TestCase):
     def test_lines(self):
         line = np.arange(8) * 0.1
         points = np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3)
-        film = Film(self.at("lines.usdc"))
+        film = Film(self.at("lines.usdc"), slow=2)
         for i in range(2):
             surface = mc.free_surface(points * (1 + i), smoothing_length=0.13 * (1 + i), attributes={"velocity": points})
             film.add(surface, i)
@@ -210,13 +210,14 @@ class Films(unittest.TestCase):
         curves = prims["lines"]
         self.assertNotIn("surface", prims)
         self.assertEqual([each.GetTypeName() for each in prims.values()], ["Xform", "BasisCurves"])
-        self.assertEqual(self.values(curves, "curveVertexCounts", 24).tolist(), [len(each) for each in surface.lines])
-        points, width = surface.points[surface.line_points], self.values(curves, "widths", 24)[0]
-        np.testing.assert_allclose(self.values(curves, "points", 24), points, rtol=1e-6)
-        np.testing.assert_allclose(self.values(curves, "extent", 24), [points.min(axis=0) - width / 2, points.max(axis=0) + width / 2],
+        self.assertEqual(self.values(curves, "curveVertexCounts", 48).tolist(), [len(each) for each in surface.lines])
+        points, width = surface.points[surface.line_points], self.values(curves, "widths", 48)[0]
+        np.testing.assert_allclose(self.values(curves, "points", 48), points, rtol=1e-6)
+        np.testing.assert_allclose(self.values(curves, "extent", 48), [points.min(axis=0) - width / 2, points.max(axis=0) + width / 2],
                                    rtol=1e-6)
         self.assertTrue(0 < width < 0.1)
-        self.assertEqual(self.values(curves, "velocities", 24).shape, (len(surface.line_points), 3))
+        np.testing.assert_allclose(2 * self.values(curves, "velocities", 48), surface.attributes["velocity"][surface.line_points], rtol=1e-6)
+        self.assertFalse(curves.HasAttribute("primvars:velocity"))  # which Blender would take for the film's
 
     def test_save(self):
         """One surface, with arrays whose names are none in USD."""

@@ -48,7 +48,7 @@ static mcor_status mcor_extract_iso(
   {
     MCOR_TRY(mcor_cap(context));
   }
-  if (options->compact && mcor_compacts_late(context))
+  if (options->compact)
   {
     MCOR_TRY(mcor_compact(context));
   }

@@ -293,6 +293,48 @@ static void boxes(void** state)
   }
 }
 
+/* Returns whether the surface has exactly this point. */
+static int has_point(const mcor_surface* s, const double* point)
+{
+  int has = 0;
+  for (int64_t i = 0; i < s->point_count && !has; ++i)
+  {
+    has = memcmp(s->points + 3 * i, point, 3 * sizeof *point) == 0;
+  }
+  return has;
+}
+
+/* Four cubes away from caps, nearly all points are those of the contour without caps. */
+static void away_from_caps(void** state)
+{
+  const compact_case* at = cases;
+  while (at->make != make_period)
+  {
+    ++at;
+  }
+  CORE_SET set = at->make();
+  const mcor_input input = core_input(&set);
+  mcor_options options = options_of(at);
+  options.compact = 1;
+  CORE_SURFACE capped = core_extract(*state, &input, &options);
+  options.capping = MCOR_CAP_NONE;
+  options.level_limit = 0; /* as with caps */
+  CORE_SURFACE open = core_extract(*state, &input, &options);
+  int far = 0, same = 0;
+  for (int64_t i = 0; i < open.point_count; ++i)
+  {
+    bool is_far = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double x = open.points[3 * i + a], away = 4 * open.statistics.cube_size;
+      is_far = is_far && x > at->period[2 * a] + away && x < at->period[2 * a + 1] - away;
+    }
+    far += is_far;
+    same += is_far && has_point(&capped, open.points + 3 * i);
+  }
+  CORE_CHECK(far > 100 && same > 0.95 * far, "%d of %d points are the same", same, far);
+}
+
 /* Images of particles of several levels lie farther around a period than those of one size. */
 static void boxes_in_period(void** state)
 {
@@ -312,6 +354,7 @@ int main(void)
     cmocka_unit_test(surfaces),
     cmocka_unit_test(boxes),
     cmocka_unit_test(boxes_in_period),
+    cmocka_unit_test(away_from_caps),
   };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

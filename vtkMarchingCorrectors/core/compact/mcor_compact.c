@@ -88,15 +88,14 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* Vertices that are being appended to the mesh, and corrected on edges, or on lines from their
- * starts; those of merged vertices are the means if they are not given. */
+/* Vertices that are being appended to the mesh, and corrected on lines from their starts: the means
+ * of bunches if these are not given. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
-  bool lines;
   const double (*starts)[3]; /* from the nodes, in edges */
   cl_int* node;
-  uint8_t* data; /* real [][2]: ends of edges; real [][4]: offsets of starts */
+  uint8_t* data; /* real [][4]: offsets of starts */
 } mcor_adding;
 
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
@@ -114,22 +113,17 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
     {
       memcpy(start, to->starts[i], sizeof to->starts[i]);
     }
-    for (int32_t w = to->lines && !to->starts ? v : -1; w >= 0; w = bunches->next[w], ++count)
+    for (int32_t w = to->starts ? -1 : v; w >= 0; w = bunches->next[w], ++count)
     {
       const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)w),
                    high = mcor_get_real(context, bunches->ends, 2 * (int64_t)w + 1);
       const int axis = mcor_marched_node(bunches, w)[3] & 3;
       const bool is_upper = fabs(low) > fabs(high);
-      start[axis] += bunches->late
-        ? mcor_get_real(context, bunches->offset, 4 * (int64_t)w + axis) - is_upper
-        : (is_upper ? high : low) / (low - high);
+      start[axis] += mcor_get_real(context, bunches->offset, 4 * (int64_t)w + axis) - is_upper;
     }
-    for (int k = 0; k < (to->lines ? 4 : 2); ++k)
+    for (int k = 0; k < 4; ++k)
     {
-      mcor_put_real(context, to->data, (to->lines ? 4 : 2) * i + k,
-        !to->lines    ? mcor_get_real(context, bunches->ends, 2 * (int64_t)v + k)
-          : count > 0 ? start[k] / count
-                      : start[k]);
+      mcor_put_real(context, to->data, 4 * i + k, count > 0 ? start[k] / count : start[k]);
     }
   }
   (void)slice;
@@ -158,17 +152,15 @@ static void mcor_note_places(mcor_bunches* bunches, int at, int count, cl_int le
   }
 }
 
-mcor_status mcor_add_vertices(
-  mcor_bunches* bunches, bool lines, const double (*starts)[3], int count)
+mcor_status mcor_add_vertices(mcor_bunches* bunches, const double (*starts)[3], int count)
 {
   mcor_context* context = bunches->context;
   mcor_mesh* mesh = &context->mesh;
   const size_t o = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size,
-               width = (lines ? 4 : 2) * real;
+               width = 4 * real;
   mcor_buffer* const of_edges[] = { &mesh->linear, &mesh->evaluations, &mesh->ends };
   const size_t widths[] = { real, 1, 2 * real };
   mcor_adding add = { .bunches = bunches,
-    .lines = lines,
     .starts = starts,
     .node = malloc(n * 16 + 1),
     .data = malloc(n * width + 1) };
@@ -183,19 +175,17 @@ mcor_status mcor_add_vertices(
       status, mcor_extend(context, of_edges[i], size < old ? size : old, (o + n) * widths[i]));
   }
   MCOR_THEN(status, mcor_append_bytes(context, &mesh->node, o * 16, add.node, n * 16));
-  MCOR_THEN(status,
-    mcor_append_bytes(
-      context, lines ? &mesh->offset : &mesh->ends, o * width, add.data, n * width));
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->offset, o * width, add.data, n * width));
   free(add.node);
   free(add.data);
   MCOR_TRY(status);
   mcor_note_places(bunches, mesh->vertex_count, count, mesh->level_first[1]);
   mesh->march_count = mesh->vertex_count;
   mesh->vertex_count += count;
-  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, lines);
+  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, true);
 }
 
-/* Makes the first vertices: those that stay, unless the mesh has them, and the merged ones. */
+/* Makes the merged vertices; the mesh has the others. */
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
   mcor_sorted_bunch* sorted = bunches->sorted;
@@ -221,18 +211,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     bunches->place[v] = v;
-    if (!bunches->late && !mcor_is_merged(bunches, bunches->first[v]))
-    {
-      bunches->order[count++] = v;
-    }
   }
-  if (!bunches->late)
-  {
-    MCOR_TRY(mcor_reserve_vertices(bunches->context, bunches->vertex_count));
-    bunches->context->mesh.vertex_count = 0;
-    MCOR_TRY(mcor_add_vertices(bunches, false, NULL, count));
-  }
-  count = 0;
   for (int i = 0; i < bunches->sorted_count; ++i)
   {
     if (mcor_is_merged(bunches, sorted[i].first))
@@ -240,10 +219,10 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
       bunches->order[count++] = -1 - sorted[i].first;
     }
   }
-  return mcor_add_vertices(bunches, true, NULL, count);
+  return mcor_add_vertices(bunches, NULL, count);
 }
 
-/* Takes the bad bunches apart, and the bunches that lean on them; adds their vertices. */
+/* Takes the bad bunches apart, and the bunches that lean on them. */
 static mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   for (bunches->round = 0; bunches->round < MCOR_COMPACT_ROUNDS; ++bunches->round)
@@ -253,7 +232,6 @@ static mcor_status mcor_take_apart(mcor_bunches* bunches)
     {
       return MCOR_OK;
     }
-    int count = 0;
     for (int i = 0; i < bunches->sorted_count; ++i)
     {
       if (mcor_state_of(bunches, bunches->sorted[i].first) == MCOR_BUNCH_BAD)
@@ -270,12 +248,7 @@ static mcor_status mcor_take_apart(mcor_bunches* bunches)
         mcor_set_state(
           bunches, first, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
       }
-      for (int32_t v = state == MCOR_BUNCH_BAD ? first : -1; v >= 0; v = bunches->next[v])
-      {
-        bunches->order[count++] = v;
-      }
     }
-    MCOR_TRY(!bunches->late ? mcor_add_vertices(bunches, false, NULL, count) : MCOR_OK);
   }
   return MCOR_OK;
 }
@@ -359,7 +332,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   }
   for (int l = 0; l < context->lattice.levels; ++l)
   {
-    mesh->level_first[1][l] = bunches->late ? bunches->cut_first[l] + shift : march_count;
+    mesh->level_first[1][l] = bunches->cut_first[l] + shift;
   }
   mesh->cap_first += shift;
   mesh->march_count = march_count;
@@ -369,9 +342,11 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
     cl_ulong* cut = &bunches->cut[i];
     *cut = (cl_ulong)bunches->place[*cut >> 32] << 32 | (cl_ulong)bunches->place[*cut & UINT32_MAX];
   }
-  MCOR_TRY(bunches->late ? mcor_write(context, &mesh->cut_edges, bunches->cut,
-                             (size_t)bunches->cut_count * sizeof *bunches->cut)
-                         : MCOR_OK);
+  if (bunches->cut_count > 0)
+  {
+    MCOR_TRY(mcor_write(context, &mesh->cut_edges, bunches->cut,
+      (size_t)bunches->cut_count * sizeof *bunches->cut));
+  }
   return mcor_find_places(bunches);
 }
 
@@ -380,8 +355,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 typedef struct mcor_filing
 {
   const mcor_bunches* bunches;
-  int64_t first[MCOR_SLICES], count[MCOR_SLICES];       /* of the triangles that are left */
-  int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
+  int64_t first[MCOR_SLICES], count[MCOR_SLICES]; /* of the triangles that are left */
 } mcor_filing;
 
 /* Moves the triangles of a slice that are left to its beginning. */
@@ -389,20 +363,12 @@ static void mcor_file_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_filing* filing = data;
   const mcor_bunches* bunches = filing->bunches;
-  const bool is_part = bunches->context->box.is_part;
   int64_t to = first;
-  int level = 0;
   for (int64_t t = first; t < last; ++t)
   {
     int32_t corners[3];
-    const bool is_left = mcor_places_of(bunches, t, corners);
-    while (level + 1 < bunches->context->lattice.levels && t >= bunches->level_end[level])
+    if (!mcor_places_of(bunches, t, corners))
     {
-      ++level;
-    }
-    if (!is_left)
-    {
-      filing->gone[slice][level] += !(is_part && (bunches->cells[t] & MCOR_RING_CELL));
       continue;
     }
     memcpy(bunches->triangles + 3 * to, corners, sizeof corners);
@@ -419,7 +385,6 @@ static void mcor_file_slice(void* data, int slice, int64_t first, int64_t last)
 static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
-  mcor_statistics* s = context->run.statistics;
   mcor_filing filing = { .bunches = bunches };
   int slices;
   size_t n = 0;
@@ -434,12 +399,6 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
       memmove(bunches->cells + n, bunches->cells + first, count * sizeof(cl_ulong));
     }
     n += count;
-    /* If trimming comes later, triangles that vanish do not count as made before it. */
-    for (int l = 0; l < context->lattice.levels && !bunches->late; ++l)
-    {
-      s->triangles_of_level[l] -= filing.gone[i][l];
-      s->triangles_before_trimming -= filing.gone[i][l];
-    }
   }
   context->mesh.triangle_count = (int)n;
   MCOR_TRY(
@@ -475,7 +434,7 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
     { (void**)&b->order, 2 * n * sizeof *b->order }, { (void**)&b->place, n * sizeof *b->place },
     { (void**)&b->merged_place, n * sizeof *b->merged_place },
     { (void**)&b->now, n * sizeof *b->now }, { (void**)&b->node, 4 * n * sizeof *b->node },
-    { &b->ends, 2 * march * real }, { &b->offset, b->late ? 4 * n * real : 0 } };
+    { &b->ends, 2 * march * real }, { &b->offset, 4 * n * real } };
   const size_t count = sizeof parts / sizeof parts[0];
   size_t bytes = 0;
   for (size_t i = 0; i < count; ++i)
@@ -493,36 +452,24 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   }
   memset(b->memory, 0, (size_t)((uint8_t*)b->key - b->memory));
   memcpy(b->cut_first, mesh->level_first[1], sizeof b->cut_first);
-  for (int l = 0; l < context->lattice.levels; ++l)
-  {
-    MCOR_TRY(mcor_read(context, &mesh->triangle_base,
-      (size_t)context->bricks.first_slot[l + 1] * sizeof(cl_int), &b->level_end[l],
-      sizeof(cl_int)));
-  }
   MCOR_TRY(
     mcor_read(context, &mesh->triangles, 0, b->triangles, 3 * triangles * sizeof *b->triangles));
   MCOR_TRY(mcor_read(context, &context->box.cells, 0, b->cells, cells));
   MCOR_TRY(mcor_read(context, &mesh->cut_edges, 0, b->cut, cuts));
   MCOR_TRY(mcor_read(context, &mesh->node, 0, b->node, 4 * n * sizeof *b->node));
   MCOR_TRY(mcor_read(context, &mesh->ends, 0, b->ends, 2 * march * real));
-  return b->late ? mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real) : MCOR_OK;
-}
-
-bool mcor_compacts_late(const mcor_context* context)
-{
-  return mcor_is_trimmed(context) || mcor_makes_caps(context);
+  return mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real);
 }
 
 mcor_status mcor_compact(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   mcor_bunches bunches = { .context = context,
-    .late = mcor_compacts_late(context),
     .corners = mcor_is_plane(context) ? 2 : 3,
     .march_count = mesh->march_count,
     .vertex_count = mesh->vertex_count,
-    .triangle_count = mesh->triangle_count };
-  bunches.cut_count = bunches.late ? mesh->cap_first - mesh->march_count : 0;
+    .triangle_count = mesh->triangle_count,
+    .cut_count = mesh->cap_first - mesh->march_count };
   if (mesh->triangle_count == 0 || mesh->march_count == 0)
   {
     return MCOR_OK;

@@ -11,10 +11,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Merges the vertices of the present iso value, and corrects the merged ones. If the surface is
- * neither trimmed nor capped, this replaces the correction. Otherwise it comes after caps
- * (mcor_compacts_late), and their borders stay as they are. */
-bool mcor_compacts_late(const mcor_context* context);
+/* Merges the vertices of the present iso value after trimming and caps, whose borders stay as they
+ * are, and corrects the merged ones. */
 mcor_status mcor_compact(mcor_context* context);
 
 /* Cells around a box on which its vertices depend: four decide whether a vertex is merged, two
@@ -50,16 +48,14 @@ typedef struct mcor_point mcor_point; /* mcor_compact_face.c */
 typedef struct mcor_bunches
 {
   mcor_context* context;
-  bool late;   /* see mcor_compacts_late */
   int corners; /* different corners of a triangle: 2 if it stands for a line */
   int march_count, vertex_count, triangle_count; /* of the mesh before merging */
-  int cut_count;                                 /* vertices of cuts, if late */
+  int cut_count;                                 /* vertices of cuts */
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
-  cl_int level_end[MCOR_TREE_LEVEL_LIMIT + 1];   /* end of the marched triangles of each level */
   uint8_t* memory;                               /* of the arrays that follow */
   cl_int* node;                                  /* [vertex_count][4] */
   cl_ulong* cut;                                 /* [cut_count]: its cut_edges */
-  void *ends, *offset;   /* real [march_count][2]; real [vertex_count][4], if late */
+  void *ends, *offset;   /* real [march_count][2]; real [vertex_count][4] */
   cl_int* triangles;     /* [triangle_count][3] */
   cl_ulong* cells;       /* [triangle_count], if mcor_follows_cells */
   uint64_t* key;         /* [vertex_count]: lattice node of a vertex */
@@ -154,10 +150,9 @@ static inline void mcor_entry_node(const mcor_bunches* bunches, int32_t entry, c
     entry < 0 ? node[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS : node[3];
 }
 
-/* mcor_compact.c. Appends the vertices in `order` to the mesh, and corrects them: on edges, or on
- * lines. starts: of lines, from the nodes; NULL: the means of bunches. */
-mcor_status mcor_add_vertices(
-  mcor_bunches* bunches, bool lines, const double (*starts)[3], int count);
+/* mcor_compact.c. Appends the vertices in `order` to the mesh, and corrects them on lines. starts:
+ * of lines, from the nodes; NULL: the means of bunches. */
+mcor_status mcor_add_vertices(mcor_bunches* bunches, const double (*starts)[3], int count);
 
 /* mcor_compact_face.c. Finds the present places of vertices (`now`); finds the merged bunches that
  * are to be taken apart; moves vertices of slivers. */

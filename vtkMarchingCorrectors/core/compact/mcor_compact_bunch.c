@@ -85,10 +85,6 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   }
   MCOR_TRY(mcor_parallel_run(
     context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
-  if (!bunches->late)
-  {
-    return MCOR_OK;
-  }
   /* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
   for (int v = mesh->march_count; v < mesh->vertex_count; ++v)
   {

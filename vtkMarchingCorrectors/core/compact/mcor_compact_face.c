@@ -329,7 +329,7 @@ mcor_status mcor_move_slivers(mcor_bunches* bunches)
   }
   if (count > 0)
   {
-    MCOR_THEN(status, mcor_add_vertices(bunches, true, starts, count));
+    MCOR_THEN(status, mcor_add_vertices(bunches, starts, count));
     MCOR_THEN(status, mcor_update_points(bunches));
   }
   free(starts);

@@ -5,7 +5,6 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_compact.h"
 
 #include <stdlib.h>
 
@@ -36,15 +35,8 @@ mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lin
 mcor_status mcor_correct(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
-  if (options->compact && !mcor_compacts_late(context))
-  {
-    MCOR_TRY(mcor_compact(context));
-  }
-  else
-  {
-    MCOR_TRY(mcor_reserve_vertices(context, context->mesh.march_count));
-    MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, false));
-  }
+  MCOR_TRY(mcor_reserve_vertices(context, context->mesh.march_count));
+  MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, false));
   if (options->preview)
   {
     return MCOR_OK;

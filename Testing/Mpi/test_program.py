@@ -382,7 +382,7 @@ class Program(unittest.TestCase):
                 alone, ranks = read(self.path("alone" + file)), read(self.path("ranks" + file))
                 np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
                 self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.5)
-                self.assertEqual(*({data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
+                self.assertEqual(*([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
                                    for data in (alone.GetPointData(), ranks.GetPointData())))
                 self.check_point_data(alone, ranks)
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))

@@ -120,7 +120,14 @@ public:
     }
     if (this->IsFirst())
     {
-      append->Update();
+      append->Update(); // sorts the arrays by their names
+      vtkNew<vtkPointData> inOrder;
+      for (int a = 0; a < particles->GetPointData()->GetNumberOfArrays(); ++a)
+      {
+        inOrder->AddArray(append->GetOutput()->GetPointData()->GetAbstractArray(
+          particles->GetPointData()->GetArrayName(a)));
+      }
+      append->GetOutput()->GetPointData()->ShallowCopy(inOrder);
       append->GetOutput()->GetFieldData()->ShallowCopy(particles->GetFieldData());
     }
     return append->GetOutput();

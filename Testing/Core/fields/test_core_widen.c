@@ -336,6 +336,13 @@ static void test_refused(void** state)
   options.widen = 1.5;
   mcor_spell_out(&options);
   assert_true(options.widen == 1.5);
+  /* A period too short for the widened lengths, and a widening that fits. */
+  options.smooth = 0;
+  options.widen = WIDEST;
+  options.level_limit = 0;
+  options.periodic[1] = 6;
+  CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_widen(context, &input, &options, &widening),
+    "widened to 4.4. Choose a widening of no more than 1.2");
 }
 
 int main(void)

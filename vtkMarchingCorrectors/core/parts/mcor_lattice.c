@@ -151,6 +151,14 @@ static mcor_status mcor_fit_period(
     if (length[a] > 0)
     {
       const double most = MCOR_MOST_PERIODS * length[a];
+      const double widest = context->run.widest,
+                   fits = (most / m->support_max - 2 - 1 / options->h_scale) * widest / beyond;
+      MCOR_RETURN_IF(reach - 8 * longest > most && widest > 0, context, MCOR_INVALID_ARGUMENT,
+        "The period along %c is %g, too short for support radii of up to %g, which are widened to "
+        "%g. %s %.3g, or correct the period or the smoothing lengths.",
+        mcor_axis_letter(context, a), length[a], m->support_max, widest * m->support_max,
+        fits > 1 ? "Choose a widening of no more than" : "Leave out the widening of",
+        fits > 1 ? fits : widest);
       MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
         "The period along %c is %g, too short for support radii of up to %g. Correct the period, "
         "or the smoothing lengths.",

@@ -924,7 +924,8 @@ extern "C"
    * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; or less 0.08
    * for particles with many neighbours, all on one side. The factor is then reduced to 1
    * where neighbours are few (drops, threads), and to at most the Shepard mean of the factors
-   * around the particle. The surface of an input with these factors and volumes has the cubes of the
+   * around the particle; in a corner of deep water it rises towards that mean (mcor_widen.c has the
+   * whole rule). The surface of an input with these factors and volumes has the cubes of the
    * original lengths; with uniform cubes it is, to the last bit, that of the products of smoothing
    * lengths and factors in cubes of the same size. Reads the options of mcor_extract; a box only with globals,
    * which are those of mcor_measure_globals with level_limit 0: results are then valid for

@@ -87,7 +87,7 @@ static double ramp(double x, double from, double to)
 
 /* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, more
  * where few are on one, and less than the iso value where many are. */
-static double expected_factor(const particle_set* set, int64_t j, double iso)
+static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };
   for (int64_t k = 0; k < set->count; ++k)
@@ -107,6 +107,7 @@ static double expected_factor(const particle_set* set, int64_t j, double iso)
   const double least =
     iso + 0.1 * (1 - sided) - 0.08 * fmax(sided, 0) * ramp(above, iso - 0.16, iso - 0.08);
   double s = above >= least ? upper : 1;
+  *one_sided = fmax(sided, 0);
   for (int step = 4; step >= 0 && above < least; --step)
   {
     const double lower = 1 + 0.2 * step, c = weight_with(set, j, lower);
@@ -131,16 +132,17 @@ static void test_factors(void** state)
   options.field = MCOR_WEIGHT_SUM;
   options.widen = WIDEST;
   CORE_FREED double* s = oracle_allocate(set.count, sizeof *s);
+  CORE_FREED double* sided = oracle_allocate(set.count, sizeof *sided);
   for (int64_t j = 0; j < set.count; ++j)
   {
-    s[j] = expected_factor(&set, j, iso);
+    s[j] = expected_factor(&set, j, iso, &sided[j]);
   }
   for (int precision = 0; precision < 2; ++precision)
   {
     CORE_WIDENING w;
     options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
     CORE_OK(context, mcor_widen(context, &input, &options, &w));
-    int wide = 0, narrow = 0, outside = 0;
+    int wide = 0, narrow = 0, outside = 0, corners = 0;
     for (int64_t j = 0; j < set.count; ++j)
     {
       double mean = 0, weight = 0;
@@ -154,13 +156,18 @@ static void test_factors(void** state)
       const int is = weight_with(&set, j, 1) >= iso && weight_with(&set, j, w.factor[j]) < iso;
       assert_int_equal(w.outside[j], is);
       outside += is;
-      const double expected = fmax(fmin(s[j], mean / weight), 1);
+      const int takes_mean = s[j] == 1 && sided[j] > 0;
+      const double share = 4 * sided[j] * (1 - sided[j]);
+      const double expected = takes_mean ? 1 + share * fmax(mean / weight - 1, 0)
+                                         : fmax(fmin(s[j], mean / weight), 1);
+      corners += takes_mean && expected > 1.05;
       CORE_CHECK(fabs(w.factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
         w.factor[j], expected);
       wide += expected > 1.9;
       narrow += expected < 1.01;
     }
-    CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
+    CORE_CHECK(wide > 50 && narrow >= 4 && corners > 0, "%d wide, %d narrow, %d take the mean", wide,
+      narrow, corners);
     CORE_CHECK(outside > 10 && w.statistics.widening_outside == outside, "%d outside, expected %d",
       (int)w.statistics.widening_outside, outside);
   }

@@ -2,7 +2,25 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays
- * inside of it. This call makes the factors; mcor_extract takes them with its input. */
+ * inside of it. This call makes the factors; mcor_extract takes them with its input.
+ *
+ * The rule. All sums are over fluid particles k; ramp(x, a, b) rises from 0 at a to 1 at b as
+ * t^2 (3 - 2 t).
+ *
+ *   c(s)  = sum V_k W(x_j - x_k, s h_j)      the weight sum at particle j with its length times s
+ *   n_k   = max(0, 1 - (r_jk / 2 h_j)^3), k other than j; N = sum n_k: its neighbours
+ *   m     = |sum n_k (x_k - x_j)| / (max(N, 1) h_j): how far their middle is from it
+ *   taper = ramp(N, 2.2, 4.5)
+ *   sided = ramp(m, 0.4, 0.6) (1.5 ramp(N, 4.5, 6) - 0.5)
+ *   least = iso + 0.1 (1 - sided) - 0.08 max(sided, 0) ramp(c(widest), iso - 0.16, iso - 0.08)
+ *   s     = the greatest in [1, widest] with c(s) >= least, looked for from the widest one down at
+ *           1, 1.2, 1.4, ... and linear between the two steps around; 1 if there is none
+ *   f     = 1 + (s - 1) taper
+ *   the factor = the lesser one of f and the Shepard mean of f there with the lengths h, but at
+ *           least 1; where s = 1 and sided > 0: 1 + 4 sided (1 - sided) (mean - 1)
+ *
+ * iso: that of the free surface, the greatest of several; 0.5 for scalars. In the plane the numbers
+ * to which N is compared are multiplied by 0.31. */
 
 #include "mcor_widen.h"
 #include "mcor_box.h"
@@ -84,7 +102,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
       MCOR_BUFFER(&run->outside)));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_limit", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_REAL(run->widest), MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited)));
+    MCOR_REAL(run->widest), MCOR_REAL(run->iso), MCOR_REAL(MCOR_WIDEN_MARGIN),
+    MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited)));
   return MCOR_LAUNCH(context, "mcor_widen_check", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso), MCOR_BUFFER(&run->sizes),
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));

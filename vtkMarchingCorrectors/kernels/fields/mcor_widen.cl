@@ -2,19 +2,16 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: finds how much each particle's smoothing length may grow while the particle stays
- * inside of the surface.
+ * inside of the surface. core/fields/mcor_widen.c begins with the rule; these are its reasons.
  *
- * c(s) = sum V_k W(x_j - x_k, s h_j) is the weight sum at particle j with its own length s h_j.
- * The factor is the greatest s in [1, widest] with c(s) of at least `least`, between steps of
- * 0.2 by linear interpolation. It is then changed to 1 + (s - 1) times a share, which falls to 0
- * where few neighbours are near, because lone drops and threads would shrink. At last it is
- * limited to the Shepard mean of these factors at h.
- *
+ * The taper falls to 0 where few neighbours are near, because lone drops and threads would shrink.
  * `least` is the iso value and a margin, without which sheets would get holes. At the surface of
  * deep water, where all neighbours are on one side, there is no margin, and a particle may even be
  * outside a little: each one that must be inside there would raise a bump. At the rim of a sheet,
  * where few are on one side, the margin is wider: their own lengths may be longer, and a thread
- * that hangs there would part. */
+ * that hangs there would part. A particle in the corner of a tank has as few neighbours, but those
+ * beside it are widened, so that with its own length it would be a knob: it goes most of the way to
+ * their mean. One with more neighbours on one side is at the surface of a drop, and stays. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
 /* Most by which the weight sum may be below the iso value at the surface of deep water. */
@@ -286,11 +283,12 @@ bool mcor_widen_is_plain(
   return plain;
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads factors. Writes the lower of each factor
- * and the mean there. The mean is the widest factor less a mean of what factors lack, so it is
- * exact if none lacks anything. */
-__kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global const real* factor,
-  __global real* limited)
+/* One work-item = MCOR_LANES sorted particles. Reads factors, and the least sums in `limited`.
+ * Writes the lower of each factor and the mean there; a share of the way from 1 to the mean where
+ * no length gave a particle in a corner its least sum. The mean is the widest factor less a mean of what
+ * factors lack, so it is exact if none lacks anything. */
+__kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
+  const real margin, __global const real* factor, __global real* limited)
 {
   MCOR_ITEM(item, (long)item * MCOR_LANES < particle_count);
   const mcor_grid grid = MCOR_GRID;
@@ -333,7 +331,11 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global con
     weights = inside ? weight : weights;
   }
   const realv mean = weights > (realv)0 ? widest - lacks / weights : own;
-  const realv result = fmax(fmin(own, mean), (realv)1);
+  const realv sided = fmax((iso + margin - MCOR_LOAD(begin, limited)) / margin, (realv)0);
+  const realv share = fmax(4 * sided * (1 - sided), (realv)0);
+  const realv lowered = fmax(fmin(own, mean), (realv)1);
+  const realv result =
+    own == (realv)1 ? MCOR_FMA(share, fmax(mean, (realv)1) - 1, (realv)1) : lowered;
   MCOR_STORE(result, begin, limited);
 }
 

@@ -110,6 +110,7 @@ void vtkMarchingCorrectors::FillChoice(
   choice.FreeSurface = this->FreeSurface != 0;
   choice.InterpolateAttributes = this->InterpolateAttributes != 0;
   choice.ComputeScalars = this->ComputeScalars != 0;
+  choice.Filled = this->Filled != 0;
   this->FindFluid(choice, particles, merge);
 }
 

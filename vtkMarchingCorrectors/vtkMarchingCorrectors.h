@@ -274,9 +274,9 @@ public:
 
   /**
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
-   * fluid, with triangles that share the points of the lines. The other values divide it into
-   * bands. The cell array "BandValue" has the iso value at which a triangle's band begins, and that
-   * of a line. Off by default. An error in three dimensions.
+   * fluid, with triangles that share the points of the lines. The other values divide it into bands. The cell
+   * array "BandValue" has the iso value at which a triangle's band begins, and that of a line. The point array
+   * "IsoValue" has it, too, and the scalar is interpolated as others are. Off by default. An error in 3-D.
    */
   vtkSPHFlagMacro(Filled, 0);
 

@@ -522,7 +522,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         for name, array in particles.from_nearest.items() if nearest is not None else ():
             add_nearest(data, name, array, nearest)
         names = [name for name, array in particles.interpolated.items() if varies(array, data.GetArray(name))
-                 and not (options.iso_count == 1 and name == particles.contoured)]
+                 and not (options.iso_count == 1 and not options.filled and name == particles.contoured)]
         best = choose_array([data.GetArray(name) for name in (*names, particles.iso_value_name) if data.HasArray(name)])
         if best is not None:
             data.SetActiveScalars(name_of(best))

@@ -309,7 +309,7 @@ class Particles:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
             few = self.scalar.GetNumberOfComponents() <= 3
             self.scalar_name += "_" + (label or ("XYZ"[component] if few else str(component)))
-        if self.scalar_name and self.scalar_name not in taken:
+        if self.scalar_name and self.scalar_name not in taken and not self.choice.Filled:
             self.iso_value_name = self.scalar_name
 
     def collect_attributes(self, taken):

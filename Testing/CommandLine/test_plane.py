@@ -66,6 +66,16 @@ class Plane(CommandLineTest):
         self.run_good(self.input, stl, "--free-surface", "--filled", "--no-attributes")
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
+    def test_values_in_filled_regions(self):
+        """The contoured array varies as the field does; the iso value of each point is another array."""
+        self.extract_good("--scalar", "Radius", "--iso", "0.2,0.5", "--filled", "--quiet")
+        ranges = {name: (float(low), float(high)) for name, low, high in
+                  re.findall(r'Name="(\w+)"[^>]*RangeMin="(\S+)"[^>]*RangeMax="(\S+)"', self.output.read_text())}
+        self.assertEqual(ranges["IsoValue"], (0.2, 0.5))
+        self.assertEqual(ranges["BandValue"], (0.2, 0.5))
+        self.assertLess(abs(ranges["Radius"][0] - 0.2), 1e-3)
+        self.assertGreater(ranges["Radius"][1], 0.9)
+
     def test_filled_alone(self):
         self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, "leave out --filled or --capping")
 

@@ -95,7 +95,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
 }
 
 // The iso value's array takes another name if a computed array has this one, because users look for
-// computed arrays by name.
+// computed arrays by name. In filled regions the scalar is interpolated as other arrays are.
 void vtkMarchingCorrectorsInput::NameScalar()
 {
   this->IsoValueName = "IsoValue";
@@ -118,7 +118,8 @@ void vtkMarchingCorrectorsInput::NameScalar()
           : isVector ? std::string(1, "XYZ"[component])
                      : std::to_string(component));
   }
-  if (!this->ScalarName.empty() && !Contains(this->Choice.ComputedArrays, this->ScalarName))
+  if (!this->Choice.Filled && !this->ScalarName.empty() &&
+    !Contains(this->Choice.ComputedArrays, this->ScalarName))
   {
     this->IsoValueName = this->ScalarName;
   }

@@ -19,6 +19,7 @@ struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
   bool InterpolateAttributes = true;
   std::vector<std::string> ComputedArrays; // names that the output already uses
   bool ComputeScalars = true;
+  bool Filled = false;
 };
 
 class vtkMarchingCorrectorsInput : public vtkSPHParticles

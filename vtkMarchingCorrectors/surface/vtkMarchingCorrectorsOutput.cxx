@@ -230,7 +230,7 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   }
   const vtkMarchingCorrectorsInput& input = this->Input;
   const bool isOne = input.Scalar && input.Scalar->GetName() && !input.ScalarDot &&
-    this->Options.iso_count == 1 &&
+    this->Options.iso_count == 1 && !this->Options.filled &&
     (input.Core.scalar.components == 1 || input.Core.scalar_component == MCOR_MAGNITUDE);
   vtkSPHArrayChoice choice;
   for (size_t i = 0; i < attributes.size(); ++i)

@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles of any number, always the same, to try things with and for timing.
 
-  make_particles.py SET N OUT.vtp [--ratio R] [--keep-all]
+  make_particles.py SET N OUT.vtp [--ratio R] [--keep-all] [--steps K]
 
-Makes about N particles of one of the sets below. Needs numpy and vtk.
+Makes about N particles of one of the sets below. OUT_%04d.vtk (or .vtp) with --steps K: K steps of a film. Needs numpy and vtk.
 """
 import argparse
 import math
@@ -15,6 +15,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 GRAVITY = 9.81
+INTERVALS = {"splash": 0.02, "wave": 0.05}  # between steps, s
 
 
 def tank(count, ratio=1.28):
@@ -122,19 +123,21 @@ def graded(count, ratio=1000):
                "Sphere": (np.linalg.norm(p - beside, axis=1) - (0.7 * ratio - 2)) / r}
 
 
-def wave(count, ratio=1.3):
+def wave(count, ratio=1.3, time=0.0):
     """A wave in a flume, in two dimensions, y = 0, for lines; ratio: h / spacing.
 
     Fluid and walls: a jittered lattice in a flume 3 m long, under a surface with a steep wave and a few drops before its crest,
-    around a cylinder. Masses are per metre of width. Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid,
+    around a cylinder. With --steps it moves along the flume, every 0.05 s. Masses are per metre of width. Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid,
     1 wall), Pressure (hydrostatic, Pa), Velocity (of a solitary wave, m/s).
     """
     length, depth, height, cylinder = 3.0, 0.4, 0.22, (2.15, 0.17, 0.09)
     drops = ((1.62, 0.66, 0.025), (1.69, 0.61, 0.016), (1.75, 0.66, 0.012))
+    celerity = np.sqrt(GRAVITY * (depth + height))
+    crest = 1.3 + celerity * time
 
     def top(x):
         """Steeper on the side that the wave goes to."""
-        s = (x - 1.3) * np.where(x > 1.3, 7.0, 3.2)
+        s = (x - crest) * np.where(x > crest, 7.0, 3.2)
         return depth + height / np.cosh(np.clip(s, -20, 20)) ** 2 + 0.006 * np.sin(21 * x)
 
     dx = (length * (depth + 0.08) / count) ** 0.5
@@ -144,19 +147,52 @@ def wave(count, ratio=1.3):
     from_cylinder = np.hypot(x - cylinder[0], z - cylinder[1])
     inside = from_cylinder < cylinder[2]
     walls |= inside & (from_cylinder > cylinder[2] - layers)
-    drop = np.any([np.hypot(x - a, z - b) < r for a, b, r in drops], axis=0)
+    drop = np.any([np.hypot(x - a - crest + 1.3, z - b) < r for a, b, r in drops], axis=0)
     fluid = ~walls & ~inside & ((z < top(x)) | drop)
     kept = fluid | (walls & (z < 0.75))
     jitter = np.random.default_rng(477).uniform(-0.12, 0.12, (2, len(x))) * dx
     x, z = (np.where(fluid, c + j, c)[kept] for c, j in zip((x, z), jitter))
     fluid = fluid[kept]
-    speed = np.sqrt(GRAVITY * (depth + height)) * (top(x) - depth) / (depth + height)
-    rise = -speed * np.tanh((x - 1.3) * 4) * z / depth
+    speed = celerity * (top(x) - depth) / (depth + height)
+    rise = -speed * np.tanh((x - crest) * 4) * z / depth
     velocity = np.stack([speed * (0.6 + 0.8 * z / depth), np.zeros_like(x), -rise], -1) * fluid[:, None]
     return np.stack([x, np.zeros_like(x), z], -1), {
         "SmoothingLength": np.full(len(x), ratio * dx), "Density": np.full(len(x), 1000.0),
         "Mass": np.full(len(x), 1000.0 * dx ** 2), "Pressure": 1000 * GRAVITY * np.maximum(top(x) - z, 0) * fluid,
         "Velocity": velocity, "Type": (~fluid).astype(np.int32)}
+
+
+def splash(count, ratio=1.3, time=0.1):
+    """A crown that rises from a pool and falls apart into drops; ratio: h / spacing.
+
+    z up, metres. The sheet of the crown is thrown up at time 0 along a ring of radius 0.3, and each of its particles flies
+    freely; with --steps every 0.02 s. Arrays: SmoothingLength (constant), Density (1000), Mass, Velocity, Id.
+    """
+    radius, depth, layers, fingers = 0.8, 0.15, 3, 14
+    dx = (math.pi * radius ** 2 * depth / (0.8 * count)) ** (1 / 3)
+    side = np.arange(-radius + dx / 2, radius, dx)
+    pool = np.stack(np.meshgrid(side, side, np.arange(dx / 2, depth, dx) - depth), -1).reshape(-1, 3)
+    pool = pool[np.hypot(pool[:, 0], pool[:, 1]) < radius]
+    random = np.random.default_rng(477)
+    pool += random.uniform(-0.12, 0.12, pool.shape) * dx
+    around = int(2 * math.pi * 0.3 / dx)
+    rows = max(int(0.2 * count / (around * layers)), 1)
+    layer, row, turn = (c.ravel() for c in np.meshgrid(np.arange(layers), np.arange(rows), np.arange(around), indexing="ij"))
+    angle = 2 * math.pi * (turn + 0.5 * (row % 2)) / around
+    late = row / rows  # 0: thrown first, and fastest
+    start = 0.3 + (layer - (layers - 1) / 2) * dx
+    out = 0.9 * (1 - 0.5 * late)
+    up = 2.3 * (1 - late) * (1 + 0.12 * np.cos(fingers * angle) * (1 - late)) + 0.05
+    outwards, flown = np.stack([np.cos(angle), np.sin(angle)], -1), np.minimum(time, 2 * up / GRAVITY)
+    height = up * flown - GRAVITY * flown ** 2 / 2
+    crown = np.concatenate([(start + out * flown)[:, None] * outwards, height[:, None]], 1)
+    crown += random.uniform(-0.1, 0.1, crown.shape) * dx
+    flies = (flown >= time)[:, None]
+    speed = np.concatenate([out[:, None] * outwards, (up - GRAVITY * flown)[:, None]], 1) * flies
+    p = np.concatenate([pool, crown])
+    return p, {"SmoothingLength": np.full(len(p), ratio * dx), "Density": np.full(len(p), 1000.0),
+               "Mass": np.full(len(p), 1000.0 * dx ** 3), "Velocity": np.concatenate([0 * pool, speed]),
+               "Id": np.arange(len(p), dtype=np.int32)}
 
 
 def plane(count, jitter=0.15):
@@ -287,34 +323,50 @@ def poly_data(positions, arrays):
 
 
 def write(path, particles):
-    writer = vtk.vtkXMLPolyDataWriter()
+    is_legacy = str(path).endswith(".vtk")
+    writer = vtk.vtkPolyDataWriter() if is_legacy else vtk.vtkXMLPolyDataWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(particles)
-    writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView, see README.md
-    writer.SetHeaderTypeToUInt64()
+    if is_legacy:
+        writer.SetFileTypeToBinary()
+    else:
+        writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView, see README.md
+        writer.SetHeaderTypeToUInt64()
     writer.Write()
 
 
 def main():
-    sets = {make.__name__: make for make in (tank, dam_break, graded, wave, plane, vortex_rings)}
+    sets = {make.__name__: make for make in (tank, dam_break, graded, wave, splash, plane, vortex_rings)}
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n\n".join(f"{name}: {make.__doc__}" for name, make in sets.items()))
     parser.add_argument("set", choices=sets)
     parser.add_argument("count", type=lambda text: int(float(text)), metavar="N", help="wanted number of particles, about")
-    parser.add_argument("out", metavar="OUT.vtp")
+    parser.add_argument("out", metavar="OUT.vtp|.vtk")
     parser.add_argument("--ratio", type=float, default=argparse.SUPPRESS, help="what it is, and its default, depends on the set")
     parser.add_argument("--keep-all", action="store_true", default=argparse.SUPPRESS,
                         help="vortex_rings: particles of negligible vorticity, too")
+    parser.add_argument("--steps", type=int, default=0, metavar="K", help="splash, wave: so many steps, OUT_%%04d.vtp or .vtk")
     given = vars(parser.parse_args())
+    steps = given.pop("steps")
     chosen, count, out = (given.pop(name) for name in ("set", "count", "out"))
     if "ratio" in given and chosen in ("plane", "vortex_rings") or "keep_all" in given and chosen != "vortex_rings":
         parser.error(f"{chosen} has no such option")
-    positions, arrays = sets[chosen](count, **given)
-    if chosen != "graded":  # whose sizes and places go over three decades
-        positions = positions.astype(np.float32)
-        arrays = {name: values.astype(np.float32) if values.dtype.kind == "f" else values for name, values in arrays.items()}
-    write(out, poly_data(positions, arrays))
+    if steps and (chosen not in INTERVALS or "%" not in out) or not steps and "%" in out:
+        parser.error(f"--steps K goes with OUT_%04d.vtp, of {' or '.join(INTERVALS)}")
+    for step in range(steps or 1):
+        if steps:
+            given["time"] = step * INTERVALS[chosen]
+        positions, arrays = sets[chosen](count, **given)
+        if chosen != "graded":  # whose sizes and places go over three decades
+            positions = positions.astype(np.float32)
+            arrays = {name: values.astype(np.float32) if values.dtype.kind == "f" else values for name, values in arrays.items()}
+        particles = poly_data(positions, arrays)
+        if steps:
+            time = numpy_to_vtk(np.array([given["time"]]), deep=1)
+            time.SetName("TimeValue")
+            particles.GetFieldData().AddArray(time)
+        write(out % step if steps else out, particles)
     h = arrays.get("SmoothingLength")
     print(f"{out}: {len(positions)} particles" + ("" if h is None else f", h {h.min():.6g} .. {h.max():.6g}"))
 

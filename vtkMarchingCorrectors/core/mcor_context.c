@@ -176,7 +176,11 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->grid.view = 0;
   mcor_begin_buffers(context);
   mcor_flat flat;
-  mcor_status status = mcor_flatten(context, input, options, &flat);
+  mcor_status status = mcor_find_plane(context, input, options, &flat);
+  if (status == MCOR_OK && mcor_is_plane(context))
+  {
+    status = mcor_flatten(context, input, options, &flat);
+  }
   context->run.options = &flat.options;
   if (!options->globals)
   {

@@ -85,7 +85,10 @@ static mcor_status mcor_count_edges(mcor_context* context)
     MCOR_BUFFER(&context->adaptive.quadrants), MCOR_BUFFER(&mesh->plain_used),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
-  MCOR_TRY(mcor_is_resolved(context) ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
+  if (mcor_is_resolved(context))
+  {
+    MCOR_TRY(mcor_scan(context, tunnels, count, &tunnel_count));
+  }
   context->run.statistics->tunnels += tunnel_count;
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
@@ -148,9 +151,15 @@ mcor_status mcor_march(mcor_context* context)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_find_neighbours(context)); /* growth has */
+  if (!mcor_uses_pairs(context)) /* whose growth has found them */
+  {
+    MCOR_TRY(mcor_find_neighbours(context));
+  }
   MCOR_TRY(mcor_find_used(context));
-  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context) : MCOR_OK);
+  if (mcor_is_resolved(context))
+  {
+    MCOR_TRY(mcor_resolve_topology(context));
+  }
   MCOR_TRY(mcor_count_edges(context));
   return mesh->triangle_count == 0 ? MCOR_OK : mcor_emit(context);
 }

@@ -56,7 +56,10 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
     return MCOR_OK;
   }
   MCOR_TRY(mcor_place_bricks(context));
-  MCOR_TRY(first ? mcor_sign_nodes(context, &bricks->now.known) : MCOR_OK);
+  if (first)
+  {
+    MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
+  }
   MCOR_TRY(mcor_evaluate_nodes(context));
   return mcor_sign_nodes(context, &bricks->need);
 }
@@ -115,7 +118,10 @@ mcor_status mcor_find_reached(mcor_context* context)
       ++context->run.statistics->march_rounds;
     }
     more = placed;
-    MCOR_TRY(more ? MCOR_OK : mcor_wrap_reached(context, &more));
+    if (!more)
+    {
+      MCOR_TRY(mcor_wrap_reached(context, &more));
+    }
   }
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &bricks->cells, (size_t)count * sizeof(cl_ulong)));

@@ -139,14 +139,28 @@ mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
       MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
       MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags)));
   }
-  MCOR_TRY(adaptive ? mcor_begin_leaves(context, input) : mcor_make_blocks(context));
+  if (adaptive)
+  {
+    MCOR_TRY(mcor_begin_leaves(context, input));
+  }
+  else
+  {
+    MCOR_TRY(mcor_make_blocks(context));
+  }
   const size_t bits = (size_t)bricks->block_count * MCOR_BLOCK_WORDS * sizeof(cl_uint);
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, bits));
   MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, bits));
   if (!pairs)
   {
     MCOR_TRY(mcor_test_seeds(context));
-    MCOR_TRY(adaptive ? mcor_choose_leaves(context) : mcor_count_seeds(context));
+    if (adaptive)
+    {
+      MCOR_TRY(mcor_choose_leaves(context));
+    }
+    else
+    {
+      MCOR_TRY(mcor_count_seeds(context));
+    }
     MCOR_TRY(mcor_fill(context, &bricks->bits, 0, bits));
   }
   MCOR_TRY(mcor_request_known(context));
@@ -155,7 +169,14 @@ mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
     MCOR_TRY(mcor_complete_leaves(context));
     return mcor_count_seeds(context);
   }
-  MCOR_TRY(pairs ? mcor_find_reached(context) : mcor_complete_bricks(context));
+  if (pairs)
+  {
+    MCOR_TRY(mcor_find_reached(context));
+  }
+  else
+  {
+    MCOR_TRY(mcor_complete_bricks(context));
+  }
   const size_t cells = (size_t)bricks->now.count * sizeof(cl_ulong);
   MCOR_TRY(mcor_fill(context, &bricks->plain, 0xff, cells));
   return pairs ? mcor_count_seeds(context) : mcor_fill(context, &bricks->cells, 0xff, cells);

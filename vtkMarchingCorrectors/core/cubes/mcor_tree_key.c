@@ -71,9 +71,14 @@ mcor_status mcor_take_splits(
     const mcor_rung* rung = &tree->lattice->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);
-    MCOR_TRY(
-      mcor_set_add_brick(&tree->split[level], rung, b) ? MCOR_OK : mcor_fail_leaves(context));
-    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+    if (!mcor_set_add_brick(&tree->split[level], rung, b))
+    {
+      MCOR_TRY(mcor_fail_leaves(context));
+    }
+    if (i % MCOR_TREE_STEP == 0)
+    {
+      MCOR_TRY(mcor_report_launch(context));
+    }
   }
   return MCOR_OK;
 }

@@ -44,7 +44,10 @@ static mcor_status mcor_add_block(
   if (exists)
   {
     uint64_t* value = mcor_table_add(blocks, mcor_brick_key(rung, brick) / MCOR_BLOCK_BRICKS);
-    MCOR_TRY(value && blocks->count <= MCOR_TREE_BLOCK_LIMIT ? MCOR_OK : mcor_fail_leaves(context));
+    if (!(value && blocks->count <= MCOR_TREE_BLOCK_LIMIT))
+    {
+      MCOR_TRY(mcor_fail_leaves(context));
+    }
     *value = 1;
   }
   return MCOR_OK;
@@ -86,7 +89,10 @@ static mcor_status mcor_add_parts(
         }
       }
     }
-    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+    if (i % MCOR_TREE_STEP == 0)
+    {
+      MCOR_TRY(mcor_report_launch(context));
+    }
   }
   return MCOR_OK;
 }
@@ -179,7 +185,10 @@ static mcor_status mcor_list_blocks(
     }
     tree->leaf_count += mcor_fill_block(tree, &context->box, level, tree->block_keys[i],
       tree->leaves + words, tree->is_split + words);
-    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+    if (i % MCOR_TREE_STEP == 0)
+    {
+      MCOR_TRY(mcor_report_launch(context));
+    }
   }
   for (; level <= tree->top; ++level)
   {

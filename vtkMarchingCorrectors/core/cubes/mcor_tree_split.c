@@ -294,10 +294,19 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
         above = mcor_spread_layers(a, above);
       }
       const bool made = mcor_split_cube(tree, level + 1, first, above, &tree->split[level + 1]);
-      MCOR_TRY(made ? MCOR_OK : mcor_fail_leaves(context));
-      MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+      if (!made)
+      {
+        MCOR_TRY(mcor_fail_leaves(context));
+      }
+      if (i % MCOR_TREE_STEP == 0)
+      {
+        MCOR_TRY(mcor_report_launch(context));
+      }
     }
-    MCOR_TRY(mcor_are_too_many(tree->split) ? mcor_fail_leaves(context) : MCOR_OK);
+    if (mcor_are_too_many(tree->split))
+    {
+      MCOR_TRY(mcor_fail_leaves(context));
+    }
   }
   return MCOR_OK;
 }

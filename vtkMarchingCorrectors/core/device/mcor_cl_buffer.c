@@ -226,7 +226,10 @@ mcor_status mcor_map(
   {
     mcor_locked* locked = NULL;
     MCOR_TRY(mcor_take_locked(context, some, &locked));
-    MCOR_TRY(write ? MCOR_OK : mcor_read(context, buffer, 0, locked->host, bytes));
+    if (!write)
+    {
+      MCOR_TRY(mcor_read(context, buffer, 0, locked->host, bytes));
+    }
     locked->of = buffer->mem;
     locked->written = write ? bytes : 0;
     *data = locked->host;

@@ -130,8 +130,10 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
   MCOR_TRY(
     mcor_place_particles(context, &run->batch, run->first, run->count, bounded, first, last));
   run->inside = run->count;
-  MCOR_TRY(
-    bounded ? mcor_scan(context, &context->points.flags, run->count, &run->inside) : MCOR_OK);
+  if (bounded)
+  {
+    MCOR_TRY(mcor_scan(context, &context->points.flags, run->count, &run->inside));
+  }
   if (run->inside == 0)
   {
     return MCOR_OK;

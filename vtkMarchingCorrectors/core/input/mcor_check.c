@@ -128,11 +128,17 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
                                        : NULL;
   MCOR_NEED(!other || !mcor_wants_pairs(options),
     "%s cannot be combined with pair seeds. Choose complete seeds.", other);
-  MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
+  if (options->globals)
+  {
+    MCOR_TRY(mcor_check_globals(context, options->globals));
+  }
   for (int a = 0; a < 3 && mcor_has_box(options); ++a)
   {
     const double from = options->box[2 * a], to = options->box[2 * a + 1];
-    MCOR_TRY(from < to ? MCOR_OK : mcor_refuse_sides(context, a, from, to));
+    if (!(from < to))
+    {
+      MCOR_TRY(mcor_refuse_sides(context, a, from, to));
+    }
   }
   for (int a = 0; a < 3; ++a)
   {
@@ -226,9 +232,10 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     "There is no smoothing length. Name its array, give a constant, or have it estimated.");
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
-    MCOR_TRY(arrays[i].array
-        ? mcor_check_array(context, input, arrays[i].array, skip, arrays[i].role, 1, true)
-        : MCOR_OK);
+    if (arrays[i].array)
+    {
+      MCOR_TRY(mcor_check_array(context, input, arrays[i].array, skip, arrays[i].role, 1, true));
+    }
   }
   if (widening)
   {

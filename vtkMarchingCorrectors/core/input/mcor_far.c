@@ -181,8 +181,14 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
     job.open[a] = context->lattice.period[a] == 0;
   }
   bool good = true;
-  MCOR_TRY(
-    far->is_cut ? mcor_mark_out_of_reach(context, &job) : mcor_mark_farthest(context, &job, &good));
+  if (far->is_cut)
+  {
+    MCOR_TRY(mcor_mark_out_of_reach(context, &job));
+  }
+  else
+  {
+    MCOR_TRY(mcor_mark_farthest(context, &job, &good));
+  }
   if (!good)
   {
     return MCOR_OUT_OF_CAPACITY; /* its sentence is there */

@@ -225,6 +225,9 @@ static inline bool mcor_needs_density(const mcor_input* input)
 /* Reads the volumes of at most MCOR_CHUNK particles; where they are computed, the masses, or 1. */
 void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out);
 
+/* mcor_find_plane.c. Whether positions can be read. */
+bool mcor_has_positions(const mcor_input* input);
+
 /* mcor_measure_median.c. Compares two doubles, for qsort. */
 int mcor_compare_doubles(const void* a, const void* b);
 

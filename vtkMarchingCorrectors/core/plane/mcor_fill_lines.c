@@ -110,9 +110,11 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   memset(line->number, 0xff, (n + cuts) * sizeof *line->number);
   line->vertex_count = (int)n;
   line->cut_count = (int)cuts;
-  MCOR_TRY(cuts > 0
-      ? mcor_read(context, &context->mesh.cut_edges, 0, line->cuts, cuts * sizeof *line->cuts)
-      : MCOR_OK);
+  if (cuts > 0)
+  {
+    MCOR_TRY(
+      mcor_read(context, &context->mesh.cut_edges, 0, line->cuts, cuts * sizeof *line->cuts));
+  }
   void *node = NULL, *offset = NULL, *quantity = NULL;
   const mcor_mapping mappings[] = { { &mesh->node, n * 4 * sizeof(cl_int), &node },
     { &mesh->offset, n * 4 * real, &offset },
@@ -141,7 +143,10 @@ mcor_status mcor_take_lines(mcor_context* context)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(context->mesh.march_count > 0 ? mcor_take_vertices(context, line) : MCOR_OK);
+  if (context->mesh.march_count > 0)
+  {
+    MCOR_TRY(mcor_take_vertices(context, line));
+  }
   mcor_cap_nodes* nodes = &fill->nodes;
   for (int64_t b = 0; b < nodes->bricks.count; ++b)
   {

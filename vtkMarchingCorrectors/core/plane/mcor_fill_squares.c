@@ -210,7 +210,10 @@ static mcor_status mcor_visit_fill_square(
   }
   for (int i = 0; i < job->count; ++i)
   {
-    MCOR_TRY(job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon(job, i) : MCOR_OK);
+    if (job->border[i].band > 0 && !job->border[i].done)
+    {
+      MCOR_TRY(mcor_add_polygon(job, i));
+    }
   }
   return MCOR_OK;
 }
@@ -317,7 +320,10 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
     mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, &job);
   free(job.border);
   MCOR_TRY(status);
-  MCOR_TRY(context->run.options->preview ? MCOR_OK : mcor_place_cap_cuts(&fill->cap));
+  if (!context->run.options->preview)
+  {
+    MCOR_TRY(mcor_place_cap_cuts(&fill->cap));
+  }
   MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
   const int64_t first = surface->triangle_count, count = fill->triangles.count;
   MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));

@@ -28,8 +28,11 @@ static inline bool mcor_is_plane(const mcor_context* context)
   return context->plane.axis > 0;
 }
 
-/* Finds whether the particles lie in a plane, sets context->plane, and turns input and options
- * into it. */
+/* Finds whether the particles lie in a plane, sets context->plane and `space`, and copies input and
+ * options to *flat. */
+mcor_status mcor_find_plane(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
+/* Turns these copies into the plane. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
 /* Turns points likewise, into *flat, which the caller frees. Points off the plane become NaN. */

@@ -175,7 +175,10 @@ mcor_status mcor_add_attributes(
       }
     }
   }
-  MCOR_TRY(varying > 0 ? mcor_store_attributes(context, input, scanned, surface) : MCOR_OK);
+  if (varying > 0)
+  {
+    MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
+  }
   for (int first = MCOR_ATTRIBUTE_LIMIT; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
   {
     MCOR_TRY(mcor_load_attributes(context, input, first));

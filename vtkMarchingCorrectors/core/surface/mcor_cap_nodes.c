@@ -393,7 +393,10 @@ mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   mcor_set_cap_extent(context, axis, upper, nodes);
   MCOR_TRY(mcor_find_cap_bricks(context, context->run.iso.value, nodes));
   MCOR_TRY(mcor_take_cap_masks(context, nodes));
-  MCOR_TRY(opposite ? MCOR_OK : mcor_ask_cap_nodes(context, nodes, false, points));
+  if (!opposite)
+  {
+    MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false, points));
+  }
   /* Copies what the opposite side of a period knows: a period apart, sums have the same bits. */
   for (int64_t to = MCOR_SIDE_NODES; opposite && to < nodes->node_count; ++to)
   {

@@ -320,9 +320,10 @@ mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
     for (int64_t i = 0; i < job->lines.count; ++i)
     {
       const mcor_cap_vertex* vertex = &job->vertices.of[job->lines.of[i].vertex];
-      MCOR_TRY(job->lines.of[i].done
-          ? MCOR_OK
-          : mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+      if (!job->lines.of[i].done)
+      {
+        MCOR_TRY(mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+      }
       left += !job->lines.of[i].done;
     }
     MCOR_TRY(mcor_take_cap_points(job->context, points));

@@ -80,7 +80,10 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
 {
   const int64_t old = surface->triangle_count;
   void **kept = (void**)&context->box.kept, **keys = (void**)&surface->triangle_keys;
-  MCOR_TRY(context->box.is_part ? mcor_grow(context, kept, old, more, 1) : MCOR_OK);
+  if (context->box.is_part)
+  {
+    MCOR_TRY(mcor_grow(context, kept, old, more, 1));
+  }
   return mcor_wants(context, MCOR_OUT_TRIANGLE_KEYS)
     ? mcor_grow(context, keys, old, more, MCOR_TRIANGLE_KEY * sizeof(uint64_t))
     : MCOR_OK;

@@ -1,7 +1,21 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]. */
+/* Trimming [III-D.3]: triangles on the lower side of a limit go, and those across it are cut.
+ *
+ *   limit, at a vertex                            option                     default   not for
+ *   the trimming weight                           vertex_threshold           0.5       MCOR_WEIGHT_SUM
+ *   the boundary eigenvalue, in its place         boundary_detection         -         MCOR_WEIGHT_SUM
+ *   the fluid's own weight                        none: 0.001, M'4: 0.05     always    all but MCOR_SHEPARD
+ *   the solids' share of the weight, at most      wall_share                 measured; ignored solids
+ *                                                                            of MCOR_WEIGHT_SUM: none
+ *
+ * Kernels: mcor_trim.cl decides and cuts, mcor_trim_solve.cl moves cuts to where a limit and the iso
+ * value are met at once; mcor_boundary.cl has the eigenvalue.
+ *
+ * What else leaves cells or triangles out: the node threshold (mcor_node.cl, mcor_seed.cl: cells with
+ * a node of lower weight, or, with MCOR_SHEPARD, of fluid weight below 0.001), the box and its ring
+ * (mcor_triangle_cell.c), compaction (mcor_compact.c). */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"

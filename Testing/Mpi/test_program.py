@@ -448,6 +448,9 @@ class Program(unittest.TestCase):
         that fails is named once, and the others are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
+        points = self.path("points.csv")
+        with open(points, "w", encoding="ascii") as stream:
+            stream.write("x,y,z\n0,0.1,0\n-0.5,0.1,0.2\n9,9,9\n")
         for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
             os.mkdir(self.path(name))
             how = ["--free-surface", "--iso", "0.5,0.3", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
@@ -458,8 +461,9 @@ class Program(unittest.TestCase):
             self.check_fails(done, "third.vtp", "list_0002.vtp")
             self.assertEqual(done.stdout.count(" triangles, "), 2, done.stdout)
             self.good(run(steps, self.path(name + "/levels.csv"), *gauges, "--times", "0.007,0.02"))
+            self.good(run(steps, self.path(name + "/values.csv"), "--probe", points, "--times", "0:0.02:0.01"))
         self.check_same_files(["film_0000.ply", "film_0001.ply", "film_0002.ply", "pieces.csv", "numbers.csv", "list.pvd",
-                               "levels.csv"])
+                               "levels.csv", "values.csv"])
         alone, ranks = (read(self.path(name + "/list_0001.vtp")) for name in ("alone", "ranks"))
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
         with open(self.path("ranks/numbers.csv"), encoding="utf-8") as stream:

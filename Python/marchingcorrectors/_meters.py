@@ -176,7 +176,7 @@ def _take_density(words, count):
 
 @of_particles(GAUGE, masses=True)
 def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
-    """Fluxes through sections, to 1e-6 of the largest flux that the velocities there allow.
+    """Fluxes through sections, to 1e-5 of the largest flux that the velocities there allow.
 
     Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
 

@@ -23,11 +23,8 @@
 /* Greatest difference between the integrals of a piece and its parts, relative to the piece's
  * area times the speeds of its section. A piece that is small beside the section may differ by
  * more (MCOR_FLUX_SMALL), because errors of many pieces cancel. */
-#define MCOR_FLUX_TOLERANCE 2.5e-7
+#define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* A bulge may be this many times larger than the tolerance: parabolas are that much nearer to
- * the level than chords. */
-#define MCOR_FLUX_BULGE 64
 /* Most divisions of a piece, and of one that is unclear. */
 #define MCOR_FLUX_DEPTH 12
 #define MCOR_FLUX_UNCLEAR_DEPTH 6
@@ -101,7 +98,6 @@ static mcor_status mcor_begin_pieces(mcor_flux_job* job, int64_t first, int64_t 
     const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
     const double low = job->is_plane ? 0 : v[0];
     mcor_flux_piece piece = { .patch = cell->patch,
-      .factor = 1,
       .corner = { { u[0], low }, { u[1], low }, { u[0], v[1] } },
       .area = size * mcor_patch_measure(patch, middle) };
     MCOR_APPEND(job->edges.context, &job->pieces, piece);
@@ -125,19 +121,16 @@ static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* pie
   const double tolerance = MCOR_FLUX_TOLERANCE *
     fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
   const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
-  double bulge = 0;
   bool settled = true;
   memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
   for (int part = 0; part < job->form->parts; ++part)
   {
     settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
-    bulge += parts[part].bulge;
     for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
     {
       sum[s] += parts[part].sum[s];
     }
   }
-  settled = settled && bulge <= MCOR_FLUX_BULGE * tolerance;
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
     settled = settled && fabs(sum[s] - piece->sum[s]) <= tolerance * scale[s];

@@ -53,8 +53,6 @@ typedef struct mcor_flux_piece
   bool unclear;        /* the level may cross it in a way that its corners do not show */
   double corner[3][2]; /* u, v */
   double area;         /* of the cell's piece that this one came from */
-  double factor;       /* multiplies the integrals; 1 but for bulges, see mcor_append_bulges */
-  double bulge;        /* area between the level and the chord */
   double sum[MCOR_FLUX_SUMS]; /* over the part in fluid */
 } mcor_flux_piece;
 
@@ -68,12 +66,10 @@ typedef struct mcor_flux_cell
 /* A piece with corners on both sides of the level. */
 typedef struct mcor_flux_cut
 {
-  int64_t piece, between; /* between: its line from the lone corner through the chord; -1: none */
-  int sides;              /* bits of the corners in fluid */
-  double weight[3];       /* at the corners */
-  /* In a triangle: crossings on the edges from its lone corner to the next and to the last corner,
-   * and their places, from that corner. */
-  double crossing[2][2], places[2];
+  int64_t piece;
+  int sides; /* bits of the corners in fluid */
+  /* In a triangle: crossings on the edges from its lone corner to the next and to the last one. */
+  double crossing[2][2];
 } mcor_flux_cut;
 
 /* Triangles and lines differ in this. Samples of a piece are its corners, the middles of its

@@ -3,8 +3,8 @@
 
 /* Integrals over pieces. A piece whose corners are all in fluid is integrated by a quadrature
  * that is exact for cubic functions; its points are the corners, the middles of edges, and the
- * middle. A piece with corners on both sides is cut where its edges cross the level. In a
- * triangle, the level is taken as a parabola through these crossings and one between them. */
+ * middle. A piece with corners on both sides is cut along the chord between the crossings of its
+ * edges with the level. */
 
 #include "mcor_flux.h"
 #include "mcor_vector.h"
@@ -18,8 +18,8 @@
 /* Weights bend by about 4 / h^2, so they differ from a line between two samples by an eighth of
  * that times the square of the distance. */
 #define MCOR_FLUX_BEND 0.125
-/* Rounds of mcor_solve_crossings, after which a crossing is known to 1e-7 of its edge. */
-#define MCOR_FLUX_SOLVE_ROUNDS 3
+/* Rounds of mcor_solve_crossings, after which a crossing is known to 1e-5 of its edge. */
+#define MCOR_FLUX_SOLVE_ROUNDS 2
 
 const mcor_flux_form mcor_flux_forms[2] = {
   { 3, 7, 4, { 1 / 20.0, 1 / 20.0, 1 / 20.0, 2 / 15.0, 2 / 15.0, 2 / 15.0, 9 / 20.0 },
@@ -73,7 +73,7 @@ static void mcor_integrate_piece(
   const double(*c)[2] = piece->corner;
   const double du = c[1][0] - c[0][0],
                twice = du * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1]);
-  const double size = piece->factor * (job->is_plane ? fabs(du) : 0.5 * fabs(twice));
+  const double size = job->is_plane ? fabs(du) : 0.5 * fabs(twice);
   for (int k = 0; k < job->form->points; ++k)
   {
     const double area =
@@ -112,15 +112,14 @@ static mcor_status mcor_solve_lines(mcor_flux_job* job)
   return status;
 }
 
-/* Returns the place from 0 to 1 where line i is crossed; sets `at` to its parameters. */
-static double mcor_crossing_at(const mcor_flux_job* job, int64_t i, double at[2])
+/* Sets `at` to the parameters at which line i is crossed. */
+static void mcor_crossing_at(const mcor_flux_job* job, int64_t i, double at[2])
 {
   const mcor_gauge_line* line = &job->lines.of[i];
   const double place = mcor_crossing_of(&job->edges, &job->edges.changed.of[i]);
   double point[3];
   mcor_point_between(line->from, line->to, place, point);
   memcpy(at, point, 2 * sizeof *at);
-  return place;
 }
 
 /* Returns the corner of a triangle that is alone on its side. */
@@ -172,7 +171,6 @@ static mcor_status mcor_take_piece(
       (in[e] == in[next] && mcor_may_cross(job, piece, e, next, weight, weight[corners + e]));
   }
   memset(piece->sum, 0, sizeof piece->sum);
-  piece->bulge = 0;
   if (sides == all)
   {
     mcor_integrate_piece(job, piece, first, piece->sum);
@@ -181,9 +179,7 @@ static mcor_status mcor_take_piece(
   {
     return MCOR_OK;
   }
-  mcor_flux_cut cut = { .piece = number, .between = -1, .sides = sides };
-  memcpy(cut.weight, weight, (size_t)corners * sizeof *weight);
-  MCOR_APPEND(job->edges.context, &job->cuts, cut);
+  MCOR_APPEND(job->edges.context, &job->cuts, ((mcor_flux_cut){ .piece = number, .sides = sides }));
   const int lone = job->is_plane ? 0 : mcor_lone_corner(sides);
   for (int other = 1; other < corners; ++other)
   {
@@ -227,86 +223,13 @@ static mcor_status mcor_sample_pieces(
 
 /* Appends a part of a cut piece that lies in fluid. */
 static mcor_status mcor_append_inside(mcor_flux_job* job, const mcor_flux_piece* piece,
-  int64_t number, const double* a, const double* b, const double* c, double factor)
+  int64_t number, const double* a, const double* b, const double* c)
 {
-  mcor_flux_piece part = { .patch = piece->patch, .whole = number, .factor = factor };
+  mcor_flux_piece part = { .patch = piece->patch, .whole = number };
   memcpy(part.corner[0], a, sizeof part.corner[0]);
   memcpy(part.corner[1], b, sizeof part.corner[1]);
   memcpy(part.corner[2], c, sizeof part.corner[2]);
   MCOR_APPEND(job->edges.context, &job->inside, part);
-  return MCOR_OK;
-}
-
-/* Finds the line from the lone corner through the middle of the chord to the opposite edge. */
-static void mcor_place_between(
-  const mcor_flux_piece* piece, const mcor_flux_cut* cut, double from[3], double to[3])
-{
-  const int lone = mcor_lone_corner(cut->sides);
-  const double sum =
-    cut->places[0] + cut->places[1]; /* 0 if the lone corner is on the level itself */
-  const double share = sum > 0 ? cut->places[0] / sum : 0.5;
-  from[2] = to[2] = (double)piece->patch;
-  for (int c = 0; c < 2; ++c)
-  {
-    from[c] = piece->corner[lone][c];
-    to[c] =
-      share * piece->corner[(lone + 1) % 3][c] + (1 - share) * piece->corner[(lone + 2) % 3][c];
-  }
-}
-
-/* Adds the bulges of triangles, between the chord and the level. A parabola and its chord enclose
- * 4/3 of the triangle of the two crossings and the one between them. If the level does not cross
- * the line between the crossings, the piece is unclear. */
-static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_pieces* pieces)
-{
-  job->lines.count = job->edges.changed.count = 0;
-  for (int64_t first = 0; first < job->cuts.count; first += MCOR_GAUGE_BATCH)
-  {
-    const int64_t rest = job->cuts.count - first;
-    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
-    double from[3];
-    for (int i = 0; i < count; ++i)
-    {
-      const mcor_flux_cut* cut = &job->cuts.of[first + i];
-      mcor_place_between(&pieces->of[cut->piece], cut, from, job->field.at[i]);
-    }
-    MCOR_TRY(mcor_sample_flux(job, count));
-    for (int i = 0; i < count; ++i)
-    {
-      mcor_flux_cut* cut = &job->cuts.of[first + i];
-      mcor_flux_piece* piece = &pieces->of[cut->piece];
-      const int lone = mcor_lone_corner(cut->sides);
-      const double weight = job->field.weight[i];
-      double to[3];
-      if ((weight >= job->edges.level) == (cut->sides >> lone & 1))
-      {
-        piece->unclear = true;
-        continue;
-      }
-      mcor_place_between(piece, cut, from, to);
-      cut->between = job->lines.count;
-      MCOR_TRY(mcor_append_crossed(job, from, to, cut->weight[lone], weight));
-    }
-  }
-  MCOR_TRY(mcor_solve_lines(job));
-  for (int64_t i = 0; i < job->cuts.count; ++i)
-  {
-    const mcor_flux_cut* cut = &job->cuts.of[i];
-    mcor_flux_piece* piece = &pieces->of[cut->piece];
-    const double *p = cut->crossing[0], *q = cut->crossing[1];
-    double m[2];
-    if (cut->between < 0)
-    {
-      continue;
-    }
-    const bool lone_in = cut->sides >> mcor_lone_corner(cut->sides) & 1;
-    const bool beyond =
-      mcor_crossing_at(job, cut->between, m) > 0.5 * (cut->places[0] + cut->places[1]);
-    piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches.of[piece->patch], m) *
-      fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
-    MCOR_TRY(
-      mcor_append_inside(job, piece, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0));
-  }
   return MCOR_OK;
 }
 
@@ -323,7 +246,7 @@ mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces)
   for (int64_t i = 0; i < crossings * job->cuts.count; ++i)
   {
     mcor_flux_cut* cut = &job->cuts.of[i / crossings];
-    cut->places[i % crossings] = mcor_crossing_at(job, i, cut->crossing[i % crossings]);
+    mcor_crossing_at(job, i, cut->crossing[i % crossings]);
   }
   /* Appends the part of a triangle up to the chord between its crossings, or of a line up to its
    * crossing. */
@@ -338,14 +261,13 @@ mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces)
                  *last = piece->corner[(lone + 2) % 3];
     if (job->is_plane)
     {
-      MCOR_TRY(mcor_append_inside(job, piece, n, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1));
+      MCOR_TRY(mcor_append_inside(job, piece, n, piece->corner[cut->sides == 1 ? 0 : 1], p, p));
       continue;
     }
     const bool lone_in = cut->sides >> lone & 1;
     MCOR_TRY(mcor_append_inside(
-      job, piece, n, lone_in ? here : p, lone_in ? p : next, lone_in ? q : last, 1));
-    MCOR_TRY(lone_in ? MCOR_OK : mcor_append_inside(job, piece, n, p, last, q, 1));
+      job, piece, n, lone_in ? here : p, lone_in ? p : next, lone_in ? q : last));
+    MCOR_TRY(lone_in ? MCOR_OK : mcor_append_inside(job, piece, n, p, last, q));
   }
-  MCOR_TRY(job->is_plane ? MCOR_OK : mcor_append_bulges(job, pieces));
   return mcor_sample_pieces(job, &job->inside, pieces);
 }

@@ -207,7 +207,7 @@ class TestComponents(MeterTest):
     def test_weird(self):
         split = vtkSPHComponents()
         self.assertEqual(self.measured(split, vtkPolyData(), vtkPolyData()), [])
-        self.assertEqual((split.GetTable().GetNumberOfColumns(), split.GetOutput().GetNumberOfPoints()), (20, 0))
+        self.assertEqual((split.GetTable().GetNumberOfColumns(), split.GetOutput().GetNumberOfPoints()), (21, 0))
         self.assertEqual(len(run(vtkSPHComponents(), made_by(vtkPlaneSource()))[1]), 1)  # a quad
 
     def test_parents(self):

@@ -21,7 +21,9 @@
 #include "vtkPolyData.h"
 #include "vtkVersion.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -29,6 +31,8 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace
@@ -43,7 +47,7 @@ bool Make(Sharing& sharing)
   {
     return MakeFilm(sharing);
   }
-  if (job.IsTable() && !isProjection)
+  if (job.Mode() & METER)
   {
     return MakeMeterTable(sharing);
   }
@@ -53,6 +57,23 @@ bool Make(Sharing& sharing)
   }
   isProjection || job.IsProbe() ? MakeField(sharing) : MakeSurface(sharing);
   return true;
+}
+
+/// Returns the number of characters in a line of standard output.
+std::size_t WidthOfTerminal()
+{
+  winsize size = {};
+  const char* columns = std::getenv("COLUMNS");
+  const int asked = columns ? std::atoi(columns) : 0;
+  const bool isTerminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return static_cast<std::size_t>(std::max(asked > 0 ? asked : isTerminal ? size.ws_col : 80, 60));
+}
+
+/// Whether nobody reads standard output any more, which is no fault: --help | head.
+bool IsReaderGone()
+{
+  pollfd output = { STDOUT_FILENO, POLLOUT, 0 };
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
 }
 
 /// Does what the command line asks for. Returns false if something failed; its error was printed.
@@ -68,7 +89,7 @@ bool Execute(int argc, char* argv[])
   }
   if (job.Has("--help"))
   {
-    std::cout << CommandLineHelp();
+    std::cout << CommandLineHelp(job.Word, WidthOfTerminal());
     return true;
   }
   if (job.Has("--version"))
@@ -283,7 +304,7 @@ int main(int argc, char* argv[])
         throw std::runtime_error(std::string(error.what()) + " (see --help)");
       }
       std::cout.flush();
-      if (!std::cout)
+      if (!std::cout && !IsReaderGone())
       {
         throw std::runtime_error("standard output could not be written");
       }

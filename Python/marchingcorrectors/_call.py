@@ -163,6 +163,10 @@ def _warn_of_ignored(given, options):
              "mass / density.")
     elif "density" in has and "mass" not in has:
         warn("density is not used, because volumes are mass / density, and there is no mass. Give mass, too.")
+    for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
+                        ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
+        if options.get(name) and options.get(other):
+            warn(f"{name} is not used, because {other} is given. Leave one of them out.")
     versions = [name for name in options if name.endswith("_version") and options[name]]
     if versions and given["context"] is None:
         warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")

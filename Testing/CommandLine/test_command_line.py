@@ -8,6 +8,7 @@ import json
 import os
 import re
 import struct
+import subprocess
 import xml.etree.ElementTree
 import zlib
 
@@ -43,17 +44,71 @@ def read_png(path):
 class Usage(CommandLineTest):
     """Wrong usage: exit status 2."""
 
-    def test_help_names_every_option(self):
-        result = self.run_good("--help")
-        self.assertEqual(self.run_program("-h").stdout, result.stdout)
-        for option in """--scalar --component --iso --free-surface --smoothing-length --volume
-                --mass --density --dp --coefh --kernel --fluid --walls --solids --wall-share --h-scale --cube-factor --cube-size
-                --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
-                --weight-sum --boundary-eigenvalue --curvature --gradients --gauge --flux --fluxes --velocity --attributes --no-attributes --device
-                --memory-limit --list-devices --list-arrays --stats --screenshot --repeat --quiet --help
-                --version --precision --support-radius --output-precision --box --periodic --capping --filled --times
-                --time-step --slice --line --resolution --color-by --color-range --up --view""".split():
-            self.assertRegex(result.stdout, rf"(?m)^  {option} ")
+    def test_help(self):
+        """The usual options; all; and those that act in one mode, as test_modes.py has it. Lines end at the terminal's width."""
+        few, everything = (self.run_good("--help", *words).stdout for words in ([], ["all"]))
+        self.assertEqual(self.run_program("-h").stdout, few)
+        listed = re.findall(r"(?m)^  (--[\w-]+)", few)
+        self.assertTrue(15 <= len(listed) <= 20 and set(listed) < set(re.findall(r"(?m)^  (--[\w-]+)", everything)), listed)
+        self.assertEqual(self.run_good("slice", "--help").stdout, self.run_good("--help", "slice").stdout)
+        for width in (60, 80, 132):
+            text = self.run_good("--help", "all", env={**os.environ, "COLUMNS": str(width)}).stdout
+            self.assertTrue(width - 12 < max(len(line) for line in text.splitlines() if not line.startswith("  --")) <= width)
+        self.refuse(self.run_program("--help", "slices"), 2, "there is no help on 'slices', but on all, surface, .* and project")
+
+    def test_closed_pipe(self):
+        """--help | head: nobody wants the rest, which is no fault."""
+        for arguments in (["--help", "all"], [self.input, self.output, *ISO]):
+            reader, writer = os.pipe()
+            os.close(reader)
+            result = self.run_program(*arguments, capture_output=False, stdout=writer, stderr=subprocess.PIPE)
+            os.close(writer)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_modes_as_first_words(self):
+        """They change nothing, and what they need is said. The free surface is what a surface is without a scalar."""
+        self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
+        self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
+        self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))
+        self.extract_good("--free-surface")
+        self.run_good("surface", self.input, "free.vtp")
+        self.assertEqual(self.output.read_bytes(), (self.directory / "free.vtp").read_bytes())
+        self.output.unlink()
+        for arguments, sentence in [
+            (["slice", self.input, "surface.vti", *ISO], "slice needs --slice AXIS=PLACE, but this is a command line for surfaces"),
+            (["film", self.input, self.output], "film needs an OUTPUT.pvd, or %04d in the name of OUTPUT, but .* for surfaces"),
+            (["surface", self.input, self.output, "--line", "0,0,0,1,0,0"], "surface needs one INPUT and one OUTPUT, but .* for lines")]:
+            self.refuse(self.run_program(*arguments), 2, sentence)
+
+    def test_options_that_exclude_each_other(self):
+        for first, second in [
+            ("--free-surface", "--scalar=Radius"), ("--smoothing-length=0.1", "--dp=0.1"), ("--support-radius", "--dp=0.1"),
+            ("--cube-factor=1", "--cube-size=1"), ("--fluid=Kind=0", "--walls=w.vtp"), ("--no-attributes", "--attributes=Kind"),
+            ("--tolerance=1", "--preview"), ("--iteration-limit=3", "--preview"),
+            ("--gauge=a=0,0,0:0,0,1", "--gauge-grid=1,1:0,0,0,0,0,1"), ("--gauges=g", "--gauge-grid=1,1:0,0,0,0,0,1")]:
+            names = [option.split("=")[0] for option in (first, second)]
+            contour = [] if {"--free-surface", "--gauge-grid"} & set(names) or "--gauge" in first else ISO
+            for pair in ((first, second), (second, first)):
+                with self.subTest(pair):
+                    self.refuse(self.extract(*contour, *pair), 2, "{} and {} exclude each other: .*; leave out one".format(*names))
+
+    def test_options_that_need_others(self):
+        free = ["--free-surface"]
+        self.refuse_all(2, [
+            ([*free, "--component", "0"], "--component needs --scalar; add it, or leave out --component"),
+            ([*free, "--field", "sum"], "--field needs --scalar"), ([*free, "--boundary", "eigenvalue"], "needs --scalar"),
+            ([*free, "--node-threshold", "0"], "needs --scalar"), ([*free, "--vertex-threshold", "0"], "needs --scalar"),
+            ([*free, "--derive", "Velocity", "--no-attributes"], "leaves out what --derive makes"),
+            ([*ISO, "--solids", "wall"], "--solids needs --fluid or --walls; add one, or leave out --solids"),
+            ([*ISO, "--wall-share", "0.5"], "--wall-share needs --fluid or --walls"),
+            ([*free, "--wall-share", "0.5", "--fluid", "Kind=0"], "add --solids wall, or leave out --wall-share"),
+            ([*ISO, "--wall-share", "0.5", "--fluid", "Kind=0", "--solids", "ignore"], "add --solids wall"),
+            ([*ISO, "--widening", "w.vtp"], "--widening needs --widen or --smooth"),
+            ([*ISO, "--least-volume", "1"], "--least-volume needs --components"), ([*ISO, "--view", "0,0,1"], "needs --screenshot"),
+            ([*ISO, "--smoothing-length", "estimate", "--support-radius"], "not for an estimate; leave out --support-radius"),
+            ([*ISO, "--smoothing-length", "neighbours=1.2", "--support-radius"], "not for an estimate"),
+            ([*ISO, "--cubes", "uniform", "--max-level", "1"], "for adaptive cubes; leave out --max-level, or --cubes uniform")])
+        self.refuse_all(1, [([*ISO, "--component", "0"], "'Radius' has one component; leave out --component")])
 
     def test_version(self):
         result = self.run_good("--version")
@@ -80,8 +135,10 @@ class Usage(CommandLineTest):
             (["--list-arrays", *good], "--list-arrays FILE stands alone"),
             ([self.input, "--list-arrays=" + str(self.input)], "--list-arrays FILE stands alone"),
             (["--list-arrays", "Part_0001.bi4"], "is read by the Python package"),
-            ([*good, "--free-surface", "--scalar", "Radius"], "leave out --scalar"),
-            ([*good, *ISO, "--sharp"], "unknown option --sharp"),
+            ([*good, *ISO, "--qwerty"], r"unknown option --qwerty \("), ([*good, *ISO, "--smoth"], "--smoth; did you mean --smooth[?]"),
+            ([*good, *ISO, "--cubesize=1"], "unknown option --cubesize; did you mean --cube-size[?]"),
+            ([*good, *ISO, "--kernel", "Wendland"], "not 'Wendland'; did you mean wendland[?]"),
+            ([*good, *ISO, "--kernel", "wendland_c2"], "not 'wendland_c2'; did you mean wendland[?]"),
             ([*good, *ISO, "--preview=1"], "--preview takes no value"),
             ([*good, "--free-surface", "--kernel"], "--kernel needs NAME"),
             ([*good, "--free-surface", "--iso="], "--iso needs V"),
@@ -101,7 +158,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--component", "2147483648"], "whole number up to 2147483647, not '21"),
             ([*good, *ISO, "--component", "1x"], "--component needs a whole number"),
             ([*good, *ISO, "--component", " 1"], "--component needs a whole number"),
-            ([*good, "-iso", "1"], "unknown option -iso; it is --iso"),
+            ([*good, "-iso", "1"], "unknown option -iso; did you mean --iso[?]"),
             ([*good, *ISO, "-q"], r"unknown option -q \("),
             ([self.input, "-surface.vtp", *ISO], "unknown option -surface.vtp"),
             ([self.input, "-", *ISO], "'-' is not the name of a file"),
@@ -125,8 +182,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
             ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
             ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
-            ([*good, *ISO, "--capping"], "--capping closes the surface at the sides of a period or a box; add --periodic "
-             "or --box"),
+            ([*good, *ISO, "--capping"], "--capping needs --periodic or --box; add one, or leave out --capping"),
             ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
             ([*good, *ISO, "--periodic", "0,1,1,0,0,1"],
              "--periodic needs a period of 0 or more along y"),
@@ -137,20 +193,20 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--box", "0,1,0,nan,0,1"], "--box needs a finite number, not 'nan'"),
             ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
             ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
-            ([*good, *ISO, "--up", "z"], "without --screenshot there is no picture; leave out --up"),
+            ([*good, *ISO, "--up", "z"], "--up needs --screenshot; add it, or leave out --up"),
             ([*good, *ISO, "--screenshot", "a.png", "--up", "up"], "--up must be one of x, y, z, -x, -y, -z, not 'up'"),
             ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
-            ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file there are no colours; leave out --color-by"),
+            ([*good, *ISO, "--color-by", "Radius"], "--color-by needs --screenshot or .ply"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
-            ([*good, *ISO, "--resolution", "9"], "--resolution is for --slice, --line and --project; leave out --resolution"),
-            ([*good, "--free-surface", "--velocity", "Velocity"], "--velocity is for --flux and --fluxes; leave out --velocity"),
-            ([*good, *ISO, "--coefh", "2"], "--coefh is for --dp; leave out --coefh"),
+            ([*good, *ISO, "--resolution", "9"], "--resolution is for slices, lines and projections, not for surfaces; leave it out"),
+            ([*good, "--free-surface", "--velocity", "Velocity"], "--velocity is for fluxes, not for surfaces; leave it out"),
+            ([*good, *ISO, "--coefh", "2"], "--coefh needs --dp; add it, or leave out --coefh"),
             ([*good, "--slice", "0.1"], "--slice needs an axis and a position, such as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
-            ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "has points already; leave out --line"),
-            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "makes data for a plot"),
+            ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "--line is for lines, not for slices; leave it out"),
+            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "--screenshot is for .* not for lines"),
             ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
         ]:
             with self.subTest(sentence):
@@ -266,8 +322,7 @@ class Options(CommandLineTest):
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
     def test_quiet(self):
-        """Nor is it a fault to say what holds anyway."""
-        result = self.extract(*ISO, "--quiet", "--time-step=1.0", "--repeat", "1")
+        result = self.extract(*ISO, "--quiet")
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
         self.assertTrue(self.output.exists())
 
@@ -435,7 +490,7 @@ class Options(CommandLineTest):
         self.write_points()
         self.refuse_all(1, [(["nothing.vtp"], "nothing.vtp cannot be read"), (["points.obj"], "points.obj"),
                             (["points.vtp", "--mass", "No"], "array 'No'")], "--probe")
-        self.refuse_all(2, [(["points.vtp", *ISO], "leave out --scalar")], "--probe")
+        self.refuse_all(2, [(["points.vtp", *ISO], "--scalar is for .* not for probes; leave it out")], "--probe")
         for output, status, sentence in (("surface.vtu", 1, "for a .vtp or .vtk file, not 'surface.vtu'"),
                                          ("points.vtp", 2, "would overwrite the input")):
             self.refuse(self.run_program(self.input, output, "--probe", "points.vtp"), status, sentence)
@@ -508,7 +563,7 @@ class Options(CommandLineTest):
         half, walls = 5 * files.SPACING, ["--fluid", "Kind=0", "--solids"]
         self.arrays.update({"7": self.arrays["SmoothingLength"], "Space": [0.001] * len(self.points)})
         files.write_vtp(self.input, self.points, self.arrays)
-        listed = re.search(r"--kernel NAME +(.*)", self.run_program("--help").stdout).group(1)
+        listed = re.search(r"--kernel NAME +(.*)", self.run_program("--help", "all", env={**os.environ, "COLUMNS": "999"}).stdout).group(1)
         kernels = listed.replace(" (default)", "").split(", ")
         self.assertEqual(kernels[:5], ["cubic", "quadratic", "mprime4", "quintic", "wendland"])
         numbers, arrays, of_fluid = "parameters", "arrays", "fluid"

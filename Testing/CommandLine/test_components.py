@@ -139,8 +139,7 @@ class Components(CommandLineTest):
 
     def test_wrong_usage(self):
         self.refuse_all(2, [(["--components", "pieces.txt"], "writes a .csv file"), (["--components", self.output], "a .csv file"),
-                            (["--least-volume", "1"], "no pieces to remove; leave out --least-volume"),
-                            (["--numbers", "numbers.csv"], "the table of a film")], *FREE)
+                            (["--numbers", "numbers.csv"], "--numbers is for films, not for surfaces")], *FREE)
         self.refuse_all(1, [(["--components", "nowhere/pieces.csv"], "could not be written")], *FREE)
 
 

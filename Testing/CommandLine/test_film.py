@@ -106,7 +106,7 @@ class Film(CommandLineTest):
         self.one_sentence(result, 1, r"no point array has one of the usual names.*Name the array of ids \(--ids NAME\)")
         self.good("steps.pvd", "--times", "0.03", "--ids", "Tag")
         self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
-        self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "only --times asks for; leave out --ids")
+        self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
         """A range is its times; frames are as many as the unit of time and the slow motion say."""
@@ -321,14 +321,13 @@ class Film(CommandLineTest):
             ([pvd, "film.vtp"], "output of several steps is a .pvd file"),
             ([pvd, pvd, "film.pvd"], "a .pvd or .series file must be the only INPUT"),
             ([paths[0], pvd, "film.pvd"], "a .pvd or .series file must be the only INPUT"),
-            ([self.input, "surface.vtp", "--times", "1"], "not a film, .*; leave out --times"),
-            ([self.input, "surface.vtp", "--time-step", "2"], "not a film, .*; leave out --time-step"),
+            ([self.input, "surface.vtp", "--times", "1"], "--times is for films, .*; leave it out, or make a film"),
+            ([self.input, "film.pvd", "--time-step", "2"], "--time-step is the time between one INPUT and the next, and there is one"),
             ([pvd, "film.pvd", "--time-step", "2"], "a .pvd or .series file has times of its own"),
             ([*paths, "film.pvd", "--time-step", "0"], "--time-step must be greater than 0"),
             ([pvd, "film.pvd", "--times", "0.05,x"], "--times needs a finite number, not 'x'"),
             ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside the times of the steps, 0 to 0.1"),
             ([pvd, "film.pvd", "--times=-0.1"], "-0.1 is outside"),
-            ([pvd, "film.pvd", "--repeat", "2"], "--repeat is for one surface"),
             ([pvd, "film.pvd", "--screenshot", "a.png"], "a film has a picture of each step: --screenshot frame_%04d.png"),
         ]:
             with self.subTest(sentence):

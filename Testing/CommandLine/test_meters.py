@@ -88,11 +88,9 @@ class Meter(CommandLineTest):
 
     def refuse_measuring(self, usage, failures):
         """cases of exit status 2 and 1, and those that both tables have; the table stays as it was."""
-        option, many = self.one[0], self.one[0] + ("es" if self.one[0] == "--flux" else "s")
+        many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
-            (["--scalar", "Radius"], "leave out --scalar"), (["--iso", "0.2,0.5"], "all but one --iso value"),
-            (["--iso", "0"], "--iso value above 0"),
-            (["--weighted-by", "Mass"], "is for --project"), (["--least-volume", "1"], "no pieces"), (["--view", "0,0,1"], "no picture"),
+            (["--iso", "0.2,0.5"], "all but one --iso value"), (["--iso", "0"], "--iso value above 0"),
             (["--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"))), *usage]
         os.mkfifo(self.directory / "fifo")
         failures = [([many, "none.txt"], "none.txt cannot be read"), ([many, "."], "cannot be read: it is a directory"),
@@ -102,7 +100,7 @@ class Meter(CommandLineTest):
             for options, sentence in cases:
                 with self.subTest(options=options):
                     self.one_sentence(self.measure(*options), status, sentence)
-        self.one_sentence(self.run_program(self.source, "table.vtp", *self.one), 2, f"the output of {option} is a .csv file")
+        self.one_sentence(self.run_program(self.source, "table.vtp", *self.one), 2, "the output of gauges and fluxes is a .csv file")
         self.one_sentence(self.run_program(self.source, "nowhere/t.csv", *self.one), 1, "nowhere/t.csv could not be written")
         self.assertEqual(self.table.read_text(), "as it was")
 
@@ -293,8 +291,7 @@ class Flux(Meter):
         self.refuse_measuring(
             [(["--flux", "wall=0,0,0:0,0"], form + "'wall=0,0,0:0,0'"),
              *((["--flux", text], form) for text in ("wall", "=box:1", "a=disc:0,0,0:0,0,1", "a=box:0,1,0,1", "a=0,0,nan:0,0,1:1,1,1")),
-             (["--flux", "+a=box:0,1,0,1,0,1"], "'.a' begins with '.', so that spreadsheets"),
-             ([*self.one, "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge")],
+             (["--flux", "+a=box:0,1,0,1,0,1"], "'.a' begins with '.', so that spreadsheets")],
             [(["--flux", "a=none.stl"], "none.stl"),
              (["--flux", "a=moving.vtp"], "Section 'a' has 0 points, as its file has no triangles; give one of a surface \(--flux NAME=FILE\)"),
              (["--flux", "a=vertices.vtk"], "as its file has no triangles"),

@@ -3,9 +3,10 @@
 """Smoother surfaces: --widen, --widening and --compact."""
 import pathlib
 import random
+import re
 
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import CommandLineTest, main, read_table
 
 
 class Smooth(CommandLineTest):
@@ -29,6 +30,25 @@ class Smooth(CommandLineTest):
             self.assertEqual(wide.read_bytes(), plain.read_bytes())
             self.assertGreater(len(wide.read_bytes()), 10000)
 
+    def test_gauges_read_the_widened_field(self):
+        """A level is where the widened surface is, and a row of a film has both of one field; volumes may be computed."""
+        files.write_vtp(self.directory / "bare.vtp", self.points, {"SmoothingLength": self.arrays["SmoothingLength"]})
+        for source in (self.input, "bare.vtp"):
+            levels = []
+            for options in ([], ["--widen", "2"], ["--smooth", "--smoothing-length", "0.26", "--support-radius"]):
+                self.run_good(source, "levels.csv", "--gauge", "a=0,0,-1:0,0,1", *options)
+                level = float(read_table(self.directory / "levels.csv")[0]["last"])
+                self.run_good(source, source, "film.pvd", "--free-surface", "--numbers", "n.csv", "--gauge", "a=0,0,-1:0,0,1", *options)
+                self.assertEqual(float(read_table(self.directory / "n.csv")[1]["a.last"]), level)
+                self.run_good(source, "s.vtp", "--free-surface", "--no-attributes", "--box=-0.2,0.2,-0.2,0.2,0,1", *options)
+                text = (self.directory / "s.vtp").read_text()
+                self.run_good(source, "p.vtp", "--probe", "s.vtp", "--attributes", "SmoothingLength", *options)
+                low, high = re.search('Name="WeightSum"[^>]*RangeMin="(.*?)"[^>]*RangeMax="(.*?)"', (self.directory / "p.vtp").read_text()).groups()
+                self.assertAlmostEqual(float(low), 0.5, places=4)
+                self.assertAlmostEqual(float(high), 0.5, places=4)
+                levels.append(level)
+            self.assertEqual(len({round(level, 6) for level in levels}), 2, levels)
+
     def test_pieces(self):
         """Threads that hang at the rims of films do not part."""
         table = self.directory / "pieces.csv"
@@ -46,7 +66,7 @@ class Smooth(CommandLineTest):
 
     def test_refused(self):
         self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled, or --compact and --smooth")], "--free-surface")
-        self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"), (["--widen", "9"], "from 1 to 4, not '9'"),
+        self.refuse_all(2, [(["--widening", "f.vtp"], "--widening needs --widen or --smooth"), (["--widen", "9"], "from 1 to 4, not '9'"),
                             (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")], "--free-surface")
 
 

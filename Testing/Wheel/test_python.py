@@ -230,6 +230,8 @@ class Warned(unittest.TestCase):
                                 ({"density": 1.0, "volume": None}, "density is not used.*there is no mass"),
                                 ({"mass": 1.0}, "mass is not used, because volume is given"),
                                 ({"mass": 1.0, "density": 1.0}, "mass and density are not used"),
+                                ({"cube_size": 0.1, "cube_size_factor": 1}, "cube_size_factor is not used, because cube_size is given"),
+                                ({"preview": True, "tolerance": 0.1}, "tolerance is not used, because preview is given"),
                                 ({"scalar_version": 1}, "scalar_version is not used without a context")):
             found = caught(sphere, **words)
             self.assertEqual(len(found), 1, [str(each.message) for each in found])

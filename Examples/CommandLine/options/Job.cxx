@@ -15,172 +15,172 @@
 namespace
 {
 
-/// Names what is made of the particles, for rules that hold for some of it.
-enum Modes : unsigned
+/// What there is to say of a mode.
+struct ModeWords
 {
-  Gauges = 1,
-  Fluxes = 2,
-  Probes = 4,
-  Projections = 8,
-  Surfaces = 16,
-  Tables = Gauges | Fluxes,
-  Films = Projections | Surfaces, ///< of which there may be several
-  Others = Probes | Films,
-  All = Tables | Others
+  Modes Mode;
+  const char* Word;   ///< may stand in front of the files
+  const char* Plural; ///< for sentences
+  const char* Needs;
 };
 
-Modes ModeOf(const Job& job)
+const ModeWords AllModes[] = {
+  { SURFACE, "surface", "surfaces", "one INPUT and one OUTPUT" },
+  { FILM, "film", "films", "an OUTPUT.pvd, or %04d in the name of OUTPUT" },
+  { GAUGE, "gauge", "gauges", "--gauge NAME=X,Y,Z:X,Y,Z" },
+  { FLUX, "flux", "fluxes", "--flux NAME=SECTION" },
+  { SLICE, "slice", "slices", "--slice AXIS=PLACE" },
+  { LINE, "line", "lines", "--line X,Y,Z,X,Y,Z" },
+  { PROBE, "probe", "probes", "--probe POINTS_FILE" },
+  { PROJECT, "project", "projections", "--project AXIS" },
+};
+
+const ModeWords* FindMode(const std::string& word)
 {
-  return job.Has("--project") ? Projections
-    : job.IsFlux()            ? Fluxes
-    : job.IsGauge()           ? Gauges
-    : job.IsProbe()           ? Probes
-                              : Surfaces;
+  const auto* found = std::find_if(std::begin(AllModes), std::end(AllModes),
+    [&word](const ModeWords& mode) { return word == mode.Word; });
+  return found == std::end(AllModes) ? nullptr : found;
 }
+
+/// "a, b and c", or with another last word.
+std::string ListOf(const std::vector<std::string>& items, const std::string& last)
+{
+  std::string list;
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    list += (i == 0 ? "" : i + 1 < items.size() ? ", " : " " + last + " ") + items[i];
+  }
+  return list;
+}
+
+/// "surfaces, films and slices"
+std::string PluralsOf(unsigned modes)
+{
+  std::vector<std::string> plurals;
+  for (const ModeWords& mode : AllModes)
+  {
+    plurals.insert(plurals.end(), (modes & mode.Mode) ? 1 : 0, mode.Plural);
+  }
+  return ListOf(plurals, "and");
+}
+
+/// Two options of which only one can act.
+struct Exclusion
+{
+  const char* First;
+  const char* Second;
+  const char* Why;
+};
+
+const Exclusion Exclusions[] = {
+  { "--free-surface", "--scalar", "--free-surface contours the weight sum" },
+  { "--smoothing-length", "--dp", "both give the smoothing length" },
+  { "--support-radius", "--dp", "--dp gives the smoothing length itself" },
+  { "--cube-factor", "--cube-size", "both give the size of the cubes" },
+  { "--fluid", "--walls", "--walls tells which particles are fluid" },
+  { "--no-attributes", "--attributes", "one asks for arrays, and one for none" },
+  { "--tolerance", "--preview", "--preview corrects no vertex" },
+  { "--iteration-limit", "--preview", "--preview corrects no vertex" },
+  { "--fps", "--times", "--times says which times" },
+  { "--gauge", "--gauge-grid", "--gauge-grid makes its own gauges" },
+  { "--gauges", "--gauge-grid", "--gauge-grid makes its own gauges" },
+};
 
 /// A reason to refuse a command line before the input is looked at.
 struct Rule
 {
-  Modes Of;
+  unsigned Of;
   bool (*Holds)(const Job& j);
-  const char* Sentence; ///< with {mode}, {output}, {endings} and {--option}, see Filled()
-  std::vector<const char*> Excluded = {}; ///< only where one of these is given, which is named
+  const char* Sentence; ///< with {output}, {endings} and {--option}, see Filled()
 };
 #define IF(...) [](const Job& j) -> bool { return __VA_ARGS__; }
 
-bool IsAny(const Job&)
-{
-  return true;
-}
-
-/// Output endings, for sentences of a mode.
+/// Whether the output has this ending.
 bool IsTo(const Job& j, const char* ending)
 {
   return EndsWith(j.Output, ending);
 }
 
+bool IsOfSteps(const Job& j)
+{
+  return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
+}
+
 const std::vector<Rule> Rules = {
-  { All, IF(!j.HasTimes()), "particles are matched between steps, which only --times asks for",
-    { "--ids" } },
-  { All, IF(!j.Walls.empty()), "--walls tells which particles are fluid", { "--fluid" } },
-  { All, IF(!j.IsFlux()), "--velocity is for --flux and --fluxes", { "--velocity" } },
-  { All, IF(!j.Has("--fps")), "--slow is for --fps", { "--slow" } },
-  { All, IF(j.Has("--times")), "--times says which times", { "--fps" } },
-  { All, IF(!j.Has("--dp")), "--coefh is for --dp", { "--coefh" } },
-  { All, IF(!j.Has("--slice") && !j.Has("--line") && !j.Has("--project")),
-    "--resolution is for --slice, --line and --project", { "--resolution" } },
-  { All, IF(!j.Has("--project")), "--weighted-by is for --project", { "--weighted-by" } },
-  { All, IF(!j.Has("--components")), "without --components there are no pieces to remove",
-    { "--least-volume", "--least-particles" } },
-  { All, IF(!j.Has("--screenshot")), "without --screenshot there is no picture",
-    { "--view", "--up" } },
-  { All, IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
-    "without --screenshot or a .ply file there are no colours", { "--color-by", "--color-range" } },
+  { METER, IF(j.Surface->GetNumberOfContours() > 1),
+    "gauges and fluxes have one level; leave out all but one --iso value" },
+  { GAUGE, IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
+    "the output of --gauge-grid is a .vti file, not '{output}'" },
+  { METER, IF((j.IsFlux() || !j.Has("--gauge-grid")) && !IsTo(j, ".csv")),
+    "the output of gauges and fluxes is a .csv file, not '{output}'" },
+  { METER, IF(!(j.Gauge->GetLevel() > 0.0)),
+    "gauges and fluxes need an --iso value above 0, the weight at which the fluid ends; 0.5 is "
+    "usual" },
 
-  { Tables, IsAny, "{mode} makes no surface",
-    { "--scalar", "--stats", "--repeat", "--components", "--screenshot", "--probe", "--slice",
-      "--line", "--box", "--widening", "--numbers" } },
-  { Fluxes, IsAny, "{mode} writes a table of its own", { "--gauge", "--gauges", "--gauge-grid" } },
-  { Tables, IF(j.Surface->GetNumberOfContours() > 1),
-    "{mode} makes no surface; leave out all but one --iso value" },
-  { Gauges, IF(j.Has("--gauge-grid")), "--gauge-grid makes its own gauges",
-    { "--gauge", "--gauges" } },
-  { Gauges, IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
-    "the output of {mode} is a .vti file, not '{output}'" },
-  { Tables, IF(!(j.IsGauge() && j.Has("--gauge-grid")) && !IsTo(j, ".csv")),
-    "the output of {mode} is a .csv file, not '{output}'" },
-  { Tables, IF(!(j.Gauge->GetLevel() > 0.0)),
-    "{mode} needs an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
-
-  { Others,
-    IF(!j.IsProbe() && !j.Has("--project") && !j.Has("--color-by") && j.Has("--color-range")),
+  { CONTOUR, IF(!j.Has("--color-by") && j.Has("--color-range")),
     "--color-range needs --color-by NAME" },
-  { Others, IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
+  { PICTURE, IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
     "--screenshot writes a .png file, not '{--screenshot}'" },
-  { Others, IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
+  { PICTURE, IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
     "a film has a picture of each step: --screenshot frame_%04d.png, not '{--screenshot}'" },
-  { Others, IF(!(j.Surface->GetWidening() > 1.0 || j.Surface->GetSmooth())),
-    "without --widen there are no factors", { "--widening" } },
-  { Others, IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
+  { SURFACE, IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
     "--widening writes a .vtp file, not '{--widening}'" },
-  { Others, IF(j.IsFilm()), "--widening is for one surface", { "--widening" } },
-  { Others, IF(j.Has("--components")), "--components needs a surface",
-    { "--probe", "--slice", "--line" } },
-  { Others, IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
+  { CONTOUR, IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
     "--components writes a .csv file, not '{--components}'" },
-  { Others, IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
+  { FILM, IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
     "--numbers writes a .csv file, not '{--numbers}'" },
-  { Others, IF(j.Has("--numbers") && !j.IsFilm()),
-    "--numbers writes the table of a film, which is a .pvd file or has %04d in its name; for one "
-    "surface use --stats" },
-  { Others, IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
 
-  { Probes,
+  { POINTS,
     IF(!j.IsPointTable() &&
       (j.Inputs.size() > 1 || IsListOfSteps(j.Inputs.front()) || j.HasTimes() ||
-        j.TimeStep != 1.0)),
-    "{mode} takes one INPUT of one time, unless it is --probe and the output is a .csv table" },
-  { Probes, IsAny, "{mode} makes no surface",
-    { "--scalar", "--iso", "--free-surface", "--stats", "--repeat", "--widening" } },
-  { Probes, IF(j.Has("--probe")), "{mode} has points already", { "--slice", "--line" } },
-  { Probes, IF(j.Has("--slice")), "{mode} has points already", { "--line" } },
-  { Probes, IF(!j.Has("--probe") && j.Has("--line")), "--line makes data for a plot",
-    { "--screenshot" } },
-  { Probes, IF(!j.Has("--probe") && j.Has("--slice") && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
-    "the output of {mode} is a .vti or .vtk file, not '{output}'" },
-  { Probes, IF(!j.Has("--probe") && j.Has("--line") && !IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
-    "the output of {mode} is a .vtp or .vtk file, not '{output}'" },
+        j.Has("--time-step"))),
+    "slices, lines and probes take one INPUT of one time, unless it is --probe and the output is a "
+    ".csv table" },
+  { SLICE, IF(!IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+    "the output of --slice is a .vti or .vtk file, not '{output}'" },
+  { LINE, IF(!IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
+    "the output of --line is a .vtp or .vtk file, not '{output}'" },
 
-  { Films, IF(!j.IsFilm()),
-    "the output is not a film, which is a .pvd file or has %04d in its name",
-    { "--times", "--fps", "--time-step" } },
-  { Films, IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsListOfSteps)),
+  { SERIES, IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsListOfSteps)),
     "a .pvd or .series file must be the only INPUT, because it lists the steps" },
-  { Films, IF(IsListOfSteps(j.Inputs.front()) && j.TimeStep != 1.0),
+  { SERIES, IF(IsListOfSteps(j.Inputs.front()) && j.Has("--time-step")),
     "--time-step is for a list of particle files; a .pvd or .series file has times of its own" },
-
-  { Projections, IsAny, "{mode} makes no surface",
-    { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
-      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid", "--flux", "--fluxes" } },
-  { Projections, IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
-    "the output of {mode} is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
-  { Projections, IF(j.IsFilm() && !IsCollectionFile(j.Output) && !HasStepNumber(j.Output)),
+  { PROJECT, IF(!j.IsFilm() && (j.HasTimes() || j.Has("--time-step"))),
+    "--times, --fps and --time-step need a film, whose OUTPUT is a .pvd file or has %04d in its "
+    "name" },
+  { PROJECT, IF(j.Has("--derive") && !j.Has("--scalar")),
+    "--derive needs --scalar, which projects what is derived; add it, or leave out --derive" },
+  { PROJECT, IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+    "the output of --project is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
+  { PROJECT, IF(j.IsFilm() && !IsOfSteps(j)),
     "the output of several steps is a .pvd file, or has %04d in its name, unlike '{output}'" },
-
-  { Surfaces, IF(IsTo(j, ".usdc") || IsTo(j, ".usda") || IsTo(j, ".usd")),
+  { CONTOUR, IF(IsTo(j, ".usdc") || IsTo(j, ".usda") || IsTo(j, ".usd")),
     "'{output}' is written by Python: python -m marchingcorrectors surface INPUT... {output} "
     "[OPTIONS], or, of surfaces that this program wrote, python -m marchingcorrectors convert "
     "FILM.pvd {output}" },
-  { Surfaces,
-    IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
-      !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
+  { FILM, IF(!IsCollectionFile(j.Output) && !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
     "the output of several steps is a .pvd file, or a {endings} file with %04d in its name, not "
     "'{output}'" },
-  { Surfaces, IF(j.IsFilm() && j.Repeat > 1), "--repeat is for one surface, not for a film" },
-  { Surfaces,
-    IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
+  { SURFACE, IF(!IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
     "the output is a {endings} file, or .pvd for a film, not '{output}'" },
-  { Surfaces,
-    IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box")),
-    "--capping closes the surface at the sides of a period or a box; add --periodic or --box" },
-  { Surfaces, IF(j.Has("--free-surface") && j.Has("--scalar")),
-    "--free-surface contours the weight sum; leave out --scalar" },
-  { Surfaces, IF(!j.Has("--free-surface") && !j.Has("--scalar")),
+  { CONTOUR, IF(!j.Has("--free-surface") && !j.Has("--scalar")),
     "needs --scalar NAME, or --free-surface" },
+  { CONTOUR, IF(j.Has("--no-attributes") && j.Has("--derive") && !j.Has("--scalar")),
+    "--no-attributes leaves out what --derive makes, unless it is the --scalar; leave out one of "
+    "them" },
+  { ALL,
+    IF(j.Has("--support-radius") && (j.NeighborRatio > 0.0 || j.SmoothingLength == "estimate")),
+    "--support-radius is for a smoothing length that is given, not for an estimate; leave out "
+    "--support-radius" },
+  { CONTOUR,
+    IF(j.Has("--wall-share") && j.Surface->GetSolids() != vtkMarchingCorrectors::SOLIDS_WALL &&
+      (j.Surface->GetSolids() != vtkMarchingCorrectors::SOLIDS_AUTO || j.Has("--free-surface"))),
+    "--wall-share is for surfaces that end at walls; add --solids wall, or leave out "
+    "--wall-share" },
+  { CONTOUR, IF(j.Has("--max-level") && j.Surface->GetCubeSizeMode() == j.Surface->UNIFORM),
+    "--max-level is for adaptive cubes; leave out --max-level, or --cubes uniform" },
 };
 #undef IF
-
-/// Whether an option asks for something, and does not say what holds without it.
-bool IsAsked(const Job& job, const std::string& option)
-{
-  const auto given = job.Given.find(option);
-  double value = 0.0;
-  const bool isUsual = given != job.Given.end() &&
-    (option == "--up" ? given->second == "y"
-                      : (option == "--time-step" || option == "--repeat") &&
-          ParseNumber(given->second, value) && value == 1.0);
-  return given != job.Given.end() && !isUsual;
-}
 
 /// The sentence with what stands for the names in braces.
 std::string Filled(std::string sentence, const Job& job)
@@ -191,12 +191,44 @@ std::string Filled(std::string sentence, const Job& job)
     const std::string name = sentence.substr(at + 1, end - at - 1);
     const std::string text = name == "output" ? job.Output
       : name == "endings"                     ? SurfaceFileEndings()
-      : name == "mode"                        ? job.Mode()
                                               : job.Given.at(name);
     sentence.replace(at, end + 1 - at, text);
     at += text.size();
   }
   return sentence;
+}
+
+/// Returns the option of this name; nullptr if there is none.
+const Option* FindOption(const std::string& name)
+{
+  const std::vector<Option>& all = AllOptions();
+  const auto found = std::find_if(all.begin(), all.end(),
+    [&name](const Option& option) { return !name.empty() && name == option.Name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// Refuses an option that does not act in the job's mode, or lacks another one.
+void CheckOption(const Job& job, const Option& option)
+{
+  const std::string name = option.Name;
+  const unsigned mode = job.Mode();
+  if (!(option.Modes & mode))
+  {
+    const bool isForFilm = mode == SURFACE && (option.Modes & FILM);
+    throw UsageError(name + " is for " + PluralsOf(option.Modes) + ", not for " + PluralsOf(mode) +
+      "; leave it out" + (isForFilm ? ", or make a film (OUTPUT.pvd)" : ""));
+  }
+  const std::vector<std::string> needs = ItemsOf(option.Needs, '|');
+  const auto isMet = [&job, mode](const std::string& need)
+  {
+    const Option* other = FindOption(need);
+    return other ? job.Has(other->Name) || !(other->Modes & mode) : IsTo(job, need.c_str());
+  };
+  if (!option.Needs.empty() && std::none_of(needs.begin(), needs.end(), isMet))
+  {
+    throw UsageError(name + " needs " + ListOf(needs, "or") + "; add " +
+      (needs.size() > 1 ? "one" : "it") + ", or leave out " + name);
+  }
 }
 
 /// Refuses what can be refused without looking at the input.
@@ -223,10 +255,31 @@ void Check(const Job& job)
   {
     return;
   }
+  const unsigned mode = job.Mode();
+  const ModeWords* asked = FindMode(job.Word);
+  if (asked && asked->Mode != mode)
+  {
+    throw UsageError(
+      job.Word + " needs " + asked->Needs + ", but this is a command line for " + PluralsOf(mode));
+  }
+  for (const Option& option : AllOptions())
+  {
+    if (job.Has(option.Name))
+    {
+      CheckOption(job, option);
+    }
+  }
+  for (const Exclusion& pair : Exclusions)
+  {
+    if (job.Has(pair.First) && job.Has(pair.Second))
+    {
+      throw UsageError(std::string(pair.First) + " and " + pair.Second +
+        " exclude each other: " + pair.Why + "; leave out one of them");
+    }
+  }
   for (const std::string& walls : job.Walls)
   {
-    const Modes mode = ModeOf(job);
-    if ((mode & Others) && !job.IsFilm() && (IsListOfSteps(walls) || HasStepNumber(walls)))
+    if (!(mode & METER) && !job.IsFilm() && (IsListOfSteps(walls) || HasStepNumber(walls)))
     {
       throw UsageError("--walls " + walls +
         " has walls for each step, which only films, gauges and fluxes can use; give one file");
@@ -234,13 +287,9 @@ void Check(const Job& job)
   }
   for (const Rule& rule : Rules)
   {
-    const auto found = std::find_if(rule.Excluded.begin(), rule.Excluded.end(),
-      [&job](const char* option) { return IsAsked(job, option); });
-    const bool isNamed = found != rule.Excluded.end();
-    if ((rule.Of & ModeOf(job)) && rule.Holds(job) && (rule.Excluded.empty() || isNamed))
+    if ((rule.Of & mode) && rule.Holds(job))
     {
-      throw UsageError(
-        Filled(rule.Sentence, job) + (isNamed ? std::string("; leave out ") + *found : ""));
+      throw UsageError(Filled(rule.Sentence, job));
     }
   }
 }
@@ -257,17 +306,15 @@ void TakeOption(const char* const*& next, const char* const* end, Job& job)
     value = name.substr(equals + 1);
     name.resize(equals);
   }
-  const std::vector<Option>& all = AllOptions();
-  const auto find = [&all](const std::string& text)
+  const Option* option = FindOption(name == "-h" ? "--help" : name);
+  if (!option)
   {
-    return std::find_if(
-      all.begin(), all.end(), [&text](const Option& o) { return !text.empty() && text == o.Name; });
-  };
-  const auto option = find(name == "-h" ? "--help" : name);
-  if (option == all.end())
-  {
-    const bool lacksDash = find("-" + name) != all.end();
-    throw UsageError("unknown option " + name + (lacksDash ? "; it is -" + name : ""));
+    std::vector<std::string> names;
+    for (const Option& each : AllOptions())
+    {
+      names.emplace_back(each.Name);
+    }
+    throw UsageError("unknown option " + name + NearestOf(name, names));
   }
   const bool takesValue = option->Argument[0] != '\0';
   if (isJoined && !takesValue)
@@ -311,14 +358,34 @@ std::vector<std::string> Job::InputFiles() const
   return files;
 }
 
-const char* Job::Mode() const
+unsigned Job::Mode() const
 {
-  for (const char* option : { "--project", "--flux", "--fluxes", "--gauge-grid", "--gauge",
-         "--gauges", "--probe", "--slice", "--line" })
+  const bool hasSteps = this->Inputs.size() > 1 || IsOfSteps(*this) ||
+    (!this->Inputs.empty() && IsListOfSteps(this->Inputs.front()));
+  return this->Has("--project")                                     ? PROJECT
+    : this->IsFlux()                                                ? FLUX
+    : this->HasGauges() && (this->NumbersFile.empty() || !hasSteps) ? GAUGE
+    : !this->ProbeFile.empty()                                      ? PROBE
+    : this->Slice.Axis >= 0                                         ? SLICE
+    : !this->Slice.Line.empty()                                     ? LINE
+    : hasSteps                                                      ? FILM
+                                                                    : SURFACE;
+}
+
+bool Job::IsFilm() const
+{
+  return this->Mode() == FILM ||
+    (this->Has("--project") &&
+      (this->Inputs.size() > 1 || IsOfSteps(*this) || IsListOfSteps(this->Inputs.front())));
+}
+
+std::string WordOf(const std::string& member)
+{
+  for (const Option& option : AllOptions())
   {
-    if (this->Has(option))
+    if (!member.empty() && member == option.Member)
     {
-      return option;
+      return option.Name;
     }
   }
   return "";
@@ -329,46 +396,83 @@ bool Job::IsPointTable() const
   return !this->ProbeFile.empty() && EndsWith(this->Output, ".csv");
 }
 
-bool Job::IsFilm() const
+std::string CommandLineHelp(const std::string& word, std::size_t width)
 {
-  return !this->IsProbe() && (!this->IsTable() || this->Has("--project")) &&
-    (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
-      (!this->Inputs.empty() && IsListOfSteps(this->Inputs.front())));
-}
-
-std::string CommandLineHelp()
-{
+  const ModeWords* mode = FindMode(word);
+  std::vector<std::string> words = { "all" };
+  for (const ModeWords& each : AllModes)
+  {
+    words.emplace_back(each.Word);
+  }
+  if (!mode && !word.empty() && word != "all")
+  {
+    throw UsageError("there is no help on '" + word + "', but on " + ListOf(words, "and"));
+  }
   std::ostringstream help;
-  help << "usage: marching-correctors INPUT OUTPUT [options]\n"
-          "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
-          "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n"
-          "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n"
-          "       marching-correctors INPUT... OUTPUT.csv --flux NAME=SECTION [options]\n\n"
-          "Extracts an isosurface from SPH particles. INPUT is a "
-       << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
-       << " file. OUTPUT.pvd makes a film: one surface per step,\n"
-          "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ... OUTPUT_%04d.ply, "
-          ".obj or\n"
-          ".stl does the same without a list of the steps.\n"
-          "With mpirun, processes share one surface (see the guide), and OUTPUT may be a .pvtp "
-          "file.\n";
+  const auto add = [&help, width](std::string left, const std::string& text)
+  {
+    const std::size_t indent = left.empty() ? 0 : 32;
+    left.resize(std::max(left.empty() ? 0 : left.size() + 2, indent), ' ');
+    std::string line = left;
+    for (const std::string& item : ItemsOf(text, ' '))
+    {
+      const bool isFirst = line.empty() || line.back() == ' ';
+      if (!isFirst && line.size() + 1 + item.size() > width)
+      {
+        help << line << "\n";
+        line = std::string(indent, ' ') + item;
+        continue;
+      }
+      line += (isFirst ? "" : " ") + item;
+    }
+    help << line << "\n";
+  };
+  help << "usage: marching-correctors [MODE] INPUT... OUTPUT [options]\n\n";
+  add("",
+    "MODE is " + ListOf({ words.begin() + 1, words.end() }, "or") +
+      ", and may be left out, as the options tell it. INPUT is a " + ParticleFileEndings() +
+      " file, OUTPUT a " + SurfaceFileEndings() +
+      " file. OUTPUT.pvd makes a film: one surface per step, OUTPUT_0000.vtp and so on, at the "
+      "times of INPUT.pvd, or 0, 1, 2, ... OUTPUT_%04d.ply, .obj or .stl does the same without a "
+      "list of the steps. With mpirun, processes share one surface (see the guide), and OUTPUT may "
+      "be a .pvtp file.");
+  if (word.empty())
+  {
+    help << "\nExamples:\n"
+            "  marching-correctors water.vtp surface.vtp --free-surface\n"
+            "  marching-correctors step_*.vtp film.pvd --free-surface --fluid Type=0 --smooth\n"
+            "  marching-correctors water.vtp fast.ply --scalar Velocity --iso 1 --color-by "
+            "Pressure\n"
+            "  marching-correctors step_*.vtp levels.csv --gauge a=1,0,0:1,0,2 --time-step 0.01\n"
+            "  marching-correctors slice water.vtp plane.vti --slice z=0.1\n"
+            "\nOptions that most people need (--help all: all of them; --help slice: those that "
+            "act on slices):\n";
+  }
+  const unsigned shown = mode ? mode->Mode : word.empty() ? USUAL : ALL;
+  std::string group;
   for (const Option& option : AllOptions())
   {
     if (option.Name[0] == '\0')
     {
-      help << "\n" << option.Help << ":\n";
-      continue;
+      group = option.Help;
     }
-    std::string left = std::string("  ") + option.Name + " " + option.Argument;
-    left.resize(std::max<std::size_t>(left.size() + 2, 32), ' ');
-    help << left << option.Help << "\n";
+    else if (option.Modes & shown)
+    {
+      if (!group.empty() && !word.empty())
+      {
+        help << "\n";
+        add("", group + ":");
+      }
+      group.clear();
+      add(std::string("  ") + option.Name + (option.Argument[0] ? " " : "") + option.Argument,
+        option.Help);
+    }
   }
-  help
-    << "\nEvery output file is either written completely or left as it was. -- ends the options.\n"
-       "Exit status: 0 all outputs were written (also if the surface is empty, with a warning);\n"
-       "1 the data are bad, or a file or the device failed; 2 wrong usage.\n"
-       "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
-       "--fluid ParticleType=0\n";
+  help << "\n";
+  add("",
+    "Every output file is either written completely or left as it was. -- ends the options. "
+    "Exit status: 0 all outputs were written (also if the surface is empty, with a warning); 1 the "
+    "data are bad, or a file or the device failed; 2 wrong usage.");
   return help.str();
 }
 
@@ -384,7 +488,11 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   for (const char* const* next = argv + std::min(argc, 1); next < end;)
   {
     const std::string word = *next++;
-    if (!isEnded && word == "--")
+    if (next == argv + 2 && FindMode(word))
+    {
+      job.Word = word;
+    }
+    else if (!isEnded && word == "--")
     {
       isEnded = true;
     }
@@ -405,13 +513,27 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   {
     throw UsageError("--list-arrays FILE stands alone; leave out the rest");
   }
+  if (job.Has("--help"))
+  {
+    job.Word = files.empty() ? job.Word : files.front();
+    return;
+  }
   if (files.size() > 1)
   {
     job.Output = files.back();
     files.pop_back();
     job.Inputs = files;
   }
-  if (!job.Has("--help") && !job.Has("--version") && !job.Has("--list-devices"))
+  if (!(job.Mode() & CONTOUR))
+  {
+    job.Surface->FreeSurfaceOn(); // which --widen needs of it
+  }
+  if ((job.Word == "surface" || job.Word == "film") && !job.Has("--scalar"))
+  {
+    job.Surface->FreeSurfaceOn(); // as by python -m marchingcorrectors
+    job.Given["--free-surface"];
+  }
+  if (!job.Has("--version") && !job.Has("--list-devices"))
   {
     Check(job);
   }

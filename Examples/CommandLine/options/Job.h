@@ -17,6 +17,26 @@
 #include <string>
 #include <vector>
 
+/// Names what a run makes of the particles, and sets of these.
+enum Modes : unsigned
+{
+  SURFACE = 1,
+  FILM = 2, ///< of surfaces
+  GAUGE = 4,
+  FLUX = 8,
+  SLICE = 16,
+  LINE = 32,
+  PROBE = 64,
+  PROJECT = 128, ///< one image, or a film of images
+  CONTOUR = SURFACE | FILM,
+  METER = GAUGE | FLUX,
+  SERIES = FILM | METER | PROBE | PROJECT, ///< of which there may be several times
+  POINTS = SLICE | LINE | PROBE,
+  PICTURE = CONTOUR | SLICE | PROBE | PROJECT,
+  ALL = CONTOUR | METER | POINTS | PROJECT,
+  USUAL = 256 ///< marks an option that most people need
+};
+
 /// Settings of pictures.
 struct PictureOptions
 {
@@ -83,18 +103,15 @@ struct Job
   }
   /// Whether OUTPUT is a table of the field at the points of a file, a row a step and point.
   bool IsPointTable() const;
-  bool IsGauge() const { return this->HasGauges() && this->NumbersFile.empty(); }
   bool IsFlux() const { return !this->Fluxes.empty() || !this->FluxFile.empty(); }
-  /// Whether OUTPUT is a table of one row a step and place.
-  bool IsTable() const { return this->IsGauge() || this->IsFlux(); }
   bool HasGauges() const
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
   /// Lists all files that are read, but not the files that these list.
   std::vector<std::string> InputFiles() const;
-  /// The first option that asks for a projection, gauges, fluxes, or a probe.
-  const char* Mode() const;
+  /// Returns one of the modes, which the options and the names of the files tell.
+  unsigned Mode() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
@@ -103,6 +120,7 @@ struct Job
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
 
+  std::string Word; ///< a mode's, in front of the files; for --help, too; empty: none
   std::vector<std::string> Inputs;
   std::vector<std::string>
     Walls; ///< files whose particles are walls, at all times; or of each step: .pvd, %04d
@@ -154,7 +172,10 @@ struct Option
   const char* Name;
   const char* Argument; ///< what stands for it in the help; empty: the option has none
   std::string Help;
-  std::function<void(Job&, const std::string& option, const std::string& value)> Set;
+  unsigned Modes = 0;      ///< in which it acts; in others it is refused
+  std::string Needs = "";  ///< options, or endings of OUTPUT, of which it needs one: "--a|--b"
+  const char* Member = ""; ///< its name in the core's sentences and in Python
+  std::function<void(Job&, const std::string& option, const std::string& value)> Set = {};
   bool Repeats = false; ///< whether it may be given more than once
 };
 
@@ -178,7 +199,11 @@ std::vector<Place> ListSections(const Job& job);
 /// Throws UsageError, see OptionValue.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);
 
-/// The text of --help.
-std::string CommandLineHelp();
+/// Returns the text of --help WORD in lines of this width. The word is empty, all, or a mode's.
+/// Throws UsageError where it is another one.
+std::string CommandLineHelp(const std::string& word, std::size_t width);
+
+/// Returns the option of this member of the core's structures; an empty string if there is none.
+std::string WordOf(const std::string& member);
 
 #endif

@@ -4,8 +4,10 @@
 
 #include "SafeText.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 using Text = const std::string&;
@@ -80,6 +82,49 @@ int ToCount(Text option, Text text, int smallest, int largest)
   return value;
 }
 
+std::string NearestOf(Text text, const std::vector<std::string>& names)
+{
+  // Letters alone count, of one size; and a name that begins as the text does is as near as one with
+  // a wrong letter.
+  const auto lettersOf = [](Text word)
+  {
+    std::string letters;
+    for (const char c : word)
+    {
+      const auto lower = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+      letters += lower == '-' || lower == '_' ? "" : std::string(1, lower);
+    }
+    return letters;
+  };
+  const std::string wanted = lettersOf(text);
+  std::size_t least = 1 + wanted.size() / 3;
+  std::string nearest;
+  for (Text name : names)
+  {
+    const std::string letters = lettersOf(name);
+    std::vector<std::size_t> row(letters.size() + 1); // of the table of Levenshtein's distances
+    std::iota(row.begin(), row.end(), std::size_t(0));
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+    {
+      std::size_t diagonal = std::exchange(row[0], i + 1);
+      for (std::size_t j = 0; j < letters.size(); ++j)
+      {
+        const std::size_t change = diagonal + (wanted[i] == letters[j] ? 0 : 1);
+        diagonal = std::exchange(row[j + 1], std::min({ change, row[j] + 1, row[j + 1] + 1 }));
+      }
+    }
+    const std::size_t common = std::min(letters.size(), wanted.size());
+    const bool isBegin = common > 3 && letters.compare(0, common, wanted, 0, common) == 0;
+    const std::size_t distance = isBegin ? std::min<std::size_t>(row.back(), 1) : row.back();
+    if (!letters.empty() && distance < least)
+    {
+      least = distance;
+      nearest = name;
+    }
+  }
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
 int ToChoice(Text option, Text text, const Choices& choices)
 {
   std::string list;
@@ -91,7 +136,13 @@ int ToChoice(Text option, Text text, const Choices& choices)
     }
     list += (list.empty() ? "" : ", ") + std::string(choice.first);
   }
-  throw UsageError(option + " must be one of " + list + ", not '" + text + "'");
+  std::vector<std::string> words;
+  for (const auto& choice : choices)
+  {
+    words.emplace_back(choice.first);
+  }
+  throw UsageError(
+    option + " must be one of " + list + ", not '" + text + "'" + NearestOf(text, words));
 }
 
 std::string ToQuantity(Text option, Text text)

@@ -26,6 +26,9 @@ std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
 /// True, and the value, if the whole text is one finite number.
 bool ParseNumber(const std::string& text, double& value);
 
+/// Returns "; did you mean NAME?" with the name that is most like the text; empty if none is.
+std::string NearestOf(const std::string& text, const std::vector<std::string>& names);
+
 /// Reads the text behind an option; a UsageError names the option where it means nothing.
 ///@{
 double ToNumber(const std::string& option, const std::string& text);

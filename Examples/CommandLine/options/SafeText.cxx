@@ -4,14 +4,12 @@
 
 #include "Job.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <stdexcept>
-#include <utility>
 
 namespace
 {
@@ -177,23 +175,12 @@ std::string WithOptions(const std::string& sentence)
 
 int OptionWord(void*, const char* name, const char* value, char* word, std::size_t size)
 {
-  const std::pair<const char*, const char*> others[] = { { "sph_kernel", "--kernel" },
-    { "level_limit", "--max-level" }, { "cube_size_factor", "--cube-factor" },
-    { "boundary_detection", "--boundary" }, { "iso_values", "--iso" },
-    { "smoothing_length_is_support_radius", "--support-radius" },
-    { "estimate_smoothing_length", "--smoothing-length estimate" } };
-  std::string option = std::string("--") + name;
-  std::replace(option.begin(), option.end(), '_', '-');
-  for (const auto& other : others)
-  {
-    option = std::string(name) == other.first ? other.second : option;
-  }
-  const std::string known = option.substr(0, option.find(' '));
-  const bool isFluid = option == "--fluid" && *value;
+  const std::string member = name;
+  const bool isEstimate = member == "estimate_smoothing_length";
+  const std::string option = isEstimate ? "--smoothing-length estimate" : WordOf(member);
   std::snprintf(word, size, "%s%s%s%s", option.c_str(), *value ? " " : "", value,
-    isFluid ? "=VALUE" : "");
-  return std::any_of(AllOptions().begin(), AllOptions().end(),
-    [&](const Option& row) { return known == row.Name; });
+    member == "fluid" && *value ? "=VALUE" : "");
+  return !option.empty();
 }
 
 void Say(const std::string& sentence)

@@ -33,11 +33,32 @@
 namespace
 {
 
-/// Makes points on a line, with their distance from its beginning, for plots.
-vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
+/// Makes points on the part of a line that lies in --box, with their distance from the line's
+/// beginning, for plots.
+vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
 {
-  const std::vector<double>& ends = slice.Line;
-  const int count = slice.Resolution;
+  const std::vector<double>& ends = job.Slice.Line;
+  const int count = job.Slice.Resolution;
+  double first = 0.0, last = 1.0; // of the way
+  for (int a = 0; job.Surface->GetUseBox() && a < 3; ++a)
+  {
+    const double* sides = job.Surface->GetBox() + 2 * a;
+    const double way = ends[3 + a] - ends[a];
+    if (way != 0.0)
+    {
+      const double low = (sides[0] - ends[a]) / way, high = (sides[1] - ends[a]) / way;
+      first = std::max(first, std::min(low, high));
+      last = std::min(last, std::max(low, high));
+    }
+    else if (ends[a] < sides[0] || ends[a] > sides[1])
+    {
+      last = -1.0;
+    }
+  }
+  if (first >= last)
+  {
+    throw std::runtime_error("no part of the --line lies in the --box");
+  }
   const double length = std::hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> way;
@@ -47,7 +68,7 @@ vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
   cells->InsertNextCell(count);
   for (int i = 0; i < count; ++i)
   {
-    const double t = static_cast<double>(i) / (count - 1);
+    const double t = first + (last - first) * i / (count - 1);
     cells->InsertCellPoint(points->InsertNextPoint((1.0 - t) * ends[0] + t * ends[3],
       (1.0 - t) * ends[1] + t * ends[4], (1.0 - t) * ends[2] + t * ends[5]));
     way->InsertNextValue(t * length);
@@ -64,7 +85,7 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
   if (job.Slice.Axis < 0)
   {
-    return MakeLine(job.Slice);
+    return MakeLine(job);
   }
   double bounds[6];
   vtkNew<vtkSPHProbe> all; // walls, too
@@ -74,6 +95,15 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
       "--slice has no plane to show, as --within and --only leave no particles");
   }
   const SliceOptions& slice = job.Slice;
+  const double* box = job.Surface->GetBox();
+  for (int i = 0; job.Surface->GetUseBox() && i < 6; ++i)
+  {
+    bounds[i] = std::isfinite(box[i]) ? box[i] : bounds[i];
+    if (i / 2 == slice.Axis && (i % 2 ? box[i] < slice.Place : box[i] > slice.Place))
+    {
+      throw std::runtime_error("the plane of --slice does not cross the --box");
+    }
+  }
   double origin[3], size[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -115,6 +145,30 @@ std::string ArrayToShow(vtkDataSet* data)
     found = found.empty() && range[0] < range[1] ? array->GetName() : found;
   }
   return found.empty() ? "WeightSum" : found;
+}
+
+/// Makes the points of a file that are not in --box like those where there is no fluid.
+void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
+{
+  const double* box = job.Surface->GetBox();
+  vtkPointData* arrays = result->GetPointData();
+  const bool isAsked = !job.ProbeFile.empty() && job.Surface->GetUseBox();
+  for (vtkIdType i = 0; isAsked && i < result->GetNumberOfPoints(); ++i)
+  {
+    const double* x = result->GetPoint(i);
+    const bool isIn = x[0] >= box[0] && x[0] <= box[1] && x[1] >= box[2] && x[1] <= box[3] &&
+      x[2] >= box[4] && x[2] <= box[5];
+    for (int a = 0; !isIn && a < arrays->GetNumberOfArrays(); ++a)
+    {
+      vtkDataArray* array = arrays->GetArray(a);
+      for (int c = 0; array && !points->GetPointData()->HasArray(array->GetName()) &&
+           c < array->GetNumberOfComponents();
+           ++c)
+      {
+        array->SetComponent(i, c, 0.0);
+      }
+    }
+  }
 }
 
 /// A line about the points or the image.
@@ -248,7 +302,9 @@ private:
     this->Shared.OnFirst(
       [&]
       {
-        this->AddRows(this->Times.Get()[i], vtkDataSet::SafeDownCast(probe->GetOutput()));
+        auto* probed = vtkDataSet::SafeDownCast(probe->GetOutput());
+        HideOutside(this->Options, this->Points, probed);
+        this->AddRows(this->Times.Get()[i], probed);
         this->File.Write([this] { return this->Text; }, false);
       });
   }
@@ -355,6 +411,7 @@ void MakeField(Sharing& sharing)
       }
       vtkDataSet* result =
         isProbe ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
+      HideOutside(job, points, result);
       if (!job.Quiet)
       {
         std::cout << Describe(result) << "seconds     " << seconds << "\n";

@@ -27,6 +27,7 @@
 #include <filesystem>
 #include <functional>
 #include <iomanip>
+#include <locale>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -86,6 +87,16 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
+/// Returns the number of 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
+double Rounded(double time)
+{
+  std::ostringstream digits;
+  digits.imbue(std::locale::classic());
+  digits << std::setprecision(15) << time;
+  ParseNumber(digits.str(), time);
+  return time;
+}
+
 /// Steps of files given one by one, at the times that the files tell of. isTold: whether they do, or
 /// --time-step does.
 Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTold)
@@ -115,6 +126,11 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTol
   if (job.Has("--time-step"))
   {
     times.clear();
+    if (files.size() == 1)
+    {
+      throw UsageError("--time-step is the time between one INPUT and the next, and there is one; "
+                       "leave it out");
+    }
   }
   const bool areAll = times.size() == files.size();
   const bool ascend =
@@ -130,7 +146,8 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTol
   for (std::size_t i = 0; i < files.size(); ++i)
   {
     steps.push_back(
-      { !times.empty() && areAll && ascend ? times[i] : static_cast<double>(i) * job.TimeStep,
+      { !times.empty() && areAll && ascend ? times[i]
+                                           : Rounded(static_cast<double>(i) * job.TimeStep),
         { files[i] }, {} });
   }
   return steps;

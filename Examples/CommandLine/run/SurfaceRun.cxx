@@ -94,6 +94,33 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
 }
 
+/// Gives the particles the smoothing lengths that --widen and --smooth make, as those of the surface,
+/// and the filter their arrays.
+vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
+{
+  SetParticles(job.Surface, job, input);
+  auto widened = vtkSmartPointer<vtkPolyData>::New();
+  Messages() = {};
+  if (!job.Surface->Widen(input, widened))
+  {
+    Messages().Check();
+    throw std::runtime_error("the factors of --widen could not be found");
+  }
+  filter->EstimateSmoothingLengthOff();
+  filter->SetSmoothingLengthIsSupportRadius(false);
+  filter->SetSmoothingLength(0.0);
+  filter->SetSmoothingLengthArrayName("WidenedSmoothingLength");
+  if (widened->GetPointData()->HasArray("WideningVolume")) // where volumes are computed
+  {
+    filter->SetVolumeArrayName("WideningVolume");
+  }
+  for (const char* name : { "Widening", "WidenedSmoothingLength", "WideningVolume" })
+  {
+    filter->AddExcludedArray(name);
+  }
+  return widened;
+}
+
 /// Arrays of the particles that are not interpolated because the surface's file could not hold
 /// them.
 std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
@@ -299,9 +326,16 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
     particles.TakeReference(input->NewInstance());
     particles->ShallowCopy(derivatives->GetOutput()); // the next step has the output itself
   }
+  vtkDataArray* scalar = particles->GetPointData()->GetArray(job.Scalar.c_str());
+  if (job.Has("--component") && scalar && scalar->GetNumberOfComponents() == 1)
+  {
+    throw std::runtime_error("--component is for vectors, and '" + job.Scalar +
+      "' has one component; leave out --component");
+  }
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
-  return particles;
+  const bool isWidened = job.Surface->GetWidening() > 1.0 || job.Surface->GetSmooth();
+  return isWidened && filter != job.Surface ? WidenFor(filter, job, particles) : particles;
 }
 
 void SetUpSurface(const Job& job, vtkPointSet* input)

@@ -1,0 +1,224 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every option of the program in every mode: it changes the outputs, or one sentence refuses it.
+
+test_modes.py PROGRAM PRELOAD [unittest arguments]; writes options_in_modes.csv, a row for each option and a column for each
+mode, to the folder that it runs in.
+"""
+import collections
+import concurrent.futures
+import csv
+import json
+import math
+import os
+import pathlib
+import re
+import sys
+
+import particle_files as files
+from command_line_test import WITH_DISPLAY, CommandLineTest, main
+
+BOX = "-0.15,0.15,-0.4,0.4,-0.4,0.02"
+# The files and options of a command line in each mode.
+MODES = {
+    "surface": (["step_0.vtp"], "out.vtp", {"--scalar": "Radius", "--iso": "0.3"}),
+    "film": (["step_0.vtp", "step_1.vtp"], "out.pvd", {"--scalar": "Radius", "--iso": "0.3"}),
+    "gauge": (["step_0.vtp", "step_1.vtp"], "out.csv", {"--gauge": ["a=-1,0.01,0:1,0.01,0"]}),
+    "flux": (["step_0.vtp", "step_1.vtp"], "out.csv", {"--flux": ["a=disc:0.17,0,0:1,0,0:0.6"]}),
+    "slice": (["step_0.vtp"], "out.vti", {"--slice": "z=0.01", "--resolution": "20"}),
+    "line": (["step_0.vtp"], "out.vtp", {"--line": "-0.5,0.1,0,0.5,0,0", "--resolution": "20"}),
+    "probe": (["step_0.vtp"], "out.vtp", {"--probe": "points.vtp"}),
+    "project": (["step_0.vtp"], "out.vti", {"--project": "z", "--resolution": "20"})}
+FREE = {"--scalar": None, "--iso": None, "--free-surface": ""}
+SOLIDS, NOISE = {"--fluid": "Kind=0"}, {"--scalar": "Noise", "--iso": "0.1", "--cube-factor": "1"}
+PIECES, STEPS = {"--components": "pieces.csv"}, ["step_0.vtp", "step_1.vtp"]
+PICTURE = {"--screenshot": "p.png"}
+
+
+class Trial(collections.namedtuple("Trial", "value context extra output inputs", defaults=("", {}, {}, None, None))):
+    """An option's value; options that are there without it, too; options that it needs, or None in place of one that it replaces;
+    and other files."""
+
+
+# How each option is tried. What a mode does not take of the context is left out there.
+TRIALS = {
+    "--scalar": Trial("Noise"), "--component": Trial("0", {"--scalar": "Velocity", "--iso": "0.02"}), "--iso": Trial("0.25"),
+    "--free-surface": Trial("", {}, FREE), "--derive": Trial("Velocity"), "--field": Trial("sum"), "--probe": Trial("others.vtp"),
+    "--slice": Trial("z=0.1"), "--line": Trial("-0.5,0,0.1,0.5,0,0"), "--resolution": Trial("9"), "--project": Trial("x"),
+    "--weighted-by": Trial("Noise", {"--scalar": "Radius"}), "--gauge": Trial("b=0.1,0,-1:0.1,0,1", {"--numbers": "n.csv"}),
+    "--gauges": Trial("gauges.txt", {"--numbers": "n.csv"}), "--flux": Trial("b=disc:0,0,0:1,0,0:0.2"),
+    "--gauge-grid": Trial("3,3:-1,1,-1,1,-1,1", {}, {"--gauge": None}), "--fluxes": Trial("sections.txt"),
+    "--velocity": Trial("Spin"), "--smoothing-length": Trial("0.2"), "--dp": Trial("0.08"), "--coefh": Trial("1.3", {"--dp": "0.1"}),
+    "--support-radius": Trial(), "--volume": Trial("Space"), "--mass": Trial("0.5"), "--density": Trial("2000"),
+    "--fluid": Trial("Kind=0"), "--within": Trial("-0.2,1,-1,1,-1,1"), "--only": Trial("Kind=0"), "--walls": Trial("walls.vtp"),
+    "--solids": Trial("ignore", SOLIDS), "--wall-share": Trial("0.7", SOLIDS), "--kernel": Trial("wendland"),
+    "--dimension": Trial("2"), "--h-scale": Trial("0.8"), "--cube-factor": Trial("0.7"), "--cube-size": Trial("0.05"),
+    "--cubes": Trial("uniform"), "--max-level": Trial("0"), "--box": Trial(BOX), "--periodic": Trial("1,1,1"),
+    "--capping": Trial("", {"--box": BOX}), "--filled": Trial(""), "--seeds": Trial("pairs", {"--cubes": "uniform", "--stats": "s.json", **NOISE}),
+    "--smooth": Trial(), "--widen": Trial("2"), "--widening": Trial("w.vtp", {"--widen": "2"}), "--compact": Trial(),
+    "--topology": Trial("field", NOISE), "--tolerance": Trial("0.1"), "--iteration-limit": Trial("1", NOISE), "--preview": Trial(),
+    "--node-threshold": Trial("0.9"), "--boundary": Trial("eigenvalue", {"--iso": "0.4"}), "--vertex-threshold": Trial("0.95"),
+    "--precision": Trial("double"), "--weight-sum": Trial(), "--boundary-eigenvalue": Trial(), "--curvature": Trial(),
+    "--gradients": Trial(), "--attributes": Trial("Kind"), "--no-attributes": Trial(), "--output-precision": Trial("single"),
+    "--components": Trial("pieces.csv"), "--least-volume": Trial("100", {**FREE, **PIECES}),
+    "--least-particles": Trial("100000", {**FREE, **PIECES}),
+    "--numbers": Trial("n.csv"), "--times": Trial("0,0.5"), "--ids": Trial("Tag", {"--times": "0.5"}), "--time-step": Trial("0.5"),
+    "--fps": Trial("4"), "--slow": Trial("2", {"--fps": "2"}), "--verbose": Trial(), "--stats": Trial("s.json"), "--repeat": Trial("2"), "--quiet": Trial(), "--screenshot": Trial("p.png"),
+    "--color-by": Trial("Noise", PICTURE), "--color-range": Trial("0.1,0.2", {**PICTURE, "--color-by": "Noise"}),
+    "--up": Trial("x", PICTURE), "--view": Trial("1,2,3", PICTURE), "--device": Trial("nonesuch"), "--threads": Trial("1"),
+    "--memory-limit": Trial("1", {"--cube-size": "0.01"})}
+FILM_PICTURE = {"--screenshot": "p_%04d.png"}
+# Where a mode needs something else.
+OTHER_TRIALS = {
+    ("--gauge-grid", "gauge"): TRIALS["--gauge-grid"]._replace(output="out.vti", inputs=["step_0.vtp"]),
+    ("--derive", "project"): Trial("Velocity", {}, {"--scalar": "Divergence"}),
+    ("--filled", "surface"): Trial("", inputs=["flat.vtp"]), ("--filled", "film"): Trial("", inputs=["flat.vtp"]),
+    ("--walls", "flux"): Trial("walls.vtp", {"--flux": ["a=disc:0.33,0,0:1,0,0:0.6"]}),
+    ("--screenshot", "film"): Trial("p_%04d.png"),
+    **{(option, "film"): TRIALS[option]._replace(context={**TRIALS[option].context, **FILM_PICTURE})
+       for option in ("--color-by", "--color-range", "--up", "--view")},
+    ("--color-by", "project"): Trial("WeightSum", {"--scalar": "Radius", **PICTURE}),
+    ("--color-range", "project"): Trial("0.1,0.2", PICTURE), ("--iteration-limit", "slice"): Trial("1"),
+    ("--memory-limit", "gauge"): TRIALS["--gauge-grid"]._replace(
+        value="1", extra={"--gauge-grid": "300,300:-1,1,-1,1,-1,1", "--gauge": None}, output="out.vti", inputs=["step_0.vtp"]),
+    ("--memory-limit", "slice"): Trial("1", {}, {"--resolution": "300"}), ("--memory-limit", "line"): Trial("1", {}, {"--resolution": "32000"}),
+    ("--memory-limit", "probe"): Trial("1", {}, {"--probe": "many.vti"}, "out.vti"),
+    ("--memory-limit", "project"): Trial("1", {"--scalar": "SmoothingLength"}, inputs=["many.vtp"]),
+    ("--precision", "project"): Trial("double", {"--scalar": "Radius"}, inputs=["bare.vtp"]),
+    ("--volume", "project"): Trial("Space", {"--scalar": "Radius"}), ("--density", "project"): Trial("Space", {"--scalar": "Radius"}),
+    **{(option, mode): TRIALS[option]._replace(inputs=["bare.vtp"], context={**TRIALS[option].context, **(
+        {"--scalar": "Radius"} if mode == "project" else {})}) for option in ("--walls", "--solids")
+       for mode in ("slice", "line", "probe", "project")},
+    **{(option, mode): TRIALS[option]._replace(inputs=STEPS, output=output)
+       for option in ("--times", "--ids", "--time-step", "--fps", "--slow")
+       for mode, output in (("project", "out.pvd"), ("probe", "out.csv"))}}
+QUESTIONS = {"--list-devices", "--list-arrays", "--help", "--version"}  # which are asked without a mode
+# What an option asks for is there anyway, or it changes nothing but the time.
+HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("slice", "line", "probe")),
+         *(("--threads", mode) for mode in MODES)}
+
+
+def numbers_of(report):
+    """The statistics in the file of --stats, at any depth."""
+    if isinstance(report, list):
+        return [numbers_of(each) for each in report]
+    return report.get("statistics") or numbers_of(report.get("steps", []))
+
+
+class Modes(CommandLineTest):
+    def setUp(self):
+        super().setUp()
+        self.points, self.arrays = files.lattice(8)
+        count = len(self.points)
+        self.arrays.update({
+            "SmoothingLength": [0.13 if p[0] < 0.1 else 0.27 for p in self.points], "Idp": list(range(count)),
+            "Velocity": [tuple(0.1 * x for x in p) for p in self.points], "Spin": [(p[1] - 1, 0.0, 0.5) for p in self.points],
+            "Tag": list(range(count - 1, -1, -1)), "Space": [0.0008] * count,
+            "Noise": [math.sin(12.9898 * i * i + 78.233 * i) for i in range(count)]})
+        for step in range(2):
+            self.arrays["Tag"].reverse()
+            files.write_vtp(self.directory / f"step_{step}.vtp",
+                            [tuple(x + 0.1 * x * step for x in p) for p in self.points], self.arrays)
+        bare = {name: values for name, values in self.arrays.items() if name not in ("Mass", "Density")}  # volumes are computed
+        files.write_vtp(self.directory / "bare.vtp", self.points, bare)
+        files.write_image(self.directory / "many.vti", "0 99 0 99 0 9", "-0.5 -0.5 -0.5", "0.01 0.01 0.1")
+        many = files.lattice(36)[0]
+        (self.directory / "many.vtp").write_bytes(files.xml(many, {"SmoothingLength": [0.13] * len(many)}, form="inline"))
+        flat = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
+        files.write_vtp(self.directory / "flat.vtp", [(*self.points[i][:2], 0.0) for i in flat],
+                        {name: [values[i] for i in flat] for name, values in self.arrays.items() if name != "Mass"})
+        beside = [(x + 0.8, y, z) for x, y, z in self.points if x < -0.1]
+        files.write_vtp(self.directory / "walls.vtp", beside, {
+            "SmoothingLength": [0.13] * len(beside), "Mass": [1.0] * len(beside), "Density": [1000.0] * len(beside)})
+        files.write_vtp(self.directory / "points.vtp", [(0.04 * i - 0.3, 0.02, 0.03) for i in range(20)], {})
+        files.write_vtp(self.directory / "others.vtp", [(0.04 * i - 0.3, 0.1, 0.03) for i in range(20)], {})
+        (self.directory / "gauges.txt").write_text("c=0,0.1,-1:0,0.1,1\n")
+        (self.directory / "sections.txt").write_text("c=disc:0,0.1,0:1,0,0:0.1\n")
+        self.runs = {}
+
+    def run_once(self, key):
+        """Exit status, standard error and all that the run writes, but for the seconds."""
+        inputs, output, options = key
+        folder = self.directory / f"run_{len(os.listdir(self.directory))}_{abs(hash(key))}"
+        folder.mkdir()
+        for name in os.listdir(self.directory):
+            if "." in name:
+                (folder / name).symlink_to(self.directory / name)
+        words = [word for option, value in options for word in ([option, value] if value else [option])]
+        result = self.run_program(*inputs, output, *words, cwd=folder)
+        # Numbers of a run are not its parameters: these would differ in any case.
+        written = {path.name: path.read_bytes() for path in folder.iterdir() if not path.is_symlink() and path.suffix != ".json"}
+        written.update((path.name, numbers_of(json.loads(path.read_text()))) for path in folder.glob("*.json"))
+        told = "\n".join(line.split(" ")[0] if re.match("seconds|device|memory|program", line) else re.sub(r"[\d.]+ s$", "", line)
+                         for line in result.stdout.splitlines())
+        return result.returncode, result.stderr, (written, told)
+
+    def acting(self):
+        """{mode: options} that --help lists."""
+        names = {mode: re.findall(r"(?m)^  (--[\w-]+)", self.run_good("--help", mode).stdout) for mode in (*MODES, "all")}
+        self.assertEqual(set(names["all"]), set(TRIALS) | QUESTIONS)
+        return {mode: set(names[mode]) for mode in MODES}
+
+    def key(self, mode, trial, option=None):
+        """The command line with an option, or without it."""
+        inputs, output, base = MODES[mode]
+        options = {**base, **{name: value for name, value in trial.context.items() if name in self.help[mode]}}
+        if option:
+            options.update(trial.extra if option in self.help[mode] else {})
+            options[option] = [*options.get(option, []), trial.value] if option in ("--gauge", "--flux") else trial.value
+        flat = [(name, each) for name, value in options.items() if value is not None
+                for each in (value if isinstance(value, list) else [value])]
+        is_other = option or not trial.extra
+        return (tuple(trial.inputs or inputs) if is_other else tuple(inputs), trial.output or output if is_other else output,
+                tuple(flat))
+
+    @staticmethod
+    def makes_mode(option):
+        return option == "--numbers" or any(option in base and option not in ("--scalar", "--iso", "--resolution")
+                                            for _, _, base in MODES.values()) or option in ("--gauges", "--gauge-grid", "--fluxes")
+
+    def judge(self, option, mode, trial):
+        """Returns what the option does, and what is wrong with that."""
+        status, said, written = self.runs[self.key(mode, trial, option)]
+        base_status, base_said, base = self.runs[self.key(mode, trial)]
+        if base_status != 0:
+            return "?", f"fails without it: {base_said}"
+        if option not in self.help[mode]:
+            sentence = rf"^marching-correctors: {option} is for [\w, ]+, not for \w+; leave it out.*\n$"
+            if self.makes_mode(option):  # another one, in which the mode's own options do not act
+                sentence = r"^marching-correctors: .*\n$"
+            good = status == 2 and re.match(sentence, said) and not written[0]
+            return "refused", "" if good else f"is not in --help {mode}, but {status} {said}"
+        if status == 0 and ((option, mode) in HOLDS) == (written == base):
+            return "holds" if written == base else "acts", ""
+        if status == 1 and all(line.startswith("marching-correctors: ") for line in said.splitlines()):
+            return "acts (" + said.splitlines()[0].partition(": ")[2] + ")", ""
+        return "?", said or "does nothing"
+
+    def test_the_guide_says_it(self):
+        """parameters.md lists which options act where, as --help does."""
+        acting = self.acting()
+        page = (pathlib.Path(__file__).parents[2] / "Documentation" / "Guide" / "parameters.md").read_text(encoding="utf-8")
+        rows = re.findall(r"(?m)^\| (`--.*?) \|((?: [x ]? ?\|){8})$", page)
+        said = {option: [cell.strip() for cell in cells.split("|")[:-1]] for names, cells in rows for option in re.findall("--[\\w-]+", names)}
+        self.assertEqual(said, {option: ["x" if option in acting[mode] else "" for mode in MODES] for option in TRIALS})
+
+    def test_every_option_in_every_mode(self):
+        self.help = self.acting()
+        trials = {(option, mode): OTHER_TRIALS.get((option, mode), trial) for option, trial in TRIALS.items() for mode in MODES}
+        keys = {self.key(mode, trial, each) for (option, mode), trial in trials.items() for each in (None, option)}
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            self.runs = dict(zip(keys, pool.map(self.run_once, keys)))
+        found = {cell: self.judge(*cell, trial) for cell, trial in trials.items()}
+        with open("options_in_modes.csv", "w", newline="", encoding="utf-8") as table:
+            csv.writer(table).writerows([["option", *MODES], *([option, *(" ".join(filter(None, found[option, mode])) for mode in MODES)]
+                                                               for option in TRIALS)])
+        for (option, mode), (_, wrong) in found.items():
+            with self.subTest(option, mode=mode):
+                self.assertEqual(wrong, "")
+
+
+if __name__ == "__main__":
+    if not os.environ.get("DISPLAY"):  # one for all pictures
+        os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
+    main()

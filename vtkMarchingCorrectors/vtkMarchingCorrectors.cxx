@@ -485,7 +485,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
     UsedSmoothingLength, UsedCubeSize, SurfaceMeasures, EstimatedCells);
   os << indent << "Cube Size Mode: " << (this->CubeSizeMode == ADAPTIVE ? "adaptive" : "uniform")
      << "\n"
-     << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles") << "\n"
      << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n"
      << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n"
      << indent << "Boundary Detection: "

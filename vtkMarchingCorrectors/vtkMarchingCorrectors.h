@@ -240,22 +240,6 @@ public:
 
   ///@{
   /**
-   * How space is divided among processes that share a surface, see SetController(): into equal
-   * expected work (BY_WORK, the default), which is higher at the surface than inside the fluid, or
-   * into equal numbers of particles (BY_PARTICLES). The surface is the same, to the last bit.
-   */
-  enum PartitionType
-  {
-    BY_PARTICLES = 0,
-    BY_WORK
-  };
-  vtkSPHClampMacro(Partition, int, BY_WORK, BY_PARTICLES, BY_WORK);
-  void SetPartitionToByParticles() { this->SetPartition(BY_PARTICLES); }
-  void SetPartitionToByWork() { this->SetPartition(BY_WORK); }
-  ///@}
-
-  ///@{
-  /**
    * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1,
    * unit L; sides may be infinite. The result is exactly that part of the whole surface, so boxes
    * side by side make up the whole. Only the particles that reach the box are evaluated. The

@@ -395,7 +395,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OM
 class Model:
     """Particles in a box of these side lengths, halved across its longest side until each rank has one; lengths are
     distances of particles. Copies lie in shells, so many particle distances deep, on all sides of a rank's box that are
-    not the whole's. Surface work is the area that a box has of the whole's surface."""
+    not the whole's."""
 
     def __init__(self, count, shape, ranks):
         scale = (count / (shape[0] * shape[1] * shape[2])) ** (1 / 3)
@@ -414,16 +414,14 @@ class Model:
         return grown - self.each
 
     def surface(self):
-        """Mean of a rank, and that of a box in a corner."""
+        """A rank's part of the area."""
         x, y, z = self.whole
-        return 2 * (x * y + y * z + z * x) / self.ranks, sum(
-            self.sides[a - 1] * self.sides[a - 2] * (2 if self.parts[a] == 1 else 1) for a in range(3))
+        return 2 * (x * y + y * z + z * x) / self.ranks
 
 
 def ranks(benchmark):
     """Traffic of processes that share a surface, and what it would be on larger data: particles owned, copies of
-    others', bytes sent, nodes evaluated, of boxes with as many particles each, and of boxes with as much expected work.
-    Then a model, fitted to the first ones. Bytes are those of the particles that travel, all but one in as many as there
+    others', bytes sent, nodes evaluated. Then a model, fitted to the first ones. Bytes are those of the particles that travel, all but one in as many as there
     are ranks, and of their copies."""
     out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
     for count in benchmark.sizes:
@@ -431,33 +429,31 @@ def ranks(benchmark):
         bounds = read(path).GetBounds()
         shape = [bounds[2 * a + 1] - bounds[2 * a] for a in range(3)]
         for number in (2,) if benchmark.quick else (2, 4, 8):
-            found, by_work = (benchmark.program.start(
-                path, [*options, *how], 1, MPI, benchmark.folder / "o.pvtp", ["mpirun", "-n", str(number)])[0]["statistics"]
-                for how in (["--partition", "particles"], []))
-            runs.append((Model(sum(found["rank_particles"]), shape, number), found, by_work))
+            found = benchmark.program.start(
+                path, options, 1, MPI, benchmark.folder / "o.pvtp", ["mpirun", "-n", str(number)])[0]["statistics"]
+            runs.append((Model(sum(found["rank_particles"]), shape, number), found))
     low, depth = 0.0, 100.0
-    measured = sum(sum(found["rank_copies"]) for _, found, _ in runs)
+    measured = sum(sum(found["rank_copies"]) for _, found in runs)
     for _ in range(60):  # the depth whose copies are, over all runs, those that were measured
         middle = (low + depth) / 2
-        fewer = sum(model.copies(middle) * model.ranks for model, _, _ in runs) < measured
+        fewer = sum(model.copies(middle) * model.ranks for model, _ in runs) < measured
         low, depth = (middle, depth) if fewer else (low, middle)
 
     def excess(values):
         return f"{max(values) * len(values) / max(sum(values), 1):.2f}"
 
     rows = []
-    for model, found, by_work in runs:
+    for model, found in runs:
         copies = found["rank_copies"]
         rows.append([sum(found["rank_particles"]), model.ranks, f"{sum(copies) / model.ranks:.0f}", max(copies),
                      f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
-                     excess(found["rank_nodes_evaluated"]), excess(by_work["rank_nodes_evaluated"])])
-    out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean", "by work"],
-              rows)
+                     excess(found["rank_nodes_evaluated"])])
+    out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean"], rows)
     # From one file, all travel that the first rank does not own, and all copies.
-    sent = sum(sum(found["rank_bytes_sent"]) for _, found, _ in runs) / sum(
-        sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found, _ in runs)
-    nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found, _ in runs) /
-             sum(model.surface()[0] * model.ranks for model, _, _ in runs))
+    sent = sum(sum(found["rank_bytes_sent"]) for _, found in runs) / sum(
+        sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found in runs)
+    nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found in runs) /
+             sum(model.surface() * model.ranks for model, _ in runs))
     out.text(f"shells {depth:.2f} distances deep, {sent:.0f} bytes for each particle that travels, {nodes:.1f} nodes on each "
              "square distance of surface", "")
     rows = []
@@ -465,10 +461,9 @@ def ranks(benchmark):
         for number in (1, 8, 64, 512, 1024):
             model = Model(total, shape, number)
             copies, most = ((model.copies(depth, of_most) if number > 1 else 0) for of_most in (False, True))
-            mean, busiest = model.surface()
             moved = model.each * (1 - 1 / number) + copies  # none lies where it belongs
             rows.append([text_of(total), number, f"{model.each:.3g}", f"{copies:.3g}", f"{most:.3g}",
-                         f"{copies / model.each:.2f}", f"{moved * sent / 1e6:.3g}", f"{mean * nodes:.3g}",
-                         f"{busiest / mean:.1f}"])
+                         f"{copies / model.each:.2f}", f"{moved * sent / 1e6:.3g}",
+                         f"{model.surface() * nodes:.3g}"])
     out.table(["particles", "ranks", "per rank", "copies per rank", "most", "copies / particles", "MB sent per rank",
-               "nodes per rank", "busiest / mean"], rows)
+               "nodes per rank"], rows)

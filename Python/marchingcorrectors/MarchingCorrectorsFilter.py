@@ -45,8 +45,8 @@ from marchingcorrectors._warnings import describe_warnings
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
 CONVERT = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": lambda text: text or ""}
-# Properties of the panel that are left out: the class sets two by own methods, one means nothing in one process.
-OTHERS = "PanelComponent", "FreeSurfaceValue", "Partition"
+# Properties of the panel that are left out: the class sets them by own methods.
+OTHERS = "PanelComponent", "FreeSurfaceValue"
 
 
 def read_panel():

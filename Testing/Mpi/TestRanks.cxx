@@ -104,7 +104,6 @@ const std::vector<Case> Cases = {
     { Speed, ON(Preview), ON(UseBox), SET(Box(-0.4, 0.51, -10.0, 0.33, -0.2, 10.0)) } },
   { "fewer bricks than ranks", Dam,
     { Free, Fluid, SET(CubeSize(0.12)), ON(UseBox), SET(Box(0.0, 3.0, 0.0, 0.96, 0.0, 0.96)) } },
-  { "by particles", Dams, { Speed, SET(PartitionToByParticles()) } },
   { "periods", Dams, { Free, Fine, SET(PeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5)) } },
   { "periods that the particles tell of", Dams, { Free, Fine, ON(DetectPeriod) } },
   { "periods that no cube divides", Dams,

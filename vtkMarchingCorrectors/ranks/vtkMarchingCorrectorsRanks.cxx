@@ -405,9 +405,7 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
     this->WarnOfHugeRun();
   }
   const mcor_options whole = options;
-  run.Work = this->Partition == BY_WORK
-    ? vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals)
-    : vtkSPHCountWork(mine.Core, options);
+  run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
   run.Scatter(mine.Core, run.Own);
   // Arrays are found among those that came by the names of this rank's own.
   const bool isNamed =

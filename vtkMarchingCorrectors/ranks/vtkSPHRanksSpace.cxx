@@ -461,18 +461,6 @@ struct CoarseGrid
 };
 }
 
-std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options)
-{
-  std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
-  const bool usesSolids =
-    !input.ignore_solids && (options.field != MCOR_WEIGHT_SUM || options.wall_share != 0.0);
-  for (std::int64_t i = 0; input.solid && !usesSolids && i < input.count; ++i)
-  {
-    work[static_cast<std::size_t>(i)] = input.solid[i] ? 0 : 1;
-  }
-  return work;
-}
-
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals)
 {
@@ -504,10 +492,12 @@ std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input&
     const double cost = grid.CountSurfaces(options, cell) * CubeWork * across * across;
     shares.push_back(static_cast<std::int64_t>(std::min(cost / particles, 1e9)));
   }
-  std::vector<std::int64_t> work = vtkSPHCountWork(input, options);
+  const bool usesSolids =
+    !input.ignore_solids && (options.field != MCOR_WEIGHT_SUM || options.wall_share != 0.0);
+  std::vector<std::int64_t> work;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
-    work[static_cast<std::size_t>(i)] += isFluid(i) ? shares[grid.Find(input.positions, i)] : 0;
+    work.push_back(isFluid(i) ? 1 + shares[grid.Find(input.positions, i)] : usesSolids ? 1 : 0);
   }
   return work;
 }

@@ -97,14 +97,9 @@ private:
 };
 
 /**
- * Returns 1 for each of this rank's particles, but 0 for those that the surface does not depend
- * on: solids, if it uses none.
- */
-std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
-
-/**
- * Adds a share of the surface's cost where the surface is expected: in cells of a coarse grid
- * that have values on both sides of an iso value around them, or, for a free surface, far fewer
+ * Returns the work of each of this rank's particles: 1, or 0 for those that the surface does not
+ * depend on (solids, if it uses none), and a share of the surface's cost where the surface is
+ * expected: in cells of a coarse grid that have values on both sides of an iso value around them, or, for a free surface, far fewer
  * particles beside them. The number of cells does not grow with the particles. The result is the
  * same to the last bit however particles are spread over ranks. Collective.
  */

@@ -4,13 +4,23 @@
 import re
 from pathlib import Path
 
-TEXTS = dict(re.findall(r'^SAYS\((\w+), "(.*)"\)$', (
-    Path(__file__).parents[1] / "vtkMarchingCorrectors/core/mcor_says.def").read_text(encoding="utf-8"), re.M))
+_CORE = Path(__file__).parents[1] / "vtkMarchingCorrectors" / "core"
+_SAYS, _OPTIONS = ((_CORE / f"mcor_{name}.def").read_text(encoding="utf-8") for name in ("says", "options"))
+TEXTS = {code: text.replace('\\"', '"') for code, text in re.findall(r'^SAYS\((\w+), "(.*)"\)$', _SAYS, re.M)}
+# {what stands in braces: the panel's word}
+SLOTS = {**{member: re.sub(r"(?<=.)(?=[A-Z])", " ", name) for member, name in
+            re.findall(r'^(?:OPTION|BOUNDS)\((\w+), .*"(\w*)"\)$', _OPTIONS, re.M)},
+         **dict(re.findall(r'^SLOT\("([^"]+)", "([^"]+)"\)', _SAYS, re.M))}
 _PART = re.compile(r"%[-+0-9.]*(?:ll|z)?[a-z]|\{[a-z_]+[^}]*\}")
+
+
+def fill(text, word):
+    """With word(name, value) in place of each slot."""
+    return re.sub(r"\{([a-z_]+)(?: ([^{}]+))?\}", lambda slot: word(slot[1], slot[2] or ""), text)
 
 
 def says(code, *found):
     """A regular expression for the sentence in the words of any interface. found: regular expressions that must
     occur in it, in this order."""
-    words = "".join(f"(?=.*?{'.*?'.join(found)})" if found else "")
+    words = f"(?=.*?{'.*?'.join(found)})" if found else ""
     return f"(?s:{words}" + ".*?".join(re.escape(part) for part in _PART.split(TEXTS[code])) + ")"

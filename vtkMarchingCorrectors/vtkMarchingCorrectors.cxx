@@ -14,6 +14,7 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
+#include "vtkSPHSay.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHSharedRun.h"
 #endif
@@ -137,8 +138,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
   if (data && !particles && !run->IsShared())
   {
-    this->Warn(
-      std::string("A ") + data->GetClassName() + " has no points of its own, and so no surface.");
+    this->Warn(vtkSPHSay(MCOR_SAY(NO_POINTS), data->GetClassName(), "surface"));
     return;
   }
   if (!run->Begin(particles) || run->Particles == 0)

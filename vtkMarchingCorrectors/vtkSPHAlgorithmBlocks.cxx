@@ -14,6 +14,7 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHRun.h"
+#include "vtkSPHSay.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
@@ -95,8 +96,8 @@ void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
   run->Sum(counts, 2);
   if (run->IsFirst() && counts[1] < counts[0])
   {
-    this->Warn(std::to_string(counts[0] - counts[1]) + " of " + std::to_string(counts[0]) +
-      " points are nodes of a mesh and no particles, as no vertex cell uses them.");
+    this->Warn(vtkSPHSay(MCOR_SAY(MESH_NODES), static_cast<long long>(counts[0] - counts[1]),
+      static_cast<long long>(counts[0]), "", ""));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -133,8 +134,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   this->SetUsedNames(nullptr);
   if (data && !particles && !run->IsShared())
   {
-    this->Warn(std::string("A ") + data->GetClassName() +
-      " has no points of its own, and so no derivatives.");
+    this->Warn(vtkSPHSay(MCOR_SAY(NO_POINTS), data->GetClassName(), "derivatives"));
     return;
   }
   if (!run->Begin(particles))

@@ -12,6 +12,7 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
+#include "vtkSPHSay.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
@@ -177,14 +178,11 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   const auto dry = std::count(first, outside.end(), true);
   if (isFirst && hasFluid && dry > 0)
   {
-    const std::string noun = this->GetNoun(),
-                      name = "'" + places[first - outside.begin()].Name + "'";
-    const std::string all = std::to_string(outside.size());
-    this->Warn(
-      (dry == 1 ? "The " + noun + " " + name + " is outside of all fluid: no particle reaches it. "
-                : std::to_string(dry) + " of " + all + " " + noun + "s, the first of them " + name +
-            ", are outside of all fluid: no particle reaches them. ") +
-      "If this is so at all times, check " + (dry == 1 ? "where it is." : "where they are."));
+    const char* noun = this->GetNoun();
+    const char* name = places[first - outside.begin()].Name.c_str();
+    this->Warn(dry == 1 ? vtkSPHSay(MCOR_SAY(PLACE_DRY), noun, name)
+                        : vtkSPHSay(MCOR_SAY(PLACES_DRY), static_cast<long long>(dry),
+                            static_cast<long long>(outside.size()), noun, name));
   }
   if (!isFirst)
   {

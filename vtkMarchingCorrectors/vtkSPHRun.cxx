@@ -5,6 +5,7 @@
 #include "mcor_parts.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
+#include "vtkSPHSay.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHSharedRun.h"
 #endif
@@ -135,8 +136,8 @@ bool vtkSPHAlgorithm::vtkRun::Accept(
   }
   else if (this->IsFirst())
   {
-    this->Filter->Warn(
-      particles.DescribeNoFluid() + ", so there is no fluid and " + consequence + ".");
+    this->Filter->Warn(vtkSPHSay(
+      MCOR_SAY(NOTHING_WITHOUT_FLUID), particles.DescribeNoFluid().c_str(), consequence.c_str()));
   }
   return true;
 }
@@ -152,12 +153,11 @@ bool vtkSPHAlgorithm::vtkRun::SetPeriod()
   const std::vector<double> period = this->FindPeriod(problem);
   if (period.empty() && problem.empty())
   {
-    problem = "The field data of the particles give no period: there is no array PeriodicBounds, "
-              "BoxSize, or box with boundaryType.";
+    problem = vtkSPHSay(MCOR_SAY(NO_PERIOD));
   }
   if (!problem.empty())
   {
-    this->Fail(problem + " Set the periodic bounds, and turn their detection off.");
+    this->Fail(problem);
     return false;
   }
   std::copy(period.begin(), period.end(), this->Options.periodic);

@@ -33,11 +33,11 @@ from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import QUANTITIES, camel
 from marchingcorrectors._call import extracted
 from marchingcorrectors._functions import take_surface
-from marchingcorrectors._library import Sentence, devices, lib, take_sentence, take_text
+from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import OUTPUTS
 from marchingcorrectors._vtk_blocks import (describe_mesh, join_blocks, list_all, sets_of, take_vertices, tells_of_walls,
                                              walk)
-from marchingcorrectors._vtk_particles import (NO_PERIOD, Particles, Request, Unusable, choose_array, describe_unused_types,
+from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, describe_unused_types,
                                                find_fittest, find_period, is_single, name_of, varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
 from marchingcorrectors._warnings import describe_warnings
@@ -354,8 +354,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         iterator.InitTraversal()
         walls = [name for name in names if tells_of_walls(name)]
         if walls and len(walls) < len(names):
-            self._warn_once("walls", f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so its "
-                            "particles do not affect the surfaces of the others. Set Blocks to Together.")
+            self._warn_once("walls", say("WALLS_IN_BLOCK", walls[0], len(names)))
         for i, (name, block) in enumerate(zip(names, blocks)):
             self.SetProgressShiftScale(i / len(names), 1 / len(names))
             self.BlockName = name + ": "
@@ -370,7 +369,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _process(self, data, output):
         if data is not None and not isinstance(data, vtkPointSet):
-            self._say(f"A {data.GetClassName()} has no points of its own, and so no surface.", "Warning")
+            self._say(say("NO_POINTS", data.GetClassName(), "surface"), "Warning")
             return
         vars(self).update(NOTHING)
         if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
@@ -387,7 +386,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if particles.fluid is None:
                 self._warn_once("type", describe_unused_types(data.GetPointData()))
             if choice.DetectPeriod and not period:
-                raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
+                raise Unusable(say("NO_PERIOD"))
             particles.estimate_by_neighbours(options)
         except (Unusable, Error) as sentence:
             self._fail(sentence.args[0])
@@ -397,7 +396,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self.UsedFluid = particles.describe_fluid()
         why = particles.describe_no_fluid()
         if why:
-            self._say(why + ", so there is no fluid and no surface.", "Warning")
+            self._say(say("NOTHING_WITHOUT_FLUID", why, "no surface"), "Warning")
             return
         try:
             self._extract(particles, options, output)

@@ -13,10 +13,10 @@ import pyvista
 from . import _functions, _meters
 from ._arrays import QUANTITIES, as_points
 from ._call import Shared, own_keywords
-from ._library import InvalidArgument
+from ._library import InvalidArgument, say
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import (GHOSTS, NO_PERIOD, WALL_BLOCK, describe_missing_length, detect, find_period, join_velocity,
+from ._vtk_particles import (GHOSTS, WALL_BLOCK, describe_missing_length, detect, find_period, join_velocity,
                              name_of)
 from ._warnings import warn
 from .io import Particles as FileParticles
@@ -99,7 +99,7 @@ class PointData(FileParticles):
         if word != "auto":
             raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", three lengths, or six bounds.")
         if found is None:
-            raise InvalidArgument(NO_PERIOD + " Give periodic=(LX, LY, LZ).")
+            raise InvalidArgument(say("NO_PERIOD"))
         return found
 
     def check_smoothing_length(self, words):

@@ -16,10 +16,9 @@ import numpy as np
 from . import _film, _structs as c, io
 from ._arrays import choose
 from ._functions import free_surface, isosurface, probe
-from ._library import InvalidArgument
+from ._library import InvalidArgument, say
 from ._meters import gauge
 from .io._outputs import Outputs
-from .io._particles import TILTED
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, Options, words_of
 from ._usd import is_usd
 
@@ -204,7 +203,7 @@ def find_words(given, names, particles):
         words["wall_share"] = 0.0
     if words.get("periodic") == "auto":
         if particles.cell is not None:
-            raise InvalidArgument(f"{particles.file}: {TILTED} Leave out --periodic.")
+            raise InvalidArgument(f"{particles.file}: {say('CELL_TILTED')} Leave out --periodic.")
         if particles.period is None:
             raise InvalidArgument(f"{particles.file} tells no period. Give --periodic LX,LY,LZ.")
         del words["periodic"]  # which is taken

@@ -99,11 +99,23 @@ def _python_word(name, value):
     return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() else f'{name}="{value}"'
 
 
+def _sentence(code, text):
+    sentence = Sentence(take_text(lib.mcor_fill_slots(text, _python_word, None)))
+    sentence.code, sentence.text = code, text
+    return sentence
+
+
+def say(code, *values):
+    """A Sentence of the core by its name, with these values."""
+    text = lib.mcor_says_text(c.ENUMS["mcor_says"]["MCOR_SAYS_" + code])
+    return _sentence(code, (text.decode().replace("%ll", "%") % values).encode(errors="replace"))
+
+
 def take_sentence(message):
     """A message of the core, which is freed, as a Sentence; "" if there is none."""
-    text = b"" if not message.code else message.text or lib.mcor_says_text(c.ENUMS["mcor_says"]["MCOR_SAYS_HOST_MEMORY"])
-    sentence = Sentence(take_text(lib.mcor_fill_slots(text, _python_word, None)))
-    sentence.code, sentence.text = lib.mcor_says_name(message.code).decode() if message.code else "", text
+    if not message.code:
+        return ""
+    sentence = _sentence(lib.mcor_says_name(message.code).decode(), message.text) if message.text else say("HOST_MEMORY")
     lib.mcor_free_message(ctypes.byref(message))
     return sentence
 

@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonDataModel import (vtkDataObjectTree, vtkPartitionedData
                                            vtkUnstructuredGrid)
 
 from . import _structs as c
-from ._library import lib
+from ._library import lib, say
 from ._vtk_particles import WALL_BLOCK, name_of
 from ._vtk_surface import add, add_nearest
 from .io._cells import VERTICES, find_vertices
@@ -106,8 +106,7 @@ def take_vertices(data, have=None):
 def describe_mesh(data, taken):
     """A sentence where points of the data are no particles; else ""."""
     left, count = (sum(points.GetNumberOfPoints() for points in sets_of(each)) for each in (taken, data))
-    return (f"{count - left} of {count} points are nodes of a mesh and no particles, as no vertex cell uses them."
-            if left < count else "")
+    return say("MESH_NODES", count - left, count, "", "") if left < count else ""
 
 
 def list_all(data):

@@ -14,8 +14,6 @@ from ._library import lib
 from ._warnings import describe_unused_type
 
 GHOSTS = "vtkGhostType"
-NO_PERIOD = ("The field data of the particles give no period: there is no array PeriodicBounds, BoxSize, or box "
-             "with boundaryType.")
 WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
 
 

@@ -7,7 +7,7 @@ import re
 import struct
 
 import particle_files as files
-from command_line_test import ISO, CommandLineTest, main, read_table
+from command_line_test import ISO, CommandLineTest, main, read_table, says
 
 SIDE = 20
 
@@ -46,7 +46,7 @@ class Plane(CommandLineTest):
         self.succeed("--free-surface", "--dimension", "2")
         self.assertEqual(self.cells("Lines"), 1)
         result = self.extract("--free-surface", "--iso", "0.1", "--dimension", "3")
-        self.assertRegex(result.stderr, "lie in a plane")
+        self.assertRegex(result.stderr, says("PLANE_IN_SPACE"))
         self.assertEqual(self.cells("Lines"), 0)
         self.output.unlink()
         files.write_vtp(self.input, *files.lattice())
@@ -77,7 +77,7 @@ class Plane(CommandLineTest):
         self.assertGreater(ranges["Radius"][1], 0.9)
 
     def test_filled_alone(self):
-        self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, "leave out --filled or --capping")
+        self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, says("CAPPING_WITH_FILLED", "--capping", "--filled"))
 
     def test_flat_box(self):
         """Around the particles it is one."""

@@ -6,7 +6,7 @@ import random
 import re
 
 import particle_files as files
-from command_line_test import CommandLineTest, main, read_table
+from command_line_test import CommandLineTest, main, read_table, says
 
 
 class Smooth(CommandLineTest):
@@ -65,7 +65,7 @@ class Smooth(CommandLineTest):
                               says="the surface is empty")
 
     def test_refused(self):
-        self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled, or --compact and --smooth")], "--free-surface")
+        self.refuse_all(1, [(["--compact", "--filled"], says("FILLED_WITH_COMPACT", "--compact and --smooth"))], "--free-surface")
         self.refuse_all(2, [(["--widening", "f.vtp"], "--widening needs --widen or --smooth"), (["--widen", "9"], "from 1 to 4, not '9'"),
                             (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")], "--free-surface")
 

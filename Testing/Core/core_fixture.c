@@ -3,8 +3,27 @@
 #include "core_fixture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+bool core_tells(const mcor_message* message, const char* words)
+{
+  char list[200];
+  bool tells = message->text != NULL;
+  snprintf(list, sizeof list, "%s", words);
+  for (char* word = strtok(list, "|"); tells && word; word = strtok(NULL, "|"))
+  {
+    tells = strcmp(word, mcor_says_name(message->code)) == 0 || strstr(message->text, word);
+  }
+  return tells;
+}
+
+bool core_told(const mcor_context* context, const char* words)
+{
+  CORE_MESSAGE message = mcor_last_message(context);
+  return core_tells(&message, words);
+}
 
 void core_free_context(mcor_context** context)
 {

@@ -38,12 +38,17 @@
       mcor_last_error(context));                                                                   \
   } while (0)
 
-/* The call fails with this status, and a sentence that has these words. */
+/* Whether the message, or the context's last failure, has all of these words, with | between them:
+ * its code, ISO_OUTSIDE, or what stands in its text. */
+bool core_tells(const mcor_message* message, const char* words);
+bool core_told(const mcor_context* context, const char* words);
+
+/* The call fails with this status, and with a message that core_told finds. */
 #define CORE_FAILS(context, expected, call, words)                                                 \
   do                                                                                               \
   {                                                                                                \
     const mcor_status core_status_ = (call);                                                       \
-    CORE_CHECK(core_status_ == (expected) && strstr(mcor_last_error(context), words), "%s: %s",    \
+    CORE_CHECK(core_status_ == (expected) && core_told(context, words), "%s: %s",                  \
       mcor_status_name(core_status_), mcor_last_error(context));                                   \
   } while (0)
 

@@ -1,12 +1,18 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles, blocks of them, and a run with all that it says, for the tests of VTK's filters."""
+import sys
+from pathlib import Path
+
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkMultiBlockDataSet, vtkPolyData
 
 from marchingcorrectors import vtkMarchingCorrectors
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from says import says  # noqa: E402, F401
 
 SPACING, H = 0.1, 0.13
 COUNT = 21 ** 3  # of cube()

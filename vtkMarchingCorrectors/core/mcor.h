@@ -71,7 +71,8 @@ extern "C"
   void mcor_free_message(mcor_message* message);
 
   /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
-   * stands behind the name in the slot, or "". Returns 0 if there is no word; the slot then stays. */
+   * stands behind the name in the slot, or "". Returns 0 if there is no word: the
+   * member's name is then the word, and what names no member stays as it is, with its braces. */
   typedef int (*mcor_word)(
     void* user, const char* name, const char* value, char* word, size_t size);
   /* The words of C, "cube_size" and "precision=double"; and those of panels, "Cube Size" and "Field
@@ -84,6 +85,9 @@ extern "C"
   /* The code's name, "ISO_OUTSIDE", and its text, with formats and slots; NULL if there is none. */
   const char* mcor_says_name(mcor_says code);
   const char* mcor_says_text(mcor_says code);
+  /* The code of a sentence in the words of any interface; MCOR_SAYS_NOTHING if it is none of this
+   * library's. */
+  mcor_says mcor_code_of(const char* sentence);
 
   /* Element type of an array. */
   typedef enum mcor_type
@@ -381,6 +385,8 @@ extern "C"
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
+    /* What progress reports while the device's programs are built, which may take a minute. */
+#define MCOR_BUILDING "building the OpenCL program (first time only)"
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
     void* progress_user;

@@ -34,9 +34,8 @@ void mcor_spell_out(mcor_options* options)
 
 mcor_status mcor_check_spelled_out(mcor_context* context, const mcor_options* options)
 {
-  MCOR_RETURN_IF(options->smooth && (!options->compact || options->widen == 1), context,
-    MCOR_INVALID_ARGUMENT,
-    "options.smooth is set, but not what it stands for. Call mcor_spell_out(&options) first.");
+  MCOR_FAIL_IF(options->smooth && (!options->compact || options->widen == 1), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(SMOOTH_NOT_SPELLED_OUT));
   return MCOR_OK;
 }
 
@@ -64,8 +63,7 @@ mcor_status mcor_create_shared_context(
   (*context)->report_interval = MCOR_REPORT_SECONDS;
   mcor_status status = place >= 0 && place < count
     ? mcor_open_device(*context, device, place, count)
-    : mcor_fail(
-        *context, MCOR_INVALID_ARGUMENT, "place is %d; it must be from 0 to %d.", place, count - 1);
+    : mcor_fail_as(*context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PLACE_ILLEGAL), place, count - 1);
   MCOR_THEN(status, mcor_upload_case_table(*context));
   (*context)->created = status == MCOR_OK;
   return status;

@@ -70,25 +70,20 @@ static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* inp
   const mcor_options* options, mcor_surface* surface)
 {
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
-    "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
-    "first.");
+  MCOR_FAIL_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(RANKS_WITHOUT_GLOBALS));
   MCOR_TRY(mcor_begin_surface(context, input, surface));
   if (input->count == 0)
   {
     return MCOR_OK;
   }
   MCOR_TRY(mcor_prepare(context, input, options)); /* [III-A] */
-  MCOR_RETURN_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
-    "Filling needs the points on all edges of the virtual grid, which a compact contour lacks. Turn "
-    "one of them off.");
-  MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
-    "Filling is for two dimensions, but these particles do not lie in a plane. Turn filling off.");
-  MCOR_RETURN_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
-    MCOR_INVALID_ARGUMENT,
-    "Pair seeds need cubes of one size, and here cubes have up to %d. Choose uniform cubes, or "
-    "complete seeds.",
-    context->lattice.levels);
+  MCOR_FAIL_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(FILLED_WITH_COMPACT));
+  MCOR_FAIL_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(FILLED_IN_SPACE));
+  MCOR_FAIL_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(PAIRS_WITH_LEVELS), context->lattice.levels);
   const bool has_particles = context->grid.count > 0; /* that reach the box */
   if (has_particles && options->capping)
   {
@@ -148,13 +143,11 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     return MCOR_INVALID_ARGUMENT;
   }
   *surface = (mcor_surface){ 0 };
-  MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "input and options");
   MCOR_TRY(mcor_check_spelled_out(context, options));
-  MCOR_RETURN_IF(options->widen != 1 && !mcor_is_given(&input->widening), context,
-    MCOR_INVALID_ARGUMENT,
-    "options.widen is %g, but input.widening is missing: the factors that mcor_widen finds.",
-    options->widen);
+  MCOR_FAIL_IF(options->widen != 1 && !mcor_is_given(&input->widening), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(WIDENING_MISSING), options->widen);
   const mcor_status status = mcor_run_call(context, input, options,
     mcor_uses_solids(input, options), &surface->statistics, mcor_extract_body, surface);
   if (status != MCOR_OK)

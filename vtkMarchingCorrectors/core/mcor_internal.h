@@ -6,6 +6,7 @@
 /* Functions by which phases call each other. Each phase has one file here, and one of the same
  * name among the kernels. */
 
+#include "mcor_say.h"
 #include "mcor_state.h"
 #include "mcor_system.h"
 
@@ -30,12 +31,6 @@
       return mcor_fail(context, status, __VA_ARGS__);                                              \
     }                                                                                              \
   } while (0)
-
-/* A code of mcor_says.def and its text, as two arguments. Texts are arrays, not pointers, so that compilers check the
- * formats in them. */
-#define MCOR_SAY(code) MCOR_SAYS_##code, mcor_text_of_##code
-#define SAYS(code, text) static const char mcor_text_of_##code[] = text;
-#include "mcor_says.def"
 
 /* Returns with a status and the sentence that explains it: MCOR_SAY(CODE), and what its formats need. */
 #define MCOR_FAIL_IF(condition, context, status, ...)                                              \
@@ -78,12 +73,6 @@ mcor_status mcor_fail_as(
   mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 4, 5)))
-#endif
-  ;
-/* mcor_says.c. Writes a sentence; use as mcor_say(MCOR_SAY(CODE), ...). */
-mcor_message mcor_say(mcor_says code, const char* format, ...)
-#if defined(__GNUC__)
-  __attribute__((format(printf, 2, 3)))
 #endif
   ;
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })

@@ -115,8 +115,9 @@ size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, s
   {
     const char *end, *value;
     char name[2 * MCOR_WORD_SIZE], filled[MCOR_WORD_SIZE] = "";
-    const bool is_slot =
-      mcor_read_slot(text, &end, name, &value) && word(user, name, value, filled, sizeof filled);
+    const bool is_slot = mcor_read_slot(text, &end, name, &value) &&
+      (word(user, name, value, filled, sizeof filled) ||
+        mcor_member_word(NULL, name, value, filled, sizeof filled));
     const char* piece = is_slot ? filled : text;
     const size_t length = is_slot ? strlen(filled) : 1;
     for (size_t i = 0; i < length; ++i, ++used)
@@ -144,6 +145,39 @@ char* mcor_fill_slots(const char* text, mcor_word word, void* user)
     mcor_fill_text(text, word, user, out, size);
   }
   return out;
+}
+
+/* Returns how many characters of the text, those outside of formats and slots, stand in the sentence
+ * in this order; 0 if not all do. */
+static size_t mcor_match(const char* text, const char* sentence)
+{
+  size_t all = 0;
+  while (*text && sentence)
+  {
+    char piece[400];
+    const size_t length = strcspn(text, "%{");
+    snprintf(piece, sizeof piece, "%.*s", (int)length, text);
+    sentence = strstr(sentence, piece);
+    sentence = sentence ? sentence + length : NULL;
+    all += length;
+    text += length;
+    text += *text == '%' ? 1 + strspn(text + 1, "-+.0123456789lz") + 1 : strcspn(text, "}") + 1;
+    text -= text[-1] == 0;
+  }
+  return sentence ? all : 0;
+}
+
+mcor_says mcor_code_of(const char* sentence)
+{
+  size_t most = 0;
+  mcor_says found = MCOR_SAYS_NOTHING;
+  for (int code = 1; code < MCOR_SAYS_COUNT; ++code)
+  {
+    const size_t length = mcor_match(mcor_sentences[code].text, sentence);
+    found = length > most ? (mcor_says)code : found;
+    most = length > most ? length : most;
+  }
+  return found;
 }
 
 mcor_message mcor_say(mcor_says code, const char* format, ...)

@@ -17,9 +17,9 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
   context->run.fraction_end = end;
   context->run.report_time = mcor_seconds();
   context->run.building_told = false;
-  MCOR_RETURN_IF(options->progress &&
+  MCOR_FAIL_IF(options->progress &&
       options->progress(options->progress_user, context->run.fraction, doing) != 0,
-    context, MCOR_CANCELLED, "The run was cancelled during: %s.", doing);
+    context, MCOR_CANCELLED, MCOR_SAY(CANCELLED), doing);
   return MCOR_OK;
 }
 
@@ -49,10 +49,9 @@ mcor_status mcor_observe_call(mcor_context* context, bool compiles)
   }
   const bool told = context->run.building_told;
   context->run.building_told = true;
-  MCOR_RETURN_IF(!told &&
-      options->progress(options->progress_user, context->run.fraction,
-        "building the OpenCL program (first time only)") != 0,
-    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
+  MCOR_FAIL_IF(
+    !told && options->progress(options->progress_user, context->run.fraction, MCOR_BUILDING) != 0,
+    context, MCOR_CANCELLED, MCOR_SAY(CANCELLED_BUILDING));
   return MCOR_OK;
 }
 

@@ -10,12 +10,15 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSPHSay.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
@@ -115,6 +118,23 @@ std::string vtkSPHTakeText(char* text)
 }
 
 mcor_word vtkSPHWord = mcor_label_word;
+
+std::string vtkSPHSay(mcor_says, const char* format, ...)
+{
+  va_list values;
+  va_start(values, format);
+  std::string text(std::max(std::vsnprintf(nullptr, 0, format, values), 0) + 1, '\0');
+  va_end(values);
+  va_start(values, format);
+  std::vsnprintf(&text[0], text.size(), format, values);
+  va_end(values);
+  return vtkSPHTakeText(mcor_fill_slots(text.c_str(), vtkSPHWord, nullptr));
+}
+
+mcor_says vtkSPHCodeOf(const std::string& sentence)
+{
+  return mcor_code_of(sentence.c_str());
+}
 
 std::string vtkSPHTakeText(mcor_message message)
 {

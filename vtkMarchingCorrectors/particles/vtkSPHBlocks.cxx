@@ -14,6 +14,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHSay.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -308,9 +309,8 @@ std::string vtkSPHFindWalls(const std::vector<std::string>& names)
   {
     return {};
   }
-  return *std::find_if(names.begin(), names.end(), TellsOfWalls) + " of " +
-    std::to_string(names.size()) +
-    " seems to hold walls. Each block is taken by itself, so its particles do not affect the "
-    "surfaces of the others. Set Blocks to Together.";
+  return vtkSPHSay(MCOR_SAY(WALLS_IN_BLOCK),
+    std::find_if(names.begin(), names.end(), TellsOfWalls)->c_str(),
+    static_cast<int>(names.size()));
 }
 VTK_ABI_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksParticles.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -135,9 +136,8 @@ vtkSPHPeriod vtkSPHFindPeriodDistributed(
     }
     else if (!found.Period.empty() && found.Period != first.Period && problem.empty())
     {
-      problem = "The field data of the processes give different periods: " + Describe(first) +
-        " on rank " + std::to_string(firstRank) + ", " + Describe(found) + " on rank " +
-        std::to_string(rank) + ".";
+      problem = vtkSPHSay(MCOR_SAY(PERIODS_DIFFER), Describe(first).c_str(), firstRank,
+        Describe(found).c_str(), rank);
     }
     ++rank;
   }

@@ -12,6 +12,7 @@
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHSay.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
@@ -213,11 +214,7 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
   }
   if (this->IdName.empty())
   {
-    this->Error =
-      "Particles are matched between two steps by their ids, but no point array "
-      "has one of the usual names (Idp, ParticleId, id, GlobalIds, ...). Name the array "
-      "of ids, or request only stored times. " +
-      vtkSPHListNames(this->Steps[0].Particles);
+    this->Error = vtkSPHSay(MCOR_SAY(NO_IDS), vtkSPHListNames(this->Steps[0].Particles).c_str());
     return false;
   }
   for (int k = 0; k < 2; ++k)
@@ -288,9 +285,9 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
       if (!(std::isfinite(velocity(i, 0)) && std::isfinite(velocity(i, 1)) &&
             std::isfinite(velocity(i, 2))))
       {
-        this->Warnings.push_back("'" + this->VelocityName + "' is NaN or infinite at particle " +
-          std::to_string(i) + " in " + this->NameOfStep(k) + ", so positions from time " +
-          Text(this->Steps[0].Time) + " to " + Text(this->Steps[1].Time) + " are linear in time.");
+        this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_NOT_FINITE), this->VelocityName.c_str(),
+          static_cast<long long>(i), this->NameOfStep(k).c_str(), Text(this->Steps[0].Time).c_str(),
+          Text(this->Steps[1].Time).c_str()));
         return false;
       }
     }
@@ -342,11 +339,8 @@ void vtkSPHTemporalPair::CheckVelocities()
   }
   if (expected > 0.0 && !(moved >= 0.5 * expected && moved <= 2.0 * expected))
   {
-    this->Warnings.push_back("From time " + Text(first.Time) + " to " + Text(second.Time) +
-      " the particles moved " + Text(moved / expected) + " times as far as '" + this->VelocityName +
-      "' says; positions are therefore linear in time between these steps. Either the times are in "
-      "another unit than the velocities (set the time scale), or the steps are too far apart, or "
-      "particles cross the side of a period that is not given (set the periodic bounds).");
+    this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), Text(first.Time).c_str(),
+      Text(second.Time).c_str(), Text(moved / expected).c_str(), this->VelocityName.c_str()));
     this->FollowsVelocities = false;
   }
 }

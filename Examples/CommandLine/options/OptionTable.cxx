@@ -500,11 +500,11 @@ const std::vector<Option> Table = {
     DO(j.SlowMotion = ToPositive(n, v)) },
   { "--ids", "NAME",
     "with --times, array of ids that tell which particle of a step is which of the next", SERIES,
-    "--times|--fps", "", DO(j.IdArray = Printable(v)) },
+    "--times|--fps", "ids", DO(j.IdArray = Printable(v)) },
   { "--time-step", "DT",
     "for a film: time between one INPUT and the next (default: the times in their field data, "
     "else 1)",
-    SERIES, "", "", DO(j.TimeStep = ToPositive(n, v)) },
+    SERIES, "", "time_scale", DO(j.TimeStep = ToPositive(n, v)) },
   { "--stats", "FILE.json", "write the statistics of the run", CONTOUR, "", "",
     DO(j.StatisticsFile = v) },
   { "--repeat", "N", "run N times, and write the statistics of each run (default 1)", SURFACE, "",
@@ -535,7 +535,7 @@ const std::vector<Option> Table = {
 
   { "", "", "Device and help" },
   { "--device", "N|SUBSTRING", "OpenCL device, by number or part of its name (see --list-devices)",
-    ALL, "", "", DO(SetAll(j, &vtkSPHAlgorithm::SetDevice, v.c_str())) },
+    ALL, "", "device", DO(SetAll(j, &vtkSPHAlgorithm::SetDevice, v.c_str())) },
   { "--threads", "N",
     "maximum number of threads of the built-in device (default: one per processor)", ALL, "", "",
     DO(vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1)))) },

@@ -88,42 +88,10 @@ struct Advice
 const Advice Advices[] = {
   { "Turn Estimate Smoothing Length on, or choose Smoothing Length Array",
     "Give --smoothing-length NAME, VALUE or estimate", "--smoothing-length" },
-  { "Name its array, give a constant, or have it estimated.",
-    "Give --smoothing-length NAME, VALUE or estimate.", "--smoothing-length" },
   { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
-  { "which its shape cannot have. See mcor_section_shape.",
-    "as its file has no triangles; give one of a surface (--flux NAME=FILE).", "--flux" },
   { "Choose Velocity Array", "Give --velocity NAME", "--velocity" },
-  { "Name the array of ids", "Name the array of ids (--ids NAME)", "--ids" },
-  { "arger cube size", "arger cube size (--cube-size)", "--cube-size" },
-  { "maller cube size", "maller cube size (--cube-size)", "--cube-size" },
-  { "another cube size", "another cube size (--cube-size)", "--cube-size" },
-  { "a cube size of no more", "a cube size (--cube-size) of no more", "--cube-size" },
-  { "fewer levels", "fewer levels (--max-level)", "--max-level" },
-  { "complete seeds", "complete seeds (--seeds complete)", "--seeds" },
-  { "uniform cubes", "uniform cubes (--cubes uniform)", "--cubes" },
-  { "lacks. Turn one of them off",
-    "lacks. Turn one of them off (leave out --filled, or --compact and --smooth)", "--compact" },
-  { "box. Turn one of them off", "box. Turn one of them off (leave out --filled or --capping)",
-    "--capping" },
-  { "urn filling off", "urn filling off (leave out --filled)", "--filled" },
-  { "urn capping off", "urn capping off (leave out --capping)", "--capping" },
-  { "set the dimension to 3", "set the dimension to 3 (--dimension 3)", "--dimension" },
-  { "use three dimensions", "use three dimensions (--dimension 3)", "--dimension" },
-  { "hoose another device", "hoose another device (--device)", "--device" },
-  { "se single precision", "se single precision (--precision single)", "--precision" },
-  { "or single precision", "or single precision (--precision single)", "--precision" },
-  { "a higher memory limit", "a higher memory limit (--memory-limit)", "--memory-limit" },
-  { "choose a larger factor", "choose a larger factor (--h-scale)", "--h-scale" },
-  { "masses and densities, or remove",
-    "masses and densities (--volume, or --mass and --density), or remove", "--volume" },
-  { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
   { "for the fluid. Point arrays",
     "for the fluid; leave out --fluid if all particles are fluid. Point arrays", "--fluid" },
-  { "pthread_create has failed: Resource temporarily unavailable",
-    "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
-  { "by a range of positions", "by a range of positions (--within)", "--within" },
-  { "et the periodic bounds", "et the periodic bounds (--periodic)", "--periodic" },
 };
 }
 
@@ -152,22 +120,15 @@ std::string QuotedForJson(const std::string& text)
   return '"' + Rewritten(text, written) + '"';
 }
 
-std::string Reworded(
-  const std::string& sentence, const std::string& words, const std::string& instead)
-{
-  const std::size_t at = sentence.find(words);
-  return at == std::string::npos ? sentence
-                                 : std::string(sentence).replace(at, words.size(), instead);
-}
-
 std::string WithOptions(const std::string& sentence)
 {
   std::string result = sentence;
   for (const Advice& advice : Advices)
   {
-    if (result.find(advice.Option) == std::string::npos)
+    const std::size_t at = result.find(advice.Words);
+    if (at != std::string::npos && result.find(advice.Option) == std::string::npos)
     {
-      result = Reworded(result, advice.Words, advice.Instead);
+      result.replace(at, std::string(advice.Words).size(), advice.Instead);
     }
   }
   return result;
@@ -221,6 +182,8 @@ std::string FailureOf(const std::function<void()>& work)
   }
   catch (const std::exception& error)
   {
-    return error.what();
+    return std::string(error.what()).find("pthread_create") == std::string::npos
+      ? error.what()
+      : "no thread can be started; raise the limit of processes (ulimit -u)";
   }
 }

@@ -24,10 +24,6 @@ int OptionWord(void* user, const char* name, const char* value, char* word, std:
 /// one: with its options.
 std::string WithOptions(const std::string& sentence);
 
-/// The sentence with some words replaced, if it has them.
-std::string Reworded(
-  const std::string& sentence, const std::string& words, const std::string& instead);
-
 /// Errors and warnings: one line on standard error after the program's name, whatever names and
 /// files have put into the sentence.
 void Say(const std::string& sentence);

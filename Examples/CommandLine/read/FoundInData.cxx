@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHFound.h"
+#include "vtkSPHSay.h"
 
 #include <iomanip>
 #include <sstream>
@@ -42,11 +43,6 @@ std::string DescribeRange(vtkDataArray* array)
   }
   return ends[0].str() + " .. " + ends[1].str();
 }
-
-const std::string TiltedPeriod = "The cell of the particles is tilted, and periods here are along "
-                                 "the axes: nothing goes on across "
-                                 "its sides. Positions that are not wrapped (xu, yu, zu in dumps "
-                                 "of LAMMPS) leave its bodies whole.";
 
 /// "1,1,0", or nothing.
 std::string TextOf(const vtkSPHPeriod& found)
@@ -110,12 +106,10 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
 {
   if (!problem.empty() || found.Period.empty())
   {
-    const std::string none = "The field data of the particles give no period: there is no array "
-                             "PeriodicBounds, BoxSize, or box with boundaryType.";
     const bool isTilted = problem.empty() && !found.Array.empty();
-    throw std::runtime_error(isTilted
-        ? TiltedPeriod + " Leave out --periodic."
-        : (problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
+    throw std::runtime_error(isTilted ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) + " Leave out --periodic."
+        : problem.empty()             ? vtkSPHSay(MCOR_SAY(NO_PERIOD))
+                                      : problem);
   }
   return found.Period;
 }
@@ -124,7 +118,7 @@ std::string HintOfPeriod(vtkDataObject* particles)
 {
   const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
   return found.Period.empty()
-    ? found.Array.empty() ? "" : TiltedPeriod
+    ? found.Array.empty() ? "" : vtkSPHSay(MCOR_SAY(CELL_TILTED))
     : "the field data array " + Printable(found.Array) + " may be a period (" + TextOf(found) +
       "), but was not used; --periodic auto uses it, --periodic 0,0,0 confirms that there is none";
 }

@@ -20,6 +20,7 @@
 #include "vtkPolyData.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
+#include "vtkSPHSay.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -208,8 +209,9 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   if (others > 0 && !isSaid)
   {
     isSaid = true;
-    Say("note: " + std::to_string(others) + " of " + std::to_string(all->GetNumberOfPoints()) +
-      " points of " + file + " are nodes of a mesh and no particles, as no vertex cell uses them");
+    Say("note: " +
+      vtkSPHSay(MCOR_SAY(MESH_NODES), static_cast<long long>(others),
+        static_cast<long long>(all->GetNumberOfPoints()), " of ", file.c_str()));
   }
   particles->SetPoints(data->GetPoints());
   vtkPointData* arrays = data->GetPointData();

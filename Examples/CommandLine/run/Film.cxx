@@ -13,6 +13,7 @@
 #include "SafeText.h"
 
 #include "vtkImageData.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -86,9 +87,7 @@ public:
           if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
             !IsFilmStep(surface))
           {
-            throw UsageError(surface +
-              " already exists and is not a step of a film; choose another name "
-              "for the film, or remove the file");
+            throw UsageError(vtkSPHSay(MCOR_SAY(FILM_STEP_TAKEN), surface.c_str()));
           }
         }
       });

@@ -18,6 +18,7 @@
 #include "vtkPolyData.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSPHFound.h"
+#include "vtkSPHSay.h"
 #include "vtkSPHTemporalInterpolator.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -414,12 +415,8 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
   this->Interpolator->UpdateTimeStep(time);
   const std::string error = this->Source->Error;
   Messages().Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
-  const bool hasTimes = IsListOfSteps(this->Shared.Options.Inputs.front());
-  for (const std::string& sentence : Messages().Warnings)
-  {
-    warnings.push_back(Reworded(sentence, "set the time scale",
-      hasTimes ? "change those in the .pvd file" : "use --time-step"));
-  }
+  const std::vector<std::string>& told = Messages().Warnings;
+  warnings.insert(warnings.end(), told.begin(), told.end());
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
   const std::vector<std::string>& walls = FindStep(this->Steps, time)->Walls;
@@ -487,7 +484,8 @@ bool Series::MakeAll()
     {
       const std::string kind = error.empty() ? "warning: " : "";
       // How many places are dry differs from step to step.
-      const bool areDry = warning.find("outside of all fluid") != std::string::npos;
+      const mcor_says code = vtkSPHCodeOf(warning);
+      const bool areDry = code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
       if (this->Shared.IsFirst() &&
         ++counts[kind + (areDry ? "places are outside of all fluid" : warning)] == 1)
       {

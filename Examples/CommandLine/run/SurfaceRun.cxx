@@ -14,6 +14,7 @@
 #include "SafeText.h"
 #include "Sharing.h"
 
+#include "mcor.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -268,7 +269,7 @@ public:
       std::fflush(stderr);
       return;
     }
-    this->IsBuilding = phase.find("first time") != std::string::npos;
+    this->IsBuilding = phase == MCOR_BUILDING;
     if (this->IsQuiet || !this->IsBuilding || std::exchange(this->HasBegun, true))
     {
       return;

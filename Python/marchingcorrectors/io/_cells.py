@@ -3,6 +3,7 @@
 """Particles among the cells of a mesh: the points of its vertices."""
 import numpy as np
 
+from .._library import say
 from .._warnings import warn
 
 VERTICES = (1, 2)  # VTK's types of cells that are points
@@ -45,8 +46,7 @@ def take_vertices(file, body, types, offsets, points, cell_arrays):
     if not is_vertex.any() or is_vertex.all() and (not cell_arrays or (cell_of < 0).any()):
         return body
     if not is_vertex.all():
-        warn(f"{count - np.count_nonzero(cell_of >= 0)} of {count} points of {file} are nodes of a mesh and no particles, as no "
-             "vertex cell uses them.")
+        warn(say("MESH_NODES", count - np.count_nonzero(cell_of >= 0), count, " of ", file))
     taken = np.flatnonzero(cell_of >= 0)
     of_cells = {name: array[cell_of[taken]] for name, array in cell_arrays.items() if len(array) == len(types)}
     return body._replace(points=body.points[taken],

@@ -6,6 +6,7 @@ import secrets
 import shutil
 import stat
 
+from .._library import say
 from ._particles import FileError
 
 STEP_MARK = b"<!-- a step of a film by marching-correctors -->"
@@ -46,8 +47,7 @@ class Outputs:
             found.add(identity)
         for path in steps:
             if os.path.lexists(path) and not _is_step(path):
-                raise FileError(f"{path} already exists and is not a step of a film; choose another name for the "
-                                "film, or remove the file.")
+                raise FileError(say("FILM_STEP_TAKEN", path))
 
     def write(self, path, data):
         """Bytes; no more than one file of them is in memory."""

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .. import _structs as c
-from .._library import Error, lib
+from .._library import Error, lib, say
 from .._options import did_you_mean, words_of
 from .._warnings import warn
 
@@ -24,8 +24,6 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
 WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
 
 GHOSTS = "vtkGhostType"
-TILTED = ("The cell of the particles is tilted, and periods here are along the axes: nothing goes on across its sides. Positions "
-          "that are not wrapped (xu, yu, zu in dumps of LAMMPS) leave its bodies whole.")
 TIMES = ("TimeValue", "TIME", "Time", "time")  # arrays of field data, in VTK's files
 
 
@@ -191,7 +189,7 @@ class Particles:
         if self.period is not None:
             words.setdefault("periodic", self.period)
         if self.cell is not None and words.get("periodic") is None:
-            warn(f"{self.file}: {TILTED}")
+            warn(f"{self.file}: {say('CELL_TILTED')}")
         if self.kernel and "sph_kernel" not in words:
             known = find_kernel(self.kernel)
             if known:

@@ -40,7 +40,8 @@ static void test_names_what_is_missing(void** state)
     const char *words, *others;
   } cases[] = { { MCOR_SINC_6, MCOR_FLOAT32, "SPH kernel sinc6: they were not compiled", "single" },
     { MCOR_QUARTIC_SPLINE, MCOR_FLOAT64, "SPH kernel quartic in double precision:", "single" },
-    { MCOR_CUBIC_SPLINE, MCOR_FLOAT64, "library. Use single precision, install an", "Install" } };
+    { MCOR_CUBIC_SPLINE, MCOR_FLOAT64, "library. Choose precision=single, install an",
+      "Install" } };
   CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)

@@ -62,7 +62,7 @@ static void test_no_such_place(void** state)
   (void)state;
   CORE_CONTEXT context;
   assert_int_equal(mcor_create_shared_context(NULL, 2, 2, &context), MCOR_INVALID_ARGUMENT);
-  assert_non_null(strstr(mcor_last_error(context), "place is 2"));
+  assert_true(core_told(context, "PLACE_ILLEGAL|2"));
 }
 
 int main(void)

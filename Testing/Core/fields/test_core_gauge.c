@@ -279,7 +279,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Fails with a sentence that has these words. */
+/* Fails with a message that core_told finds. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_gauge_line* line, const char* words)
 {
@@ -299,13 +299,13 @@ static void test_weird(void** state)
   const mcor_gauge_line endless = { .from = { -1e308, 0, 3 }, .to = { 1e308, 2, 4 } };
   const mcor_gauge_line far = { .from = { 100, 2, 3 }, .to = { 1e9, 2, 4 } };
   const mcor_gauge_line good = { .from = { 3, 3, 3 }, .to = { 3, 3, 3.1 } };
-  refuse(*state, &input, &options, &none, "'bow' has no length");
-  refuse(*state, &input, &options, &nan, "not finite");
-  refuse(*state, &input, &options, &endless, "too long");
+  refuse(*state, &input, &options, &none, "GAUGE_WITHOUT_LENGTH|'bow'");
+  refuse(*state, &input, &options, &nan, "GAUGE_NOT_FINITE");
+  refuse(*state, &input, &options, &endless, "GAUGE_TOO_LONG");
   const double zero = 0;
   options.iso_values = &zero;
   options.iso_count = 1;
-  refuse(*state, &input, &options, &good, "iso value above 0");
+  refuse(*state, &input, &options, &good, "FLUID_LEVEL");
   options.iso_count = 0;
   CORE_GAUGES gauges;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, &far, 1, &gauges));

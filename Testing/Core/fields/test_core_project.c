@@ -602,7 +602,7 @@ static void test_bad_input(void** state)
   mcor_free_projection(&found);
   view.box[0] = NAN;
   CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_project(*state, &input, &options, &view, &found),
-    "numbers");
+    "BOX_ILLEGAL|numbers");
 }
 
 int main(void)

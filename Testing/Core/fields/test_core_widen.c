@@ -328,16 +328,16 @@ static void test_refused(void** state)
   {
     options.widen = wrong[i];
     CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_widen(context, &input, &options, &widening),
-      "widening");
+      "WIDENING_ILLEGAL");
     CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_extract(context, &input, &options, &surface),
-      "input.widening is missing");
+      "WIDENING_MISSING");
   }
   options.widen = 1;
   options.smooth = 1;
   CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_widen(context, &input, &options, &widening),
-    "mcor_spell_out");
+    "SMOOTH_NOT_SPELLED_OUT");
   CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_extract(context, &input, &options, &surface),
-    "mcor_spell_out");
+    "SMOOTH_NOT_SPELLED_OUT");
   mcor_spell_out(&options);
   assert_true(options.widen == 2 && options.compact == 1);
   options.widen = 1.5;
@@ -349,7 +349,7 @@ static void test_refused(void** state)
   options.level_limit = 0;
   options.periodic[1] = 6;
   CORE_FAILS(context, MCOR_INVALID_ARGUMENT, mcor_widen(context, &input, &options, &widening),
-    "widened to 4.4. Choose a widening of no more than 1.2");
+    "PERIOD_TOO_SHORT_WIDENED|widened to 4.4|{widen} of no more than 1.2");
 }
 
 int main(void)

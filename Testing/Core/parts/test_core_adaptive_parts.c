@@ -124,7 +124,7 @@ static void given_levels(void** state)
   options.globals = &globals;
   options.level_limit = MCOR_CUBE_LEVELS - 1;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-  CORE_CHECK(strstr(mcor_last_error(*state), "uniform cubes"), "%s", mcor_last_error(*state));
+  CORE_CHECK(core_told(*state, "GLOBALS_OF_UNIFORM_CUBES"), "%s", mcor_last_error(*state));
   mcor_free_globals(&globals);
 }
 

@@ -291,7 +291,7 @@ static void test_small_cubes(void** state)
   options.box[1] = options.box[3] = options.box[5] = 3;
   mcor_gauges gauges;
   assert_int_equal(mcor_gauge(*state, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
-  assert_non_null(strstr(mcor_last_error(*state), "Leave the cube size"));
+  assert_true(core_told(*state, "CUBE_TOO_SMALL_FOR_GAUGES"));
   mcor_free_globals(&job.globals);
 }
 

@@ -511,13 +511,13 @@ static void test_what_is_not_filled(void** state)
   mcor_options options = fill_options(&iso, 1);
   options.field = MCOR_SUM;
   options.node_threshold = 0;
-  expect_error(*state, &set, &options, "has no end");
+  expect_error(*state, &set, &options, "REGION_WITHOUT_END");
   options.node_threshold = 0.1;
   CORE_SURFACE surface;
   extract(*state, &set, &options, 2, &surface);
   mcor_free_surface(&surface);
   options.dimension = 3;
-  expect_error(*state, &set, &options, "two dimensions");
+  expect_error(*state, &set, &options, "FILLED_IN_SPACE");
   options.dimension = 0;
   mcor_input nothing = core_input(&set);
   nothing.count = 0;

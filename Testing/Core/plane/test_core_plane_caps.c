@@ -266,8 +266,8 @@ static void test_what_is_not_capped(void** state)
   CORE_SURFACE surface;
   options.capping = MCOR_CAP_PERIOD;
   options.filled = 1;
-  CORE_FAILS(
-    *state, MCOR_INVALID_ARGUMENT, mcor_extract(*state, &input, &options, &surface), "filling");
+  CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_extract(*state, &input, &options, &surface),
+    "CAPPING_WITH_FILLED");
   options.filled = 0;
   options.field = MCOR_WEIGHT_SUM;
   surface = core_extract(*state, &input, &options); /* nothing to close */

@@ -57,7 +57,7 @@ static void test_vertex_limit(void** state)
   mesh->march_count = mesh->vertex_count = MCOR_COUNT_LIMIT - 1;
   context->run.options = &options;
   context->run.statistics = &surface.statistics;
-  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_trim(context), "2147479553 vertices");
+  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_trim(context), "VERTICES_TOO_MANY|2147479553");
   mcor_release_memory(context);
 }
 

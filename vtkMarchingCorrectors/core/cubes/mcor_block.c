@@ -56,11 +56,10 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
   const double edge = ldexp(context->lattice.cube, level - 1) * MCOR_BLOCK_CUBES;
   const bool is_flat = edge < 0.25 * context->measure.h_median;
   const double foreseen = (double)(*parts + added) * (is_flat ? pow(3, level - 1) : 1);
-  MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
-    "%d^3 cells; the limit is %d. Use a larger cube size.",
-    context->lattice.cube, foreseen > *parts + added ? "more than" : "at least", foreseen,
-    MCOR_BLOCK_CUBES, MCOR_BLOCK_LIMIT);
+  MCOR_FAIL_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(BLOCKS_TOO_MANY), context->lattice.cube,
+    foreseen > *parts + added ? "more than" : "at least", foreseen, MCOR_BLOCK_CUBES,
+    MCOR_BLOCK_LIMIT);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)*parts + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(counts), MCOR_BUFFER(keys)));

@@ -43,9 +43,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
       tree->period[l][a] = lattice->period[a] / (MCOR_BRICK << l);
       tree->period_first[l][a] = lattice->period_first[a] / (MCOR_BRICK << l);
     }
-    MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-      "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
-      "remove particles whose smoothing length differs greatly from that of the others.",
+    MCOR_FAIL_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEVELS_TOO_MANY),
       lattice->levels);
     rung->base = base;
     rung->unused = 0;
@@ -84,9 +82,7 @@ bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
 
 mcor_status mcor_fail_leaves(mcor_context* context)
 {
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: with cube size %g adaptive cubes would have more than %d "
-    "leaves, or more than fit in host memory. Use a larger cube size.",
+  return mcor_fail_as(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEAVES_TOO_MANY),
     context->lattice.cube, MCOR_LEAF_LIMIT);
 }
 

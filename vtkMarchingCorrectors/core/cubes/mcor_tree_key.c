@@ -64,10 +64,8 @@ mcor_status mcor_take_splits(
     {
       ++level;
     }
-    MCOR_RETURN_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context,
-      MCOR_INVALID_ARGUMENT,
-      "options.globals was measured with other options: a brick of adaptive cubes is not on the "
-      "lattice.");
+    MCOR_FAIL_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context, MCOR_INVALID_ARGUMENT,
+      MCOR_SAY(GLOBALS_OF_OTHER_OPTIONS));
     const mcor_rung* rung = &tree->lattice->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);

@@ -204,8 +204,8 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   mcor_release_tree(tree);
   if (globals)
   {
-    MCOR_RETURN_IF(!globals->splits, context, MCOR_INVALID_ARGUMENT,
-      "options.globals was measured for uniform cubes. Measure it with the same options.");
+    MCOR_FAIL_IF(
+      !globals->splits, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GLOBALS_OF_UNIFORM_CUBES));
     MCOR_TRY(mcor_number_bricks(context, tree));
     MCOR_TRY(mcor_take_splits(context, tree, globals->splits, globals->split_count));
   }
@@ -214,11 +214,8 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
   const bool keys = context->run.options->outputs & (MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
-  MCOR_RETURN_IF(keys && mcor_tree_key_limit(tree) >> MCOR_TREE_KEY_BITS > 0, context,
-    MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
-    "cubes. Use a larger cube size, or fewer levels.",
-    context->lattice.cube, tree->top + 1);
+  MCOR_FAIL_IF(keys && mcor_tree_key_limit(tree) >> MCOR_TREE_KEY_BITS > 0, context,
+    MCOR_OUT_OF_CAPACITY, MCOR_SAY(GRID_TOO_LARGE_FOR_KEYS), context->lattice.cube, tree->top + 1);
   mcor_table blocks = { 0 };
   mcor_status status = MCOR_OK;
   for (int l = 0; l <= tree->top && status == MCOR_OK; ++l)

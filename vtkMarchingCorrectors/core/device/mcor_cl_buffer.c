@@ -127,23 +127,19 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
     return MCOR_OK;
   }
   mcor_drop_kept(context, mcor_most_held(cl) - (int64_t)size);
-  MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
-    context, MCOR_OUT_OF_CAPACITY,
-    "This needs a buffer of %.1f MiB in addition to %.1f MiB in use, but at most %.1f MiB of "
-    "device %s may be used, and %.1f MiB in one buffer. Use a larger cube size, fewer particles, "
-    "or a higher memory limit if one is set.",
-    ldexp((double)size, -20), ldexp((double)cl->bytes, -20), ldexp((double)cl->memory_limit, -20),
-    cl->device_name, ldexp((double)cl->largest_buffer, -20));
+  MCOR_FAIL_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit, context,
+    MCOR_OUT_OF_CAPACITY, MCOR_SAY(DEVICE_MEMORY_LIMIT), ldexp((double)size, -20),
+    ldexp((double)cl->bytes, -20), ldexp((double)cl->memory_limit, -20), cl->device_name,
+    ldexp((double)cl->largest_buffer, -20));
   cl_int error;
   buffer->mem = clCreateBuffer(cl->context, CL_MEM_READ_WRITE, size, NULL, &error);
   if (error != CL_SUCCESS)
   {
     buffer->mem = NULL;
-    return mcor_fail(context,
+    return mcor_fail_as(context,
       mcor_is_no_memory(error) || error == CL_INVALID_BUFFER_SIZE ? MCOR_OUT_OF_CAPACITY
                                                                   : MCOR_DEVICE_ERROR,
-      "Device %s could not allocate %.0f MB (%s). Use a larger cube size, or fewer particles.",
-      cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));
+      MCOR_SAY(DEVICE_ALLOCATION), cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));
   }
   buffer->size = size;
   cl->bytes += (int64_t)size;
@@ -194,8 +190,7 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
       (best->size < bytes ? l->size > best->size : l->size >= bytes && l->size < best->size);
     best = !l->of && is_better ? l : best;
   }
-  MCOR_RETURN_IF(!best, context, MCOR_DEVICE_ERROR, "More than %d buffers are mapped at a time.",
-    MCOR_LOCKED_LIMIT);
+  MCOR_FAIL_IF(!best, context, MCOR_DEVICE_ERROR, MCOR_SAY(BUFFERS_MAPPED), MCOR_LOCKED_LIMIT);
   if (best->size < bytes)
   {
     const size_t more = bytes + bytes / 8, size = more < cl->largest_buffer ? more : bytes;

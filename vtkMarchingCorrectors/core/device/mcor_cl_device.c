@@ -315,16 +315,12 @@ static mcor_status mcor_fail_without_device(
   single.precision = MCOR_FLOAT32;
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(build, missing, sizeof missing);
-  MCOR_RETURN_IF(mcor_choose_device(list, &mcor_usual_build) >= 0, context, MCOR_DEVICE_ERROR,
-    "The built-in device has no kernels for %s: they were not compiled with this library. %s "
-    "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
-    "MCOR_AHEAD=all. " MCOR_POCL_HINT "%s",
-    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install",
-    mcor_driver_fault(list));
-  return mcor_fail(context, MCOR_DEVICE_ERROR,
-    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU. " MCOR_POCL_HINT "%s",
-    mcor_driver_fault(list));
+  MCOR_FAIL_IF(mcor_choose_device(list, &mcor_usual_build) >= 0, context, MCOR_DEVICE_ERROR,
+    MCOR_SAY(NO_KERNELS), missing,
+    mcor_choose_device(list, &single) >= 0 ? "Choose {precision single}, install" : "Install",
+    MCOR_POCL_HINT, mcor_driver_fault(list));
+  return mcor_fail_as(
+    context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_DEVICE), MCOR_POCL_HINT, mcor_driver_fault(list));
 }
 
 /* Starts the best device for a build, where none was named. */
@@ -372,9 +368,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   {
     char devices[300];
     mcor_write_devices(&list, ", ", devices, sizeof devices);
-    return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "There is no OpenCL device \"%s\". Give the number of a device, or part of its name: %s.%s",
-      wanted, devices, mcor_driver_fault(&list));
+    return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_SUCH_DEVICE), wanted, devices,
+      mcor_driver_fault(&list));
   }
   const int own = by_number ? chosen : mcor_take_turn(&list, chosen, &place, &count);
   return mcor_start_device(context, &list, own, place, count);

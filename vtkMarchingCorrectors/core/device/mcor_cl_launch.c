@@ -204,8 +204,8 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   MCOR_TRY(mcor_find_kernel(context, name, &kernel));
   cl_uint wanted = 0;
   clGetKernelInfo(kernel->kernel, CL_KERNEL_NUM_ARGS, sizeof wanted, &wanted, NULL);
-  MCOR_RETURN_IF(arg_count != wanted, context, MCOR_DEVICE_ERROR,
-    "Kernel %s has %u arguments; %zu were given.", name, (unsigned)wanted, arg_count);
+  MCOR_FAIL_IF(arg_count != wanted, context, MCOR_DEVICE_ERROR, MCOR_SAY(KERNEL_ARGUMENTS), name,
+    (unsigned)wanted, arg_count);
   for (size_t i = 0; i < arg_count; ++i)
   {
     const mcor_arg* arg = args + i;

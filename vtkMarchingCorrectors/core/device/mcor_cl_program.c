@@ -63,10 +63,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
     char missing[MCOR_BUILD_NAME];
     clReleaseProgram(program);
     mcor_name_build(&cl->build, missing, sizeof missing);
-    return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
-      "another device, or build with MCOR_AHEAD=all.",
-      missing);
+    return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_KERNELS_HERE), missing);
   }
   size_t size = 0;
   clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
@@ -76,8 +73,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
     clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
   }
   clReleaseProgram(program);
-  mcor_fail(context, MCOR_DEVICE_ERROR,
-    "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
+  mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(DEVICE_BUILD), cl->device_name,
     mcor_cl_error_name(error), options, log ? log : "");
   free(log);
   mcor_blame_files(context);
@@ -113,9 +109,8 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
   const bool is_double = build->precision == MCOR_FLOAT64;
-  MCOR_RETURN_IF(is_double && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
-    "OpenCL device %s has no double precision; choose another device or single precision.",
-    cl->device_name);
+  MCOR_FAIL_IF(is_double && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+    MCOR_SAY(NO_DOUBLE_PRECISION), cl->device_name);
   const mcor_build* now = &cl->build;
   const int lanes = mcor_choose_lanes(cl, build->precision);
   const bool all = cl->lanes != lanes || now->precision != build->precision;

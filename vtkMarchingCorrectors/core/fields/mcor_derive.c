@@ -251,10 +251,10 @@ mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mc
     return MCOR_INVALID_ARGUMENT;
   }
   *derivatives = (mcor_derivatives){ 0 };
-  MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
-  MCOR_RETURN_IF((unsigned)form > MCOR_GRADIENT_STANDARD, context, MCOR_INVALID_ARGUMENT,
-    "form is %d; there is no such form of the gradient.", (int)form);
+  MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "input and options");
+  MCOR_FAIL_IF((unsigned)form > MCOR_GRADIENT_STANDARD, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(GRADIENT_FORM), (int)form);
   mcor_options own = *options;
   const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
   mcor_derive_run run = {

@@ -234,10 +234,8 @@ static mcor_status mcor_scale_flux(mcor_flux_job* job)
       found->area * speed * largest[1] };
     for (int k = 0; k < MCOR_FLUX_SUMS; ++k)
     {
-      MCOR_RETURN_IF(!isfinite(most[k]), context, MCOR_INVALID_DATA,
-        "Fluxes would be too large for a number: velocities go to %g, densities to %g. Use other "
-        "units.",
-        speed, largest[1]);
+      MCOR_FAIL_IF(!isfinite(most[k]), context, MCOR_INVALID_DATA, MCOR_SAY(FLUX_TOO_LARGE), speed,
+        largest[1]);
       int exponent = 0;
       frexp(MCOR_FLUX_ROOM * most[k], &exponent);
       found->unit[k] = ldexp(1, exponent > -900 ? exponent - 62 : -962);
@@ -271,17 +269,14 @@ static mcor_status mcor_flux_input(
   int64_t not_finite[2] = { -1, -1 };
   const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_RETURN_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
-    "The velocity has %d components; it must have 3%s.", components,
-    axes == 2 ? ", or 2 in two dimensions" : "");
-  MCOR_RETURN_IF(input->attribute_count == 2 && mcor_components(&input->attributes[1]) != 1,
-    context, MCOR_INVALID_ARGUMENT, "The density has %d components; it must have 1.",
-    mcor_components(&input->attributes[1]));
+  MCOR_FAIL_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(VELOCITY_COMPONENTS), components, axes == 2 ? ", or 2 in two dimensions" : "");
+  MCOR_FAIL_IF(input->attribute_count == 2 && mcor_components(&input->attributes[1]) != 1, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(DENSITY_COMPONENTS), mcor_components(&input->attributes[1]));
   MCOR_TRY(mcor_list_components(context, input, false, not_finite));
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    MCOR_RETURN_IF(not_finite[a] >= 0, context, MCOR_INVALID_DATA,
-      "The %s is NaN or infinite at particle %lld. Correct its values, or leave the particle out.",
+    MCOR_FAIL_IF(not_finite[a] >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(FLUX_NOT_FINITE),
       a == 0 ? "velocity" : "density", (long long)not_finite[a]);
   }
   for (int64_t s = 0; s < job->section_count; ++s)
@@ -354,13 +349,10 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     return MCOR_INVALID_ARGUMENT;
   }
   *fluxes = (mcor_fluxes){ 0 };
-  MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && !sections), context,
-    MCOR_INVALID_ARGUMENT,
-    "input, options and sections must not be NULL, and count must not be negative.");
-  MCOR_RETURN_IF((input->attribute_count != 1 && input->attribute_count != 2) || !input->attributes,
-    context, MCOR_INVALID_ARGUMENT,
-    "The input has %d attributes; fluxes need the velocity, and take the density as the second.",
-    input->attribute_count);
+  MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && !sections), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "sections");
+  MCOR_FAIL_IF((input->attribute_count != 1 && input->attribute_count != 2) || !input->attributes,
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUX_ATTRIBUTES), input->attribute_count);
   mcor_input given = *input;
   mcor_options own;
   mcor_flux_job job = { .edges = { .context = context, .map = mcor_map_patch },

@@ -124,8 +124,7 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
 
 static mcor_status mcor_leaves_plane(const mcor_flux_job* job, int64_t number)
 {
-  return mcor_fail(job->edges.context, MCOR_INVALID_ARGUMENT,
-    "Section %s is not a line in the plane %c = %.9g of the particles. Give it two points there.",
+  return mcor_fail_as(job->edges.context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_OUT_OF_PLANE),
     mcor_label_section(job, number).text, 'x' + job->across, job->plane->at);
 }
 
@@ -264,11 +263,8 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
       }
       return MCOR_OK;
     default:
-      MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
-        "Section %s is a line, which is a section only of particles in a plane. Give it an area, "
-        "by a "
-        "corner and two ends.",
-        mcor_label_section(job, number).text);
+      MCOR_FAIL_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(SECTION_IS_LINE), mcor_label_section(job, number).text);
       for (; x < end; x += 6)
       {
         double along[3];
@@ -295,18 +291,14 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
   const bool is_known = (unsigned)section->shape < MCOR_SECTION_SHAPE_COUNT;
   const bool is_list =
     section->shape == MCOR_SECTION_TRIANGLES || section->shape == MCOR_SECTION_LINES;
-  MCOR_RETURN_IF(!is_known || !section->points || n <= 0 ||
+  MCOR_FAIL_IF(!is_known || !section->points || n <= 0 ||
       (is_list ? n % points[section->shape] != 0 : n != points[section->shape]),
-    context, MCOR_INVALID_ARGUMENT,
-    "Section %s has %lld points, which its shape cannot have. See mcor_section_shape.", label.text,
-    (long long)n);
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_POINTS), label.text, (long long)n);
   for (int64_t i = 0; i < n; ++i)
   {
     const double* p = section->points + 3 * i;
-    MCOR_RETURN_IF(!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]), context,
-      MCOR_INVALID_ARGUMENT,
-      "Section %s has a point that is not finite, (%g, %g, %g). Give it numbers.", label.text, p[0],
-      p[1], p[2]);
+    MCOR_FAIL_IF(!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]), context,
+      MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_NOT_FINITE), label.text, p[0], p[1], p[2]);
   }
   MCOR_TRY(mcor_add_shape(job, number));
   /* Whether the section has an area, or would have one beside the plane of the particles. */
@@ -319,12 +311,10 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
     const bool flat = job->is_plane && a == job->across;
     has_size = has_size && (x[a] < x[3 + a] || (flat && x[a] == x[3 + a]));
   }
-  MCOR_RETURN_IF(!has_size, context, MCOR_INVALID_ARGUMENT,
-    "Section %s has no area. Give it edges of some length that are not parallel, a radius above 0, "
-    "or a box whose first sides are the lower ones.",
-    label.text);
-  MCOR_RETURN_IF(!isfinite(job->found[number].area), context, MCOR_INVALID_ARGUMENT,
-    "Section %s is too large for its area to be a number. Make it smaller.", label.text);
+  MCOR_FAIL_IF(
+    !has_size, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_WITHOUT_AREA), label.text);
+  MCOR_FAIL_IF(!isfinite(job->found[number].area), context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(SECTION_TOO_LARGE), label.text);
   return MCOR_OK;
 }
 
@@ -431,10 +421,8 @@ static mcor_status mcor_list_block(
     return MCOR_OK;
   }
   mcor_context* context = job->edges.context;
-  MCOR_RETURN_IF(job->cells.count >= MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
-    "Section %s has, with those before it, more than %d cells of %g, 3/4 of the smallest smoothing "
-    "length, near particles. Make it smaller.",
-    mcor_label_section(job, patch->section).text, MCOR_FLUX_MOST,
+  MCOR_FAIL_IF(job->cells.count >= MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(SECTION_CELLS), mcor_label_section(job, patch->section).text, MCOR_FLUX_MOST,
     MCOR_FLUX_CELL * job->smoothing_length);
   MCOR_APPEND(
     context, &job->cells, (mcor_flux_cell){ block->patch, block->first[0], block->first[1] });
@@ -481,11 +469,9 @@ mcor_status mcor_list_flux_cells(mcor_flux_job* job)
     {
       patch->counts[u] = fmax(ceil(lengths[u] / step), 1);
     }
-    MCOR_RETURN_IF(
+    MCOR_FAIL_IF(
       !(patch->counts[0] <= MCOR_FLUX_MOST_ALONG) || !(patch->counts[1] <= MCOR_FLUX_MOST_ALONG),
-      context, MCOR_INVALID_ARGUMENT,
-      "Section %s needs %g cells along an edge with the smallest smoothing length %g; the limit is "
-      "%g. Make it smaller.",
+      context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_CELLS_ALONG),
       mcor_label_section(job, patch->section).text, fmax(patch->counts[0], patch->counts[1]),
       context->measure.h_min, MCOR_FLUX_MOST_ALONG);
     const mcor_flux_block whole = { .patch = p,

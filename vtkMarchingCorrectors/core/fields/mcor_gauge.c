@@ -74,15 +74,13 @@ static mcor_status mcor_check_line(
   const double *from = line->from, *to = line->to, length = mcor_gauge_length(line);
   for (int a = 0; a < 3; ++a)
   {
-    MCOR_RETURN_IF(!isfinite(from[a]) || !isfinite(to[a]), context, MCOR_INVALID_ARGUMENT,
-      "Gauge %s has an end that is not finite, (%g, %g, %g) or (%g, %g, %g). Give it two points.",
-      label.text, from[0], from[1], from[2], to[0], to[1], to[2]);
+    MCOR_FAIL_IF(!isfinite(from[a]) || !isfinite(to[a]), context, MCOR_INVALID_ARGUMENT,
+      MCOR_SAY(GAUGE_NOT_FINITE), label.text, from[0], from[1], from[2], to[0], to[1], to[2]);
   }
-  MCOR_RETURN_IF(!(length > 0), context, MCOR_INVALID_ARGUMENT,
-    "Gauge %s has no length: both its ends are at (%g, %g, %g). Give it two points.", label.text,
-    from[0], from[1], from[2]);
-  MCOR_RETURN_IF(!isfinite(length), context, MCOR_INVALID_ARGUMENT,
-    "Gauge %s is too long for its length to be a number. Shorten it.", label.text);
+  MCOR_FAIL_IF(!(length > 0), context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_WITHOUT_LENGTH),
+    label.text, from[0], from[1], from[2]);
+  MCOR_FAIL_IF(
+    !isfinite(length), context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_TOO_LONG), label.text);
   return MCOR_OK;
 }
 
@@ -198,12 +196,10 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
   const bool whole_is_countable = steps < 4e15; /* doubles can then tell places on it apart */
-  MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
-    MCOR_OUT_OF_CAPACITY,
-    "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing length %g; the "
-    "limit is %.3g. Shorten the gauge.",
-    mcor_label_gauge(line->name, number).text, (whole_is_countable ? last - first : steps) + 1,
-    context->measure.h_min, whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
+  MCOR_FAIL_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
+    MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES), mcor_label_gauge(line->name, number).text,
+    (whole_is_countable ? last - first : steps) + 1, context->measure.h_min,
+    whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
   };
@@ -317,11 +313,8 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const double* box, double margin, const mcor_findings* around)
 {
-  MCOR_RETURN_IF(box && margin > mcor_reach_margin(options, options->globals, 0), context,
-    MCOR_INVALID_ARGUMENT,
-    "The cube size %g is too small for gauges and fluxes over ranks: a box would lack particles "
-    "that they need. Leave the cube size at its default.",
-    options->globals->measured.cube);
+  MCOR_FAIL_IF(box && margin > mcor_reach_margin(options, options->globals, 0), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(CUBE_TOO_SMALL_FOR_GAUGES), options->globals->measured.cube);
   for (int a = 0; a < 3; ++a)
   {
     context->box.points[2 * a] = box ? box[2 * a] - margin : around->least[a];
@@ -419,8 +412,7 @@ static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* line
     const mcor_gauge_line* line = &job->lines[i];
     const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
       (line->from[w] != plane->at || line->to[w] != plane->at);
-    MCOR_RETURN_IF(off, job->context, MCOR_INVALID_ARGUMENT,
-      "Gauge %s leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
+    MCOR_FAIL_IF(off, job->context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE),
       mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
     lines[i] = *line;
     for (int a = 0; a < 3; ++a)
@@ -479,9 +471,8 @@ mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options,
 {
   *level =
     options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
-  MCOR_RETURN_IF(options->iso_count > 1 || !(*level > 0) || !isfinite(*level), context,
-    MCOR_INVALID_ARGUMENT,
-    "%s need one iso value above 0, the weight sum at which the fluid ends; 0.5 is usual.", who);
+  MCOR_FAIL_IF(options->iso_count > 1 || !(*level > 0) || !isfinite(*level), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUID_LEVEL), who);
   *own = *options;
   if (own->wall_share == MCOR_WALL_SHARE_AUTO)
   {
@@ -508,9 +499,8 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
     return MCOR_INVALID_ARGUMENT;
   }
   *gauges = (mcor_gauges){ 0 };
-  MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
-    MCOR_INVALID_ARGUMENT,
-    "input, options and lines must not be NULL, and count must not be negative.");
+  MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "lines");
   mcor_input without = *input;
   mcor_options own;
   mcor_gauge_job job = {

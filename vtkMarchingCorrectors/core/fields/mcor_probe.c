@@ -400,9 +400,8 @@ mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mco
     return MCOR_INVALID_ARGUMENT;
   }
   *samples = (mcor_samples){ 0 };
-  MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
-    context, MCOR_INVALID_ARGUMENT,
-    "input, options and points must not be NULL, and count must not be negative.");
+  MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "points");
   mcor_options own = *options;
   const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
   mcor_probe_run run = { .context = context,

@@ -30,9 +30,8 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   double sight[3];
   memcpy(sight, job->view->direction, sizeof sight);
   const double largest = fmax(fabs(sight[0]), fmax(fabs(sight[1]), fabs(sight[2])));
-  MCOR_RETURN_IF(!isfinite(sight[0]) || !isfinite(sight[1]) || !isfinite(sight[2]), context,
-    MCOR_INVALID_ARGUMENT, "The direction of a projection is %g, %g, %g; it must be finite.",
-    sight[0], sight[1], sight[2]);
+  MCOR_FAIL_IF(!isfinite(sight[0]) || !isfinite(sight[1]) || !isfinite(sight[2]), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(DIRECTION_NOT_FINITE), sight[0], sight[1], sight[2]);
   if (largest == 0)
   {
     sight[mcor_plane_axis(plane, 2)] = 1;
@@ -66,10 +65,9 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
     mcor_normalise(axes[1]);
     mcor_cross(axes[1], axes[2], axes[0]);
   }
-  MCOR_RETURN_IF(mcor_is_plane(context) && axes[2][mcor_plane_axis(plane, 2)] != 1, context,
-    MCOR_INVALID_ARGUMENT,
-    "The particles lie in a plane of constant %c, so they can be projected along %c alone.",
-    mcor_axis_letter(context, 2), mcor_axis_letter(context, 2));
+  MCOR_FAIL_IF(mcor_is_plane(context) && axes[2][mcor_plane_axis(plane, 2)] != 1, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(DIRECTION_IN_PLANE), mcor_axis_letter(context, 2),
+    mcor_axis_letter(context, 2));
   for (int i = 0; i < 9; ++i)
   {
     job->axes[i / 3][i % 3] = axes[i / 3][mcor_plane_axis(plane, i % 3)];
@@ -141,11 +139,9 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
     }
     job->period[a] = periodic[2 * a + 1] - periodic[2 * a];
     const bool is_periodic = job->period[a] > 0;
-    MCOR_RETURN_IF(is_periodic && high[6] * support > MCOR_MOST_PERIODS * job->period[a], context,
-      MCOR_INVALID_ARGUMENT,
-      "The period along %c is %g, too short for support radii of up to %g. Correct the period, or "
-      "the smoothing lengths.",
-      'x' + axis, job->period[a], high[6] * support);
+    MCOR_FAIL_IF(is_periodic && high[6] * support > MCOR_MOST_PERIODS * job->period[a], context,
+      MCOR_INVALID_ARGUMENT, MCOR_SAY(PERIOD_TOO_SHORT), 'x' + axis, job->period[a],
+      high[6] * support);
     const bool is_across = a >= context->space.axes; /* the plane */
     for (int i = 2 * a; i < 2 * a + 2; ++i)
     {
@@ -153,11 +149,10 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
       job->box[i] = is_across ? end : isfinite(given) ? given : is_periodic ? periodic[i] : end;
       is_bounded = is_bounded || isfinite(job->box[i]);
     }
-    MCOR_RETURN_IF(
+    MCOR_FAIL_IF(
       is_periodic && job->box[2 * a + 1] - job->box[2 * a] > MCOR_MOST_IMAGES * job->period[a],
-      context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g, which is more than %d periods. Make it smaller.",
-      'x' + axis, job->box[2 * a], job->box[2 * a + 1], MCOR_MOST_IMAGES);
+      context, MCOR_INVALID_ARGUMENT, MCOR_SAY(BOX_OF_PERIODS), 'x' + axis, job->box[2 * a],
+      job->box[2 * a + 1], MCOR_MOST_IMAGES);
   }
   double from[3] = { low[0], low[1], low[2] }, to[3] = { high[0], high[1], high[2] };
   for (int k = 0; k < 3 && is_bounded; ++k)
@@ -176,11 +171,8 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   const double extent[2] = { to[0] - from[0], to[1] - from[1] };
   *is_empty = !(extent[0] > 0 && extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]));
   const int longer = extent[1] > extent[0];
-  MCOR_RETURN_IF(!is_given && high[6] > 0 && extent[longer] > MCOR_MOST_LENGTHS * high[6], context,
-    MCOR_INVALID_DATA,
-    "The particles reach over %g in the image, %.3g times the largest smoothing length. Leave out "
-    "those that are far away by a range of positions, or give a box.",
-    extent[longer], extent[longer] / high[6]);
+  MCOR_FAIL_IF(!is_given && high[6] > 0 && extent[longer] > MCOR_MOST_LENGTHS * high[6], context,
+    MCOR_INVALID_DATA, MCOR_SAY(IMAGE_TOO_LARGE), extent[longer], extent[longer] / high[6]);
   for (int k = 0; k < 2 && !*is_empty; ++k)
   {
     const double pixels = k == longer
@@ -240,17 +232,14 @@ static mcor_status mcor_run_project(
   mcor_options checked = *options;
   checked.field = mcor_projects_density(input) || job->places_only ? MCOR_WEIGHT_SUM : MCOR_SUM;
   MCOR_TRY(mcor_check_input(context, input, &checked));
-  MCOR_RETURN_IF(view->resolution < 1 || view->resolution > MCOR_MOST_PIXELS, context,
-    MCOR_INVALID_ARGUMENT, "The resolution is %d; it must be at least 1 and at most %d.",
-    view->resolution, MCOR_MOST_PIXELS);
-  MCOR_RETURN_IF(view->weight.data && mcor_components(&view->weight) != 1, context,
-    MCOR_INVALID_ARGUMENT, "The weight array %s has %d components; it must have 1.",
-    mcor_array_name(&view->weight, "weight"), mcor_components(&view->weight));
-  MCOR_RETURN_IF(!job->places_only && mcor_projects_density(input) &&
-      !mcor_is_given(&input->mass) && !mcor_is_given(&input->density),
-    context, MCOR_INVALID_ARGUMENT,
-    "There is neither mass nor density, so there is no column density. Name one of them, or choose "
-    "a scalar.");
+  MCOR_FAIL_IF(view->resolution < 1 || view->resolution > MCOR_MOST_PIXELS, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(RESOLUTION_ILLEGAL), view->resolution, MCOR_MOST_PIXELS);
+  MCOR_FAIL_IF(view->weight.data && mcor_components(&view->weight) != 1, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(WEIGHT_COMPONENTS), mcor_array_name(&view->weight, "weight"),
+    mcor_components(&view->weight));
+  MCOR_FAIL_IF(!job->places_only && mcor_projects_density(input) && !mcor_is_given(&input->mass) &&
+      !mcor_is_given(&input->density),
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_COLUMN_DENSITY));
   bool is_empty = true;
   mcor_status status = mcor_prepare_project(job, options);
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
@@ -280,8 +269,8 @@ static mcor_status mcor_call_project(mcor_context* context, const mcor_input* in
     return MCOR_INVALID_ARGUMENT;
   }
   *projection = (mcor_projection){ 0 };
-  MCOR_RETURN_IF(!input || !options || !view, context, MCOR_INVALID_ARGUMENT,
-    "input, options and view must not be NULL.");
+  MCOR_FAIL_IF(!input || !options || !view, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "input, options and view");
   mcor_options own = *options;
   mcor_input without = *input;
   without.attributes = NULL;

@@ -227,9 +227,7 @@ static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
   job->splats_before[0] = 0;
   MCOR_TRY(mcor_parallel_run(context, blocks, 1, mcor_splat_slice, job, &slices));
   mcor_findings found = mcor_merge_findings(job->slices, slices);
-  MCOR_RETURN_IF(found.first < INT64_MAX, context, MCOR_INVALID_DATA,
-    "Particle %lld would add a number that is not finite to the projection. Correct its values, or "
-    "leave it out.",
+  MCOR_FAIL_IF(found.first < INT64_MAX, context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_NOT_FINITE),
     (long long)found.first);
   for (int64_t b = 0; b < blocks; ++b)
   {
@@ -242,8 +240,8 @@ static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
   {
     job->unit[c][0] = mcor_rounding_unit(found.most[c] * count);
     job->unit[c][1] = mcor_rounding_unit(ldexp(job->unit[c][0], -53) * count);
-    MCOR_RETURN_IF(!isfinite(job->unit[c][0]), context, MCOR_INVALID_DATA,
-      "The values are too large to be added up. Scale the masses, or the array, down.");
+    MCOR_FAIL_IF(
+      !isfinite(job->unit[c][0]), context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_TOO_LARGE));
   }
   return MCOR_OK;
 }

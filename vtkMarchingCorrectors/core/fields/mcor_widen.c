@@ -272,11 +272,11 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     return MCOR_INVALID_ARGUMENT;
   }
   *widening = (mcor_widening){ 0 };
-  MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "input and options");
   MCOR_TRY(mcor_check_spelled_out(context, options));
-  MCOR_RETURN_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
-    "The widening is %g; it must be at least 1 and at most 4.", options->widen);
+  MCOR_FAIL_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(WIDENING_ILLEGAL), options->widen);
   const size_t n = (size_t)(input->count > 0 ? input->count : 0);
   mcor_widen_run run = {
     .out = widening, .widest = options->widen, .iso = mcor_widen_iso(options)

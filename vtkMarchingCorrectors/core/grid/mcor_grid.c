@@ -264,14 +264,10 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   const double mass = mcor_is_given(&input->mass)
     ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
     : 1;
-  MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too small "
-    "for %s precision. Provide volumes, or masses and densities, or remove such particles.",
-    particle, mass, single ? "single" : "double");
-  return mcor_fail(context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: with kernel %s, which has negative lobes, the "
-    "density there is too low or negative. Provide volumes, or masses and densities.",
-    particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
+  MCOR_FAIL_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
+    MCOR_SAY(MASS_TOO_SMALL), particle, mass, single ? "single" : "double");
+  return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_OF_KERNEL), particle,
+    mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
@@ -431,12 +427,9 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   const bool single = context->cl.real_size == sizeof(float);
   const double low = context->measure.scalar_min, high = context->measure.scalar_max;
   const double most = fmax(high - context->value_shift, context->value_shift - low);
-  MCOR_RETURN_IF(!(most * fmax(context->largest_weight, 1) < (single ? 1e33 : 1e290)), context,
-    MCOR_INVALID_DATA,
-    "The values of the scalar, from %g to %g, are too large for %s precision. %s remove the "
-    "particles with the most extreme values.",
-    low, high, single ? "single" : "double",
-    single ? "Use double precision, or" : "Use another unit, or");
+  MCOR_FAIL_IF(!(most * fmax(context->largest_weight, 1) < (single ? 1e33 : 1e290)), context,
+    MCOR_INVALID_DATA, MCOR_SAY(SCALAR_TOO_LARGE), low, high, single ? "single" : "double",
+    single ? "Choose {precision double}" : "Use another unit");
   MCOR_TRY(
     mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, false, &grid->value, 0));
   return mcor_order_coincident(context);

@@ -46,9 +46,7 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   MCOR_TRY(mcor_launch_scan(context, counts, count, segments));
   MCOR_TRY(
     mcor_read(context, &context->scan_sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
-  MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "The surface is too large: a table would need %lld entries; the limit is %d. Use a larger cube "
-    "size.",
+  MCOR_FAIL_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(TABLE_TOO_LARGE),
     (long long)sum, MCOR_COUNT_LIMIT);
   *total = (int)sum;
   return MCOR_OK;

@@ -12,7 +12,7 @@
 
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to)
 {
-  return mcor_fail(context, MCOR_INVALID_ARGUMENT, "The box along %c goes from %g to %g; %s.",
+  return mcor_fail_as(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(BOX_ILLEGAL),
     mcor_axis_letter(context, axis), from, to,
     isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
 }
@@ -33,8 +33,7 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
       (m->h_min > 0 && m->h_min <= m->h_max && m->support_min > 0 &&
         m->support_min <= m->support_max && m->h_estimate >= 0 && isfinite(g->scalar_shift) &&
         g->mass_max >= 0 && m->wall_share >= 0 && m->wall_share <= 1));
-  MCOR_RETURN_IF(!good, context, MCOR_INVALID_ARGUMENT,
-    "options.globals was not produced by mcor_measure_globals, or has been changed.");
+  MCOR_FAIL_IF(!good, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GLOBALS_DAMAGED));
   return MCOR_OK;
 }
 
@@ -75,27 +74,19 @@ static mcor_status mcor_check_number(
   {
     return MCOR_OK;
   }
-  char name[40], most[40] = "";
-  for (int i = 0; i == 0 || member[i - 1]; ++i)
-  {
-    name[i] = member[i];
-    if (member[i] == '_')
-    {
-      name[i] = ' ';
-    }
-  }
+  char most[40] = "";
   if (legal.is_word)
   {
-    return mcor_fail(context, MCOR_INVALID_ARGUMENT,
-      "The %s is %g; it must be the number of one of these, from 0: %s.", name, value, words);
+    return mcor_fail_as(
+      context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_NOT_A_WORD), member, value, words);
   }
   if (isfinite(legal.high))
   {
     snprintf(
       most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
   }
-  return mcor_fail(context, MCOR_INVALID_ARGUMENT, "The %s is %.15g; it must be %s %g%s%s%s.", name,
-    value, legal.excludes_low ? "above" : "at least", legal.low, most,
+  return mcor_fail_as(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_ILLEGAL), member, value,
+    legal.excludes_low ? "above" : "at least", legal.low, most,
     *words ? ", or the number, from -1 down, of one of these: " : "", words);
 }
 
@@ -110,24 +101,21 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     mcor_check_number(context, #member, MCOR_NUMBER(options->member), (mcor_legal)legal, words));
 #include "mcor_options.def"
 #define MCOR_NEED(condition, ...)                                                                  \
-  MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
+  MCOR_FAIL_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
-    "iso_count is %d; it must not be negative, and iso_values must hold as many numbers.",
-    options->iso_count);
+    MCOR_SAY(ISO_COUNT), options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)
   {
-    MCOR_NEED(isfinite(options->iso_values[i]), "Iso value %d is not a finite number.", i);
+    MCOR_NEED(isfinite(options->iso_values[i]), MCOR_SAY(ISO_NOT_FINITE), i);
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
-      "The iso value of the free surface is %g; it must be above 0 (usually 0.5).",
-      options->iso_values[i]);
+      MCOR_SAY(ISO_OF_FREE_SURFACE), options->iso_values[i]);
   }
   /* Pair seeds may miss what a cap needs, and in a box the pairs may lie elsewhere. */
-  const char* other = options->capping ? "Capping"
-    : mcor_has_box(options)            ? "A box"
+  const char* other = options->capping ? "{capping}"
+    : mcor_has_box(options)            ? "{box}"
     : options->ranks                   ? "Several processes"
                                        : NULL;
-  MCOR_NEED(!other || !mcor_wants_pairs(options),
-    "%s cannot be combined with pair seeds. Choose complete seeds.", other);
+  MCOR_NEED(!other || !mcor_wants_pairs(options), MCOR_SAY(PAIRS_WITH), other);
   if (options->globals)
   {
     MCOR_TRY(mcor_check_globals(context, options->globals));
@@ -143,9 +131,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   for (int a = 0; a < 3; ++a)
   {
     const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
-    MCOR_NEED(isfinite(from) && isfinite(to) && from <= to,
-      "The period along %c goes from %g to %g; both must be finite, and the second must not be "
-      "lower.",
+    MCOR_NEED(isfinite(from) && isfinite(to) && from <= to, MCOR_SAY(PERIOD_ILLEGAL),
       mcor_axis_letter(context, a), from, to);
   }
   return MCOR_OK;
@@ -158,11 +144,11 @@ static mcor_status mcor_check_form(
 {
   const bool same = strcmp(mcor_array_name(array, role), role) == 0;
   const char *space = same ? "" : " ", *its = same ? "" : array->name;
-  MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
-    "The %s array%s%s has an unknown element type.", role, space, its);
-  MCOR_RETURN_IF(array->components < 0 || mcor_components(array) != components, context,
-    MCOR_INVALID_ARGUMENT, "The %s array%s%s has %d components; it must have %d.", role, space, its,
-    array->components, components);
+  MCOR_FAIL_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(ARRAY_TYPE), role, space, its);
+  MCOR_FAIL_IF(array->components < 0 || mcor_components(array) != components, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(ARRAY_COMPONENTS), role, space, its, array->components,
+    components);
   return MCOR_OK;
 }
 
@@ -181,31 +167,25 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_input* inp
   }
   const double v = mcor_array_at(array, i, c);
   const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
-  return array->data
-    ? mcor_fail(context, MCOR_INVALID_DATA,
-        "The %s%s%s of particle %lld is %s. Remove such particles or choose another array.", role,
-        same ? "" : " array ", same ? "" : array->name, (long long)i, problem)
-    : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
+  return array->data ? mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(ARRAY_VALUE), role,
+                         same ? "" : " array ", same ? "" : array->name, (long long)i, problem)
+                     : mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(CONSTANT_VALUE), role,
+                         problem, positive ? " above 0" : "");
 }
 
 mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* input)
 {
   const int components = mcor_components(&input->scalar);
-  MCOR_RETURN_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT,
-    "There is no scalar to contour. Choose a point array, or the free surface, which needs no "
-    "scalar.");
-  MCOR_RETURN_IF(components > 1 && !input->scalar_dot.data &&
+  MCOR_FAIL_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SCALAR_MISSING));
+  MCOR_FAIL_IF(components > 1 && !input->scalar_dot.data &&
       input->scalar_component != MCOR_MAGNITUDE &&
       (input->scalar_component < 0 || input->scalar_component >= components),
-    context, MCOR_INVALID_ARGUMENT,
-    "Component %d of array %s was requested, but the array has %d components. Choose 0 to %d, or "
-    "the magnitude.",
-    input->scalar_component, mcor_array_name(&input->scalar, "scalar"), components, components - 1);
-  MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components,
-    context, MCOR_INVALID_ARGUMENT,
-    "The dot product needs two arrays with the same number of components; %s has %d and %s has %d.",
-    mcor_array_name(&input->scalar, "the first"), components,
-    mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SCALAR_COMPONENT), input->scalar_component,
+    mcor_array_name(&input->scalar, "scalar"), components, components - 1);
+  MCOR_FAIL_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(DOT_COMPONENTS), mcor_array_name(&input->scalar, "the first"),
+    components, mcor_array_name(&input->scalar_dot, "the second"),
+    mcor_components(&input->scalar_dot));
   MCOR_TRY(mcor_check_form(context, &input->scalar, "scalar", components));
   return input->scalar_dot.data ? mcor_check_form(context, &input->scalar_dot, "scalar", components)
                                 : MCOR_OK;
@@ -228,8 +208,8 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     { has_mass ? &input->mass : NULL, "mass" },
     { has_mass && mcor_is_given(&input->density) ? &input->density : NULL, "density" } };
   MCOR_TRY(mcor_check_array(context, input, &input->positions, skip, "position", 3, false));
-  MCOR_RETURN_IF(arrays[0].array && !mcor_is_given(arrays[0].array), context, MCOR_INVALID_ARGUMENT,
-    "There is no smoothing length. Name its array, give a constant, or have it estimated.");
+  MCOR_FAIL_IF(arrays[0].array && !mcor_is_given(arrays[0].array), context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(LENGTH_MISSING));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     if (arrays[i].array)
@@ -241,11 +221,9 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
   {
     double range[2];
     mcor_find_range(context, widening, input->solid, skip, input->count, 0, range);
-    MCOR_RETURN_IF(range[0] < 1, context, MCOR_INVALID_DATA,
-      "The least factor of the smoothing lengths is %g; it must be at least 1.", range[0]);
-    MCOR_RETURN_IF(mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT,
-      "Volumes cannot be computed from smoothing lengths with factors. Provide the volumes that "
-      "mcor_widen returns.");
+    MCOR_FAIL_IF(range[0] < 1, context, MCOR_INVALID_DATA, MCOR_SAY(WIDENING_FACTORS), range[0]);
+    MCOR_FAIL_IF(
+      mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT, MCOR_SAY(WIDENING_NEEDS_VOLUMES));
   }
   return MCOR_OK;
 }
@@ -254,19 +232,18 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   MCOR_TRY(mcor_check_options(context, options));
-  MCOR_RETURN_IF(input->attribute_count < 0, context, MCOR_INVALID_ARGUMENT,
-    "attribute_count is %d; it must not be negative.", input->attribute_count);
-  MCOR_RETURN_IF(input->attribute_count > 0 && !input->attributes, context, MCOR_INVALID_ARGUMENT,
-    "attribute_count is %d, but attributes is NULL.", input->attribute_count);
-  MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
-    MCOR_OUT_OF_CAPACITY, "There are %lld particles; the limit is %d.", (long long)input->count,
+  MCOR_FAIL_IF(input->attribute_count < 0, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(ATTRIBUTE_COUNT), input->attribute_count);
+  MCOR_FAIL_IF(input->attribute_count > 0 && !input->attributes, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(ATTRIBUTES_NULL), input->attribute_count);
+  MCOR_FAIL_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
+    MCOR_OUT_OF_CAPACITY, MCOR_SAY(PARTICLES_TOO_MANY), (long long)input->count,
     MCOR_PARTICLE_LIMIT);
   if (input->count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(
-    !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
+  MCOR_FAIL_IF(!input->positions.data, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_POSITIONS));
   /* The particles of a search grid that still holds were checked when it was made. */
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input))
   {

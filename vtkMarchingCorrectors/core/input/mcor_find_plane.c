@@ -116,7 +116,7 @@ static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {
   const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
-                           "positions, or use three dimensions";
+                           "positions, or choose {dimension 3}";
   const mcor_array* positions = &input->positions;
   if (mcor_find_not_finite(context, positions, input->solid, input->count) >= 0)
   {
@@ -126,22 +126,19 @@ static mcor_status mcor_refuse_plane(
   {
     const double at = spread->least[a], solids = spread->least[3 + a];
     const bool in_plane = at == spread->most[a];
-    MCOR_RETURN_IF(in_plane && solids == spread->most[3 + a], context, MCOR_INVALID_DATA,
-      "The fluid particles have %c = %.10g, but the solid ones have %.10g: %s.", "xyz"[a], at,
-      solids, rule);
+    MCOR_FAIL_IF(in_plane && solids == spread->most[3 + a], context, MCOR_INVALID_DATA,
+      MCOR_SAY(SOLIDS_BESIDE_PLANE), "xyz"[a], at, solids, rule);
     int64_t i = 0;
     while (in_plane && i < input->count &&
       (mcor_array_at(positions, i, a) == at || !mcor_is_present(input, i)))
     {
       ++i;
     }
-    MCOR_RETURN_IF(in_plane && i < input->count, context, MCOR_INVALID_DATA,
-      "The fluid particles have %c = %.10g, but solid particle %lld has %.10g: %s.", "xyz"[a], at,
-      (long long)i, mcor_array_at(positions, i, a), rule);
+    MCOR_FAIL_IF(in_plane && i < input->count, context, MCOR_INVALID_DATA,
+      MCOR_SAY(SOLID_BESIDE_PLANE), "xyz"[a], at, (long long)i, mcor_array_at(positions, i, a),
+      rule);
   }
-  return mcor_fail(context, MCOR_INVALID_DATA,
-    "The particles do not share one coordinate exactly, but two dimensions need that. Turn or move "
-    "the particles into a plane of constant x, y or z, or use three dimensions.");
+  return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(NOT_IN_PLANE));
 }
 
 /* Particles sampled in the search for twins. */
@@ -209,9 +206,8 @@ static void mcor_set_plane(mcor_context* context, mcor_plane plane)
 static mcor_status mcor_look_for_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  MCOR_RETURN_IF(options->dimension != 0 && options->dimension != 2 && options->dimension != 3,
-    context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 (automatic).",
-    options->dimension);
+  MCOR_FAIL_IF(options->dimension != 0 && options->dimension != 2 && options->dimension != 3,
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(DIMENSION_ILLEGAL), options->dimension);
   mcor_set_plane(context, options->globals ? options->globals->measured.plane : (mcor_plane){ 0 });
   if (options->dimension == 3 || options->globals)
   {

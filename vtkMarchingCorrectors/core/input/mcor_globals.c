@@ -65,7 +65,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, &particles, 1));
-  MCOR_RETURN_IF(particles == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
+  MCOR_FAIL_IF(particles == 0, context, MCOR_INVALID_DATA, MCOR_SAY(NOTHING_TO_MEASURE));
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
@@ -91,8 +91,8 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
     return MCOR_INVALID_ARGUMENT;
   }
   *globals = (mcor_globals){ 0 };
-  MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "input and options");
   mcor_options own = *options;
   own.globals = NULL;
   const bool uses_solids =

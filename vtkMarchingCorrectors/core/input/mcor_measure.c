@@ -415,8 +415,8 @@ mcor_status mcor_measure_input(
   {
     mcor_cut_bounds(context, found.least + MCOR_SPOTS, found.most + MCOR_SPOTS);
   }
-  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
-    "None of the %lld particles is marked as fluid.", (long long)m->solid_count);
+  MCOR_FAIL_IF(
+    m->fluid_count == 0, context, MCOR_INVALID_DATA, MCOR_SAY(NO_FLUID), (long long)m->solid_count);
   if (options->field == MCOR_WEIGHT_SUM)
   {
     m->scalar_min = 0;
@@ -424,13 +424,10 @@ mcor_status mcor_measure_input(
   }
   /* A magnitude, or a dot product, may overflow although its components are finite. */
   const char* name = mcor_array_name(&input->scalar, "scalar");
-  MCOR_RETURN_IF(m->not_finite < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
-    "The dot product of arrays %s and %s at particle %lld is too large for a double. Use other "
-    "units, or remove such particles.",
-    name, mcor_array_name(&input->scalar_dot, "scalar"), (long long)m->not_finite);
-  MCOR_RETURN_IF(m->not_finite < INT64_MAX, context, MCOR_INVALID_DATA,
-    "The magnitude of array %s at particle %lld is too large for a double. Use another unit, or "
-    "remove such particles.",
+  MCOR_FAIL_IF(m->not_finite < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
+    MCOR_SAY(DOT_TOO_LARGE), name, mcor_array_name(&input->scalar_dot, "scalar"),
+    (long long)m->not_finite);
+  MCOR_FAIL_IF(m->not_finite < INT64_MAX, context, MCOR_INVALID_DATA, MCOR_SAY(MAGNITUDE_TOO_LARGE),
     name, (long long)m->not_finite);
   return mcor_measure_lattice(context, options);
 }

@@ -259,8 +259,7 @@ static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, d
       (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
   }
   *estimate = 1.3 * mcor_median_of(spacing, samples) / job->scale;
-  MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
-    "The smoothing length cannot be estimated: most particles lie at one point.");
+  MCOR_FAIL_IF(!(*estimate > 0), context, MCOR_INVALID_DATA, MCOR_SAY(ESTIMATE_AT_ONE_POINT));
   for (int s = 0; s < context->samples[0].count; ++s)
   {
     context->samples[0].of[s].h = *estimate;

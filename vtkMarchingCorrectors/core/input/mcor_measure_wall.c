@@ -202,8 +202,8 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(context->run.options->globals, context, MCOR_INVALID_ARGUMENT,
-    "options.globals has no wall share. Measure it with the same options.");
+  MCOR_FAIL_IF(context->run.options->globals, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(GLOBALS_LACK_WALL_SHARE));
   if (context->run.options->field == MCOR_WEIGHT_SUM)
   {
     m->wall_share = MCOR_FREE_WALL_SHARE;

@@ -386,8 +386,8 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
   }
   MCOR_TRY(mcor_sort_neighbours(context, job));
   mcor_make_boxes(job);
-  MCOR_RETURN_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
-    "All particles are at one place, so neighbours give no smoothing length. Give one value.");
+  MCOR_FAIL_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
+    MCOR_SAY(NEIGHBOURS_AT_ONE_POINT));
   return MCOR_OK;
 }
 
@@ -396,28 +396,25 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   const mcor_input* input = job->input;
   const mcor_skip skip = input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT;
   const mcor_sph_kernel kernel = job->options->sph_kernel;
-  MCOR_RETURN_IF((unsigned)kernel >= MCOR_SPH_KERNEL_COUNT || kernel == MCOR_M_PRIME_4, context,
-    MCOR_INVALID_ARGUMENT, "Neighbours are not counted with kernel %s. Choose another kernel.",
+  MCOR_FAIL_IF((unsigned)kernel >= MCOR_SPH_KERNEL_COUNT || kernel == MCOR_M_PRIME_4, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(NEIGHBOURS_OF_KERNEL),
     mcor_sph_kernel_name(kernel) ? mcor_sph_kernel_name(kernel) : "?");
-  MCOR_RETURN_IF(input->count < 0 || (input->count > 0 && !input->positions.data), context,
-    MCOR_INVALID_ARGUMENT, "There are no particle positions.");
+  MCOR_FAIL_IF(input->count < 0 || (input->count > 0 && !input->positions.data), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_POSITIONS));
   const mcor_array positions = mcor_positions_of(input);
   int c = 0;
   int64_t i = mcor_find_illegal(NULL, &positions, input->solid, skip, input->count, false, &c);
-  MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
-    "The position of particle %lld is not finite. Remove such particles.", (long long)i);
+  MCOR_FAIL_IF(i >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(POSITION_NOT_FINITE), (long long)i);
   const mcor_array* arrays[] = { &input->mass, &input->smoothing_length };
   const char* const names[] = { "mass", "smoothing length" };
   for (int k = 0; k < 2 && job->eta == 0; ++k)
   {
-    MCOR_RETURN_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
-      "There is no %s, from which densities are summed. Name its array, or give one value.",
-      names[k]);
+    MCOR_FAIL_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
+      MCOR_SAY(NOTHING_TO_SUM), names[k]);
     const int64_t count = k == 0 ? input->count : job->wanted;
     i = mcor_find_illegal(NULL, arrays[k], input->solid, skip, count, true, &c);
-    MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
-      "The %s of particle %lld is not a number above 0. Remove such particles.", names[k],
-      (long long)i);
+    MCOR_FAIL_IF(
+      i >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(SUMMAND_ILLEGAL), names[k], (long long)i);
   }
   job->axes = mcor_find_dimension(input, NULL, job->options->dimension);
   job->support = mcor_support_factor(kernel);
@@ -427,10 +424,8 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   {
     job->eta = mcor_power(eta, job->axes);
     const double own = job->norm * mcor_w_of(kernel, 0);
-    MCOR_RETURN_IF(!(isfinite(job->eta) && eta > 0 && job->eta > own), context,
-      MCOR_INVALID_ARGUMENT,
-      "ETA is %g; it must be above %.3g, the value of a particle without neighbours. %g is usual.",
-      eta, pow(own, 1.0 / job->axes), MCOR_USUAL_ETA);
+    MCOR_FAIL_IF(!(isfinite(job->eta) && eta > 0 && job->eta > own), context, MCOR_INVALID_ARGUMENT,
+      MCOR_SAY(ETA_ILLEGAL), eta, pow(own, 1.0 / job->axes), MCOR_USUAL_ETA);
   }
   return MCOR_OK;
 }

@@ -423,9 +423,8 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
     staging->slices[i].to = total;
     total += staging->slices[i].used;
   }
-  MCOR_RETURN_IF(total > MCOR_PARTICLE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "Including periodic images there are %lld particles; the limit is %d.", (long long)total,
-    MCOR_PARTICLE_LIMIT);
+  MCOR_FAIL_IF(total > MCOR_PARTICLE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(IMAGES_TOO_MANY), (long long)total, MCOR_PARTICLE_LIMIT);
   const size_t count = (size_t)total, bytes = count * sizeof(int32_t);
   const size_t fix = count * context->cl.fix_size, real = count * context->cl.real_size;
   staging->count = (int)total;
@@ -462,17 +461,12 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->largest_weight =
     mcor_needs_density(staging->input) ? 100 * pow(options->h_scale, -3) : 0;
-  MCOR_RETURN_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
-    MCOR_INVALID_ARGUMENT,
-    "The h scale factor is %g, too small for computed volumes. Provide volumes, or choose a larger "
-    "factor.",
-    options->h_scale);
+  MCOR_FAIL_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(H_SCALE_TOO_SMALL), options->h_scale);
   for (int i = 0; i < slices; ++i)
   {
     const mcor_stage_slice* slice = &staging->slices[i];
-    MCOR_RETURN_IF(slice->changed, context, MCOR_INVALID_DATA,
-      "The particle arrays were changed during the call%s. No other thread may write to them until "
-      "the call returns.",
+    MCOR_FAIL_IF(slice->changed, context, MCOR_INVALID_DATA, MCOR_SAY(ARRAYS_CHANGED),
       options->globals ? ", or options.globals was measured over other particles" : "");
     if (slice->heavy >= 0)
     {
@@ -480,9 +474,7 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
       staging->reach = NULL;
       mcor_read_stage_places(staging, slice->heavy, &chunk);
       mcor_read_stage_sizes(staging, slice->heavy, &chunk);
-      return mcor_fail(context, MCOR_INVALID_DATA,
-        "The volume of particle %lld is %.3g times the cube of its smoothing length, too large for "
-        "%s precision. Correct the volume, or remove such particles.",
+      return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
         (long long)slice->heavy, mcor_stage_weight(context, &chunk, 0),
         context->cl.real_size == sizeof(float) ? "single" : "double");
     }

@@ -62,10 +62,8 @@ static mcor_status mcor_fit_edges(
   for (int a = 0; a < 3; ++a)
   {
     const double least = ceil(length[a] / cube * (1 - MCOR_PERIOD_ERROR));
-    MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g there would be %.3g cubes in the period along %c; the limit is %d. Use a "
-      "larger cube size, or a shorter period.",
-      cube, least, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
+    MCOR_FAIL_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
+      MCOR_SAY(PERIOD_TOO_LONG), cube, least, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
     fewest[a] = (int64_t)least;
   }
   /* With adaptive cubes a period is a whole number of bricks of the level above the highest one, so
@@ -109,10 +107,8 @@ static mcor_status mcor_fit_edges(
 static mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
 {
   const double farthest = fmax(fabs(low), fabs(high));
-  MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
-    "Particles are about %g away from the origin, where a double cannot resolve cubes of size %g. "
-    "Leave out those that are far away by a range of positions, or move all towards the origin.",
-    farthest, cube);
+  MCOR_FAIL_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(PARTICLES_TOO_FAR), farthest, cube);
   return MCOR_OK;
 }
 
@@ -153,20 +149,16 @@ static mcor_status mcor_fit_period(
       const double most = MCOR_MOST_PERIODS * length[a];
       const double widest = context->run.widest,
                    fits = (most / m->support_max - 2 - 1 / options->h_scale) * widest / beyond;
-      MCOR_RETURN_IF(reach - 8 * longest > most && widest > 0, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too short for support radii of up to %g, which are widened to "
-        "%g. %s %.3g, or correct the period or the smoothing lengths.",
-        mcor_axis_letter(context, a), length[a], m->support_max, widest * m->support_max,
-        fits > 1 ? "Choose a widening of no more than" : "Leave out the widening of",
+      MCOR_FAIL_IF(reach - 8 * longest > most && widest > 0, context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(PERIOD_TOO_SHORT_WIDENED), mcor_axis_letter(context, a), length[a], m->support_max,
+        widest * m->support_max,
+        fits > 1 ? "Choose {widen} of no more than" : "Leave out {widen} of",
         fits > 1 ? fits : widest);
-      MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too short for support radii of up to %g. Correct the period, "
-        "or the smoothing lengths.",
-        mcor_axis_letter(context, a), length[a], m->support_max);
-      MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
-        "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "
-        "%.3g.",
-        cube, length[a], mcor_axis_letter(context, a), (most - (reach - 8 * longest)) / 8);
+      MCOR_FAIL_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(PERIOD_TOO_SHORT), mcor_axis_letter(context, a), length[a], m->support_max);
+      MCOR_FAIL_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(CUBE_TOO_LARGE_FOR_PERIOD), cube, length[a], mcor_axis_letter(context, a),
+        (most - (reach - 8 * longest)) / 8);
       MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge[a]));
       lattice->period[a] = (int)round(length[a] / edge[a]);
       m->low[a] = options->periodic[2 * a] - reach - margin - m->support_max;
@@ -251,14 +243,10 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
   mcor_lattice* lattice = &context->lattice;
   const double cube =
     options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
-  MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
-    "length.",
-    cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
-  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
-    "size, or remove particles with such a small smoothing length.",
-    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
+  MCOR_FAIL_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(CUBE_ILLEGAL), cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
+  MCOR_FAIL_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(CUBE_TOO_LARGE), cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   int top = mcor_tree_level_of(m->h_max, m->h_min, options->level_limit);
   MCOR_TRY(mcor_fit_period(context, options, cube, &top));
   while (top > 0 && !mcor_has_keys(m, lattice, top))
@@ -275,9 +263,7 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
     const int limit = m->cut ? MCOR_CUT_LIMIT : MCOR_LATTICE_LIMIT;
     context->run.is_too_long = !(last - first <= limit);
-    MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. Use a "
-      "larger cube size, or remove particles that are far away from the rest.",
+    MCOR_FAIL_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(GRID_TOO_LONG),
       edge, last - first, mcor_axis_letter(context, a), limit);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
     if (a >= context->space.axes) /* one layer of cells */
@@ -301,10 +287,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   context->run.is_too_long = !mcor_has_keys(m, lattice, top);
-  MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
-    "its other sides. Use a larger cube size, or remove particles that are far away from the rest.",
-    cube, (double)extent);
+  MCOR_FAIL_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(GRID_TOO_LONG_AT_ALL), cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
   /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;

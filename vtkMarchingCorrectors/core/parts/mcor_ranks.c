@@ -9,8 +9,7 @@
 
 mcor_status mcor_heard(mcor_context* context, int failed)
 {
-  MCOR_RETURN_IF(failed != 0, context, MCOR_CANCELLED,
-    "Another rank, or the communication with it, failed. See the message of that rank.");
+  MCOR_FAIL_IF(failed != 0, context, MCOR_CANCELLED, MCOR_SAY(RANK_FAILED));
   return MCOR_OK;
 }
 

@@ -58,11 +58,8 @@ mcor_status mcor_begin_fill(mcor_context* context)
     }
   }
   const double least = fill->lines[0].value;
-  MCOR_RETURN_IF(options->field == MCOR_SUM && options->node_threshold == 0 && least <= 0, context,
-    MCOR_INVALID_ARGUMENT,
-    "The region above %g has no end: without a node threshold the sum is 0 in all empty space. "
-    "Use a node threshold, or iso values above 0, to fill it.",
-    least);
+  MCOR_FAIL_IF(options->field == MCOR_SUM && options->node_threshold == 0 && least <= 0, context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(REGION_WITHOUT_END), least);
   const mcor_box* box = &context->box;
   mcor_cap_nodes* nodes = &fill->nodes;
   *nodes = (mcor_cap_nodes){ .axis = 2, .upper = 1, .across = { 0, 1 } };

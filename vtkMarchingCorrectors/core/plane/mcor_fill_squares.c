@@ -41,9 +41,7 @@ typedef struct mcor_fill_job
 
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
 {
-  return mcor_fail(context, MCOR_DEVICE_ERROR,
-    "The filled region does not match the lines at node %d %d. Please report this.", at->node[0],
-    at->node[1]);
+  return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(FILLED_FAULT), at->node[0], at->node[1]);
 }
 
 /* ---- The border ---- */
@@ -250,8 +248,7 @@ static mcor_status mcor_make_fill_points(
     }
   }
   const int64_t count = nodes + cap->vertices.count;
-  MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
+  MCOR_FAIL_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(FILLED_TOO_LARGE),
     (long long)count, MCOR_COUNT_LIMIT);
   if (count == 0)
   {

@@ -74,8 +74,8 @@ mcor_status mcor_flatten_points(
   mcor_context* context, const mcor_array* points, int64_t count, mcor_array* turned, double** flat)
 {
   *flat = malloc((size_t)count * 3 * sizeof(double) + 1);
-  MCOR_RETURN_IF(!*flat, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld points could not be allocated.", (long long)count);
+  MCOR_FAIL_IF(
+    !*flat, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR), (long long)count, "points");
   mcor_flatten_job job = { &context->plane, *points, NULL, *flat, true };
   job.positions.components = 3;
   mcor_parallel_for(context, count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job);
@@ -88,9 +88,8 @@ mcor_status mcor_flatten(
 {
   const mcor_plane* plane = &context->plane;
   mcor_options* o = &flat->options;
-  MCOR_RETURN_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
-    "Capping cannot be combined with filling, which ends at the sides of a period or a box. Turn "
-    "one of them off.");
+  MCOR_FAIL_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(CAPPING_WITH_FILLED));
   if (options->filled) /* pairs may miss lines that a region ends at */
   {
     o->seeds = MCOR_COMPLETE;
@@ -122,8 +121,8 @@ mcor_status mcor_flatten(
   const bool floats = input->positions.type == MCOR_FLOAT32;
   const size_t width = 3 * (floats ? sizeof(float) : sizeof(double));
   flat->positions = malloc((size_t)input->count * width + 1);
-  MCOR_RETURN_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  MCOR_FAIL_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR),
+    (long long)input->count, "particles");
   mcor_flatten_job job = { plane, flat->input.positions, floats ? flat->positions : NULL,
     flat->positions, false };
   flat->input.positions.data = flat->positions;

@@ -46,9 +46,8 @@ mcor_status mcor_list_components(
   attributes->varying_count = attributes->count = 0;
   attributes->varying = malloc((count + 1) * sizeof *attributes->varying);
   MCOR_TRY(mcor_allocated(context, attributes->varying));
-  MCOR_RETURN_IF(globals && globals->component_count != (int)count, context, MCOR_INVALID_ARGUMENT,
-    "options.globals was measured for %d components of attributes, but the input has %d.",
-    globals->component_count, (int)count);
+  MCOR_FAIL_IF(globals && globals->component_count != (int)count, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(GLOBALS_OF_OTHER_ATTRIBUTES), globals->component_count, (int)count);
   const mcor_status status = globals ? MCOR_OK : mcor_measure_components(context, input, &own);
   globals = globals ? globals : &own;
   for (int a = 0, next = 0; a < input->attribute_count && status == MCOR_OK; ++a)

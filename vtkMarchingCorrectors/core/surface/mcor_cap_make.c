@@ -89,9 +89,8 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
-    "The surface with its caps would have %zu triangles; the limit is %d. Use a larger cube size.",
-    old + more, MCOR_COUNT_LIMIT / 3);
+  MCOR_FAIL_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(CAPS_TOO_LARGE), old + more, MCOR_COUNT_LIMIT / 3);
   MCOR_TRY(
     mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles.of, more * width));
   MCOR_TRY(mcor_append_bytes(context, &context->box.cells, old * cell, job->cells.of, more * cell));

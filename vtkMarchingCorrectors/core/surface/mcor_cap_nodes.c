@@ -78,14 +78,10 @@ static mcor_status mcor_limit_side(
   const int edge = MCOR_CLUSTER * MCOR_BRICK,
             layers = nodes->plane / edge == nodes->inner / edge ? 1 : 2;
   const bool is_much = clusters > (size_t)layers * (size_t)limit;
-  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
-    "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
-    "Use a larger cube size, or turn filling off.",
-    limit * edge * edge, context->lattice.cube);
-  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
-    "More than %d nodes of a side along %c are within reach of particles, with cube size "
-    "%g: too many for a cap. Use a larger cube size, or turn capping off.",
-    limit * edge * edge, mcor_axis_letter(context, nodes->axis), context->lattice.cube);
+  MCOR_FAIL_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(FILL_NODES), limit * edge * edge, context->lattice.cube);
+  MCOR_FAIL_IF(is_much, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(CAP_NODES), limit * edge * edge,
+    mcor_axis_letter(context, nodes->axis), context->lattice.cube);
   return MCOR_OK;
 }
 

@@ -38,8 +38,7 @@ static mcor_status mcor_find_cap_vertex(
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(next >= MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "The caps have too many vertices. Use a larger cube size.");
+  MCOR_FAIL_IF(next >= MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(CAP_VERTICES));
   mcor_cap_vertex vertex = { .flag = flag, .key = { job->number, job->lookups } };
   mcor_put_cap_vertex(&vertex, at);
   MCOR_APPEND(context, &job->vertices, vertex);
@@ -67,9 +66,8 @@ static mcor_status mcor_cap_edge_corner(
   cl_int node[3];
   mcor_square_node(job, square, k == 1, k == 2, node);
   int32_t vertex = mcor_find_number(&job->edges[axis], mcor_cap_key(node));
-  MCOR_RETURN_IF(vertex < 0, context, MCOR_DEVICE_ERROR,
-    "A cap does not fit the surface at node %d %d %d. Please report this.", node[0], node[1],
-    node[2]);
+  MCOR_FAIL_IF(
+    vertex < 0, context, MCOR_DEVICE_ERROR, MCOR_SAY(CAP_FAULT), node[0], node[1], node[2]);
   const cl_int* nodes = job->node;
   const bool pinched = vertex + 1 < context->mesh.march_count &&
     memcmp(nodes + 4 * (size_t)vertex, nodes + 4 * ((size_t)vertex + 1), 4 * sizeof *nodes) == 0;

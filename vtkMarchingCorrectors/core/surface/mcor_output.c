@@ -55,8 +55,8 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
     return mcor_scan(context, &mesh->scanned, vertices, count);
   }
   cl_int* scanned = malloc(n * sizeof *scanned);
-  MCOR_RETURN_IF(!scanned, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %zu points could not be allocated.", n);
+  MCOR_FAIL_IF(
+    !scanned, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR), (long long)n, "points");
   for (size_t v = 0; v < n; ++v)
   {
     scanned[v] = (cl_int)v;
@@ -385,8 +385,7 @@ static mcor_status mcor_append_mesh(
   const int64_t triangles = mesh->triangle_count, base = surface->point_count;
   int count;
   MCOR_TRY(mcor_number_vertices(context, all, &count));
-  MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; the limit is %d. Use a larger cube size.",
+  MCOR_FAIL_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(POINTS_TOO_MANY),
     (long long)(base + count), INT32_MAX);
   if (count > 0)
   {

@@ -38,8 +38,8 @@ mcor_status mcor_grow(mcor_context* context, void** array, int64_t old, int64_t 
 {
   const size_t bytes = (size_t)(old + count) * width + 1;
   void* grown = realloc(*array, bytes);
-  MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
+  MCOR_FAIL_IF(!grown, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR),
+    (long long)(old + count), "points of the surface");
   mcor_use_large_pages(grown, bytes);
   *array = grown;
   return MCOR_OK;

@@ -138,10 +138,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
   const mcor_options* options = context->run.options;
   const int vertices = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
-  MCOR_RETURN_IF(cut_count > MCOR_COUNT_LIMIT - vertices, context, MCOR_OUT_OF_CAPACITY,
-    "The surface with its trim boundary would have %lld vertices; the limit is %d. Use a larger "
-    "cube size.",
-    (long long)vertices + cut_count, MCOR_COUNT_LIMIT);
+  MCOR_FAIL_IF(cut_count > MCOR_COUNT_LIMIT - vertices, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(VERTICES_TOO_MANY), (long long)vertices + cut_count, MCOR_COUNT_LIMIT);
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core's sentences, mcor_says.def: each is used, its slots have words in every interface, compilers check its formats.
+
+test_says.py SOURCES OUTPUT COMPILER
+
+OUTPUT gets all sentences as each interface says them, to be read by people.
+"""
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+COMPILER, OUTPUT, SOURCES = sys.argv.pop(), Path(sys.argv.pop()), Path(sys.argv.pop())
+CORE = SOURCES / "vtkMarchingCorrectors" / "core"
+sys.path.insert(0, str(SOURCES / "Testing"))
+from says import SLOTS, TEXTS, fill  # noqa: E402
+
+SAID = [file for folder, endings in (("vtkMarchingCorrectors", (".c", ".h", ".cxx")), ("Examples/CommandLine", (".cxx",)),
+                                     ("Python", (".py",)))
+        for file in sorted((SOURCES / folder).rglob("*")) if file.suffix in endings and "Testing" not in file.parts]
+# Settings that the program has no option for; it says none of their sentences.
+NOT_IN_PROGRAM = {"blocks"}
+
+
+def words_of_program():
+    """{member: option}, as the rows of OptionTable.cxx have them."""
+    rows = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8").split('\n  { "--')[1:]
+    words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # as OptionWord says
+    for row in rows:
+        members = [word for word in re.findall(r'"(\w+)"', row.split("DO(")[0]) if word in SLOTS]
+        words.update({members[-1]: "--" + row.split('"')[0]} if members else {})
+    return words
+
+
+class Says(unittest.TestCase):
+    def test_each_is_used_once_or_more(self):
+        text = "\n".join(file.read_text(encoding="utf-8") for file in SAID)
+        used = {*re.findall(r"MCOR_SAY\((\w+)\)", text), *re.findall(r"MCOR_SAYS_(\w+)", text),
+                *re.findall(r'\bsay\("(\w+)"', text)}
+        self.assertEqual(sorted(set(TEXTS) - used), [], "nobody says these")
+
+    def test_each_slot_has_words(self):
+        """Slots stand in the texts, and in C's strings, which become parts of texts."""
+        parts = {code: re.findall(r"\{[^{}]*\}", text) for code, text in TEXTS.items()}
+        for file in SAID:
+            if CORE in file.parents:
+                parts[file.name] = re.findall(r'"[^"\n]*?(\{[a-z_]+(?: [\w.]+)?\})[^"\n]*"', file.read_text(encoding="utf-8"))
+        program, found = words_of_program(), 0
+        for where, slots in parts.items():
+            for slot in slots:
+                name = slot[1:-1].split(" ")[0]
+                if name == "%s":  # any option of mcor_options.def
+                    continue
+                found += 1
+                self.assertIn(name, SLOTS, f"{where}: a slot that no interface can fill")
+                self.assertNotEqual(SLOTS.get(slot[1:-1]) or SLOTS[name], "", f"{where}: {slot} has no word in panels")
+                self.assertTrue(name in program or name in NOT_IN_PROGRAM, f"{where}: {slot} has no word in the program")
+        self.assertGreater(found, 50)
+
+    def test_print_all(self):
+        """What each says; sentences that differ between interfaces have a line for each."""
+        program, lines = words_of_program(), []
+        for code, text in TEXTS.items():
+            said = {"C, Python": fill(text, lambda name, value: name + (value and "=" + value)),
+                    "panel": fill(text, lambda name, value: SLOTS.get(f"{name} {value}") or f"{SLOTS[name]} {value}".strip()),
+                    "program": fill(text, lambda name, value: f"{program.get(name, name)} {value}".strip())}
+            same = len(set(said.values())) == 1
+            lines += [f"{code}: {said['panel']}"] if same else [f"{code}, {who}: {sentence}" for who, sentence in said.items()]
+            self.assertRegex(text, r"([.?]|%s)$", f"{code} is no sentence")
+            self.assertLess(len(text), 600, code)
+        OUTPUT.parent.mkdir(parents=True, exist_ok=True)
+        OUTPUT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def test_compiler_checks_formats(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for argument, good in (("1", True), ("1.5", False), ('"one"', False)):
+                source = Path(folder) / "say.c"
+                source.write_text(f'#include "mcor_say.h"\nmcor_message said(void);\n'
+                                  f"mcor_message said(void) {{ return mcor_say(MCOR_SAY(ISO_NOT_FINITE), {argument}); }}\n")
+                done = subprocess.run([COMPILER, "-std=c11", "-Wall", "-Werror", f"-I{CORE}", "-fsyntax-only", source],
+                                      stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode == 0, good, done.stderr)
+                self.assertTrue(good or "format" in done.stderr, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/** Private to the module and the program: sentences of mcor_says.def. */
+#ifndef vtkSPHSay_h
+#define vtkSPHSay_h
+
+#include "mcor_say.h"
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+
+#include <string>
+
+/**
+ * Writes a sentence, with its slots filled, see vtkSPHAlgorithm::SetWord(); use as
+ * vtkSPHSay(MCOR_SAY(CODE), ...).
+ */
+VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHSay(mcor_says code, const char* format, ...)
+#ifdef __GNUC__
+  __attribute__((format(printf, 2, 3)))
+#endif
+  ;
+
+/** Returns the code of a sentence that has its words already. */
+VTKMARCHINGCORRECTORS_EXPORT mcor_says vtkSPHCodeOf(const std::string& sentence);
+
+#endif

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf, film.vtkhdf (three steps) and those that point to other files
-were made: needs h5py."""
+"""Makes lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf, film.vtkhdf (three steps) and the files that point to other files. It needs
+h5py."""
 import pathlib
 
 import h5py
@@ -42,7 +42,7 @@ write(HERE / "lattice_poly.vtkhdf", b"PolyData", (2, 0))
 
 
 def write_film(path):
-    """Lattices of 3, 0 and 2 points along each side, the last one in two parts; Kind is stored once."""
+    """Writes three steps: lattices of 3, 0 and 2 points along each side, the last one in two parts. Kind is stored only once."""
     sides, parts = (3, 0, 2), ([27], [0], [5, 3])
     lattices = [files.lattice(side) if side else ([], {}) for side in sides]
     begins = numpy.cumsum([0, *(len(points) for points, _ in lattices)])

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of particles, their steps and pieces, and of points, in the forms that VTK reads, all written by hand: no VTK between a
-test and the bytes that it means."""
+"""Writes files of particles, steps, pieces and points in the forms that VTK reads. All bytes are made here without VTK, so that a test knows exactly
+what it reads."""
 import base64
 import itertools
 import math
@@ -13,7 +13,7 @@ CODES = {"Float64": "d", "Int64": "q", "UInt8": "B"}
 
 
 def lattice(n=10):
-    """A block of n^3 particles around the origin: positions and the arrays a simulation writes."""
+    """Returns a block of n^3 particles around the origin: positions, and the arrays that a simulation writes."""
     offset = (n - 1) / 2
     points = [
         ((i - offset) * SPACING, (j - offset) * SPACING, (k - offset) * SPACING)
@@ -32,8 +32,8 @@ def lattice(n=10):
 
 
 def drop_at(time, n=10, numbers=None, velocity=2.0):
-    """The block at a time at which it falls and turns around the z axis: positions and arrays.
-    `numbers` are the particles that are there, in the order of the file."""
+    """Returns the block at a time while it falls and turns around the z axis: positions and arrays. `numbers` names the particles that are in the
+    file, in their order."""
     points, arrays = lattice(n)
     angle = velocity * time
     c, s = math.cos(angle), math.sin(angle)
@@ -69,8 +69,8 @@ def xml_array(name, values, kind="Float64", width=None, form='format="ascii"', t
 
 
 def xml(points, arrays, kind="PolyData", form="ascii", cells=None, extra=""):
-    """The bytes of a file. kind: PolyData, or UnstructuredGrid, of vertices, as many SPH codes write, or of cells: (type, points);
-    form: ascii, inline, compressed, appended (raw); `extra` is more XML for the point data."""
+    """Returns the bytes of an XML file. kind: PolyData, or UnstructuredGrid. cells: (type, points) each; by default vertices, as many SPH codes
+    write. form: ascii, inline, compressed or appended (raw). extra: more XML for the point data."""
     appended = b""
 
     def array(name, values, kind="Float64", width=None):
@@ -113,7 +113,8 @@ def write_vtu(path, points, arrays, cells=None):
 
 
 def legacy(points, arrays=(), form="ASCII", fields=0, before="", cells=""):
-    """Scalars and vectors as a simulation writes them, the last `fields` arrays in a field; binary ones are big endian."""
+    """Returns the bytes of a legacy file. The last `fields` arrays are in a field, the others are scalars and vectors. Binary numbers are big
+    endian."""
     write = (lambda values: text_of(values).encode()) if form == "ASCII" else (lambda values: packed(values, ">"))
     parts = [f"# vtk DataFile Version 3.0\nparticles\n{form}\nDATASET POLYDATA\n{before}POINTS {len(points)} double\n".encode(),
              write(points), f"\n{cells}".encode()]
@@ -133,7 +134,7 @@ def write_legacy(path, points, arrays, **more):
 
 
 def columns(points, arrays, mark):
-    """Names of columns and rows of numbers; a vector's are its name, this mark, and x, y, z."""
+    """Returns names of columns and rows of numbers. A vector has three columns: its name, this mark, and x, y or z."""
     names = ["x", "y", "z", *(name + (mark + "xyz"[c] if components(values) > 1 else "")
                               for name, values in arrays.items() for c in range(components(values)))]
     return names, [list(p) + flat(values[i] for values in arrays.values()) for i, p in enumerate(points)]
@@ -153,7 +154,7 @@ def table(points, arrays):
 
 
 def all_forms(points, arrays):
-    """Name of a file and its bytes, for each form."""
+    """Returns a dictionary from file name to bytes, with one file for each form."""
     forms = {f"{form}.{ending}": xml(points, arrays, kind, form) for form in ("ascii", "inline", "compressed", "appended")
              for ending, kind in (("vtp", "PolyData"), ("vtu", "UnstructuredGrid"))}
     forms = {**forms, "table.csv": table(points, arrays), "ascii.ply": ply(points, arrays, "ascii"),
@@ -162,7 +163,7 @@ def all_forms(points, arrays):
 
 
 def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
-    """A file of a snapshot that has `count` files: gas of the chosen numbers, and three stars."""
+    """Writes one of the `count` files of a snapshot: gas particles with the chosen numbers, and three stars."""
     def record(data):
         return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
 
@@ -185,7 +186,7 @@ def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
 
 
 def write_pvd(path, entries):
-    """entries: (time, file) each; those of one time are parts of one set."""
+    """Writes a .pvd file. entries: (time, file) each. Files of the same time are parts of one set."""
     entries = list(entries)
     parts = [sum(time == other for other, _ in entries[:i]) for i, (time, _) in enumerate(entries)]
     path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>' + "".join(
@@ -195,14 +196,14 @@ def write_pvd(path, entries):
 
 
 def write_pieces(path, names):
-    """A .pvtp or .pvtu file."""
+    """Writes a .pvtp or .pvtu file that lists these pieces."""
     kind = {".pvtp": "PPolyData", ".pvtu": "PUnstructuredGrid"}[path.suffix]
     path.write_text(f'<?xml version="1.0"?><VTKFile type="{kind}"><{kind} GhostLevel="0">' +
                     "".join(f'<Piece Source="{name}"/>' for name in names) + f"</{kind}></VTKFile>")
 
 
 def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
-    """Points of a grid, without arrays: a .vti file, or a .vtk one, whose extent is numbers of points."""
+    """Writes the points of a grid without arrays, as a .vti file, or as a .vtk one, whose extent counts points."""
     path.write_text(
         f'<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData WholeExtent="{extent}" '
         f'Origin="{origin}" Spacing="{spacing}"><Piece Extent="{extent}"></Piece></ImageData></VTKFile>'
@@ -211,8 +212,8 @@ def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
 
 
 def unpacked(text):
-    """Unpacks an array that VTK has packed with LZ4: a header of four numbers, then one block of sequences, each of bytes to
-    copy from the block and of bytes to repeat from what is there already."""
+    """Unpacks an array that VTK has packed with LZ4. After a header of four numbers there is one block of sequences; each has bytes to copy, and the
+    place and number of earlier bytes to repeat."""
     blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
     assert blocks == 1
     block, at, data = base64.b64decode(text[24:]), 0, bytearray()

@@ -17,7 +17,7 @@ from command_line_test import FIRST_COMPILATION, ISO, CommandLineTest, main, say
 
 
 def read_png(path):
-    """Width, height and rows of (r, g, b)."""
+    """Returns the width, the height and the rows of (r, g, b) of a PNG file."""
     data = path.read_bytes()
     at, packed = 8, b""
     while at < len(data):
@@ -42,10 +42,11 @@ def read_png(path):
 
 
 class Usage(CommandLineTest):
-    """Wrong usage: exit status 2."""
+    """Tests wrong usage, which has exit status 2."""
 
     def test_help(self):
-        """The usual options; all; and those that act in one mode, as test_modes.py has it. Lines end at the terminal's width."""
+        """--help lists the usual options, --help all lists every option, and --help MODE lists the options that act there (test_modes.py compares
+        those). Lines are as long as the terminal is wide."""
         few, everything = (self.run_good("--help", *words).stdout for words in ([], ["all"]))
         self.assertEqual(self.run_program("-h").stdout, few)
         listed = re.findall(r"(?m)^  (--[\w-]+)", few)
@@ -57,7 +58,7 @@ class Usage(CommandLineTest):
         self.refuse(self.run_program("--help", "slices"), 2, "there is no help on 'slices', but on all, surface, .* and project")
 
     def test_closed_pipe(self):
-        """--help | head: nobody wants the rest, which is no fault."""
+        """`--help | head` closes the pipe early, which is no fault."""
         for arguments in (["--help", "all"], [self.input, self.output, *ISO]):
             reader, writer = os.pipe()
             os.close(reader)
@@ -66,7 +67,7 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """They change nothing, and what they need is said. The free surface is what a surface is without a scalar."""
+        """A mode as the first word changes no output, and a sentence says what the mode needs. A surface without a scalar is the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
         self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))
@@ -214,13 +215,13 @@ class Usage(CommandLineTest):
 
 
 class BadData(CommandLineTest):
-    """Bad data, files and devices: exit status 1 and a sentence of their own."""
+    """Tests bad data, files and devices, which have exit status 1 and a sentence of their own."""
 
     def refuse_with(self, sentence, *options, **extract_options):
         self.refuse(self.extract(*(options or ISO), **extract_options), 1, sentence)
 
     def test_sentences(self):
-        """The filters' sentences, which test_input.py has, name the program's options."""
+        """Sentences of the filters (tested in test_input.py) name the program's options."""
         self.refuse_all(1, [
             (["--scalar", "Temperature", "--iso", "1"], "no point array 'Temperature' for the scalar.*Radius"),
             (["--derive", "Nonsense", *ISO], "no point array 'Nonsense'.*Radius"),
@@ -239,7 +240,7 @@ class BadData(CommandLineTest):
         self.assertGreater(self.succeed(*fine, "1000")["statistics"]["device_bytes_peak"], 1 << 20)
 
     def test_no_home(self):
-        """PoCL wants a folder for its programs, which a home that is none cannot give."""
+        """PoCL needs a folder for its compiled programs, and this home is no folder."""
         temporary = self.directory / "temporary"
         temporary.mkdir()
         environment = {k: v for k, v in os.environ.items()
@@ -250,7 +251,7 @@ class BadData(CommandLineTest):
         self.assertEqual(list(temporary.iterdir()), [])
 
     def test_no_driver(self):
-        """The ICD loader of Debian then finds no driver at all: the built-in device needs none, nor a home."""
+        """With this variable Debian's ICD loader finds no driver. The built-in device needs neither a driver nor a home."""
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere"), "HOME": "/nonexistent"}
         environment.pop("MCOR_DEVICE", None)
         self.refuse_with(says("NO_KERNELS", "--precision single"), *ISO, "--precision", "double", env=environment)
@@ -274,7 +275,7 @@ class BadData(CommandLineTest):
                         f"{name} is read by the Python package: 'python -m marchingcorrectors convert .*{name} particles.vtp'")
 
     def test_correction_that_ends_early(self):
-        """Options are as each sentence advises."""
+        """Each warning goes away when the options are changed as its sentence advises."""
         result = self.extract(*ISO, "--iteration-limit", "1", "--tolerance", "1e-9")
         self.assertRegex(result.stderr, says("OFF_ISO_VALUE", "--iteration-limit"))
         statistics = self.succeed(*ISO, "--tolerance", "0.5")
@@ -306,7 +307,7 @@ class BadData(CommandLineTest):
 
 
 class Options(CommandLineTest):
-    """Every option does what it says, as far as statistics and output show it."""
+    """Tests that every option does what it says, as far as statistics and output show it."""
 
     def test_summary(self):
         result = self.extract_good(*ISO)
@@ -342,7 +343,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
 
     def test_chosen_iso_value(self):
-        """Without --iso, a value about the median, which is told; a film keeps it, also where its steps differ."""
+        """Without --iso the program chooses a value near the median and says which. A film keeps this value in all its steps."""
         sentence = r"(?m)^iso value   (\S+), chosen for Radius, whose range is (\S+) \.\. (\S+) \("
         statistics = self.directory / "statistics.json"
         result = self.extract_good("--scalar", "Radius", "--stats", statistics)
@@ -385,7 +386,7 @@ class Options(CommandLineTest):
         self.refuse(self.run_program("--list-arrays", "none.vtp"), 1, "none.vtp")
 
     def test_first_compilation(self):
-        """A driver without kept programs is waited for, which is said once."""
+        """When a driver has no kept programs, one sentence says that compiling takes time."""
         if "Portable" not in self.run_program("--list-devices").stdout:
             self.skipTest("there is no PoCL")
         environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}
@@ -394,14 +395,14 @@ class Options(CommandLineTest):
             self.assertEqual(result.stderr, FIRST_COMPILATION)
 
     def test_long_run(self):
-        """Seconds of computing are not said to be a driver's."""
+        """A run that computes for seconds does not say that a driver compiles."""
         if "built in" not in self.run_program("--list-devices").stdout:
             self.skipTest("a driver's programs are compiled")
         self.run_good(self.input, self.directory / "levels.vti", "--gauge-grid", "1000,1000:-1,1,-1,1,-1,1",
                       "--threads", "1", "--device", "built in", told=True)
 
     def test_derive(self):
-        """Arrays made of one of the particles', to contour and to carry; they go before stored ones."""
+        """--derive makes arrays from a particle array, to contour and to carry. They win over stored arrays of the same name."""
         self.arrays["Lambda2"] = [17.0] * len(self.points)
         files.write_vtp(self.input, self.points, self.arrays)
         self.succeed("--derive", "Velocity", *ISO)
@@ -414,7 +415,7 @@ class Options(CommandLineTest):
         self.assertNotIn("Vorticity", self.output.read_text())
 
     def write_points(self):
-        """Writes five points on the x axis, two of them outside, in several kinds of files."""
+        """Writes five points on the x axis, two of which lie outside the particles, in several kinds of files."""
         xs = [-5.0, 0.0, 0.1, 0.2, 0.3]
         files.write_vtp(self.directory / "points.vtp", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
         files.write_vtu(self.directory / "points.vtu", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
@@ -439,7 +440,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(float(divergence.split('RangeMax="')[1].split('"')[0]), 3, places=4)
 
     def test_probe_of_period(self):
-        """Points periods away from the particles."""
+        """Points that are some periods away from the particles are valid only with --periodic."""
         length = 10 * files.SPACING
         files.write_image(self.directory / "far.vtk", "5 1 1", f"{3 * length - 0.2!r} 0 0", "0.15 1 1")
         for arguments, valid in ([], 0), (["--periodic", f"{length!r},0,0"], 5):
@@ -448,7 +449,7 @@ class Options(CommandLineTest):
             self.assertIn(f"points      5, {valid} of them valid", result.stdout)
 
     def test_slice(self):
-        """A plane through the particles, as fine as is said."""
+        """--slice makes a plane through the particles, with the resolution that is asked for."""
         output = self.directory / "slice.vti"
         result = self.run_good(self.input, output, "--slice", "z=0.1", "--resolution", "19", "--derive", "Velocity",
                                "--attributes", "Radius,Divergence")
@@ -464,7 +465,7 @@ class Options(CommandLineTest):
         self.assertIn("points      262144, 0 of them valid", result.stdout)
 
     def test_line(self):
-        """As many points as at the same places of a file, and their distance from the beginning."""
+        """--line gives the same points as a file of these places, and the distance from the start."""
         output = self.directory / "line.vtp"
         result = self.run_good(self.input, output, "--line=-0.6,0,0,0.6,0,0", "--resolution", "13")
         files.write_vtp(self.directory / "points.vtp", [(-0.6 + 0.1 * i, 0.0, 0.0) for i in range(13)], {})
@@ -475,7 +476,7 @@ class Options(CommandLineTest):
         self.assertRegex(text, r'Name="arc_length"[^>]*RangeMin="0"[^>]*RangeMax="1.2')
 
     def test_sizes_of_probes(self):
-        """Impossible sizes are told at once, with the file's name."""
+        """Impossible sizes are refused at once, and the sentence names the file."""
         for name, extent, sentence in (
                 ("image.vti", "0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
                 ("image.vti", "0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
@@ -515,14 +516,14 @@ class Options(CommandLineTest):
     def test_components(self):
         vector = ["--scalar", "Velocity", "--iso", "0.21"]
         magnitude = self.succeed(*vector)["statistics"]
-        for name in ("magnitude", "-1"):  # -1 is the filter's number for it
+        for name in ("magnitude", "-1"):  # -1 is the filter's number for the magnitude.
             self.assertEqual(magnitude, self.succeed(*vector, "--component", name)["statistics"])
         plane = self.succeed(*vector, "--component", "0")["statistics"]
         self.assertLess(plane["scalar_range"][0], 0)
         self.assertNotEqual(plane["triangles"], magnitude["triangles"])
 
     def test_suspicious_input(self):
-        """Warnings are on stderr and among the statistics."""
+        """Warnings appear on stderr and in the statistics."""
         statistics = self.directory / "statistics.json"
         self.assertEqual(self.succeed(*ISO)["warnings"], [])
         for arguments, words in [
@@ -547,7 +548,7 @@ class Options(CommandLineTest):
         self.succeed(*ISO, "--fluid", "ParticleType=0")
 
     def test_solvers_names(self):
-        """DualSPHysics stores no smoothing length."""
+        """The files of DualSPHysics hold no smoothing length."""
         arrays, count = self.arrays, len(self.points)
         dual = {"Idp": list(range(count)), "Rhop": arrays["Density"], "Vel": arrays["Velocity"],
                 "Type": [3] * count, "Mass": arrays["Mass"], "Radius": arrays["Radius"]}
@@ -559,7 +560,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
 
     def test_settings(self):
-        """Each option, what it makes of the parameters, and whether the surface is another one than without it."""
+        """Each row has options, the parameters that they give, and whether the surface differs from the one without them."""
         half, walls = 5 * files.SPACING, ["--fluid", "Kind=0", "--solids"]
         self.arrays.update({"7": self.arrays["SmoothingLength"], "Space": [0.001] * len(self.points)})
         files.write_vtp(self.input, self.points, self.arrays)
@@ -592,7 +593,8 @@ class Options(CommandLineTest):
              {"periodic_bounds": [-half, half, -half, half, 0, 0]}, f"--periodic={-half!r},{half!r},{-half!r},{half!r},0,0"),
             (["--box=-1,0.1,-1,1,-1,1", "--capping"], numbers, {"capping": 1}, None),
             (["--smoothing-length", "0.13"], arrays, {"smoothing_length_array": ""}, ""),
-            (["--smoothing-length", "7"], arrays, {"smoothing_length_array": "7"}, ""),  # an array's name goes first
+            # If both are possible, 7 is the name of an array, not a number.
+            (["--smoothing-length", "7"], arrays, {"smoothing_length_array": "7"}, ""),
             (["--smoothing-length", "estimate"], arrays, {"smoothing_length_array": ""}, None),
             (["--smoothing-length", "0.26", "--support-radius"], numbers, {"smoothing_length_is_support_radius": 1}, ""),
             (["--mass", "1", "--density", "1000"], numbers, {"mass": 1, "density": 1000}, ""),
@@ -623,7 +625,7 @@ class Options(CommandLineTest):
         self.refuse(self.extract("--free-surface", "--periodic", "1e-3,0,0"), 1, "period along x")
 
     def test_output_arrays(self):
-        """Options, arrays that the surface then has, and others that it has not."""
+        """Each row has options, arrays that the surface must have, and arrays that it must not have."""
         for options, there, missing in (
                 ([], "Normals Velocity Kind Radius", "WeightSum BoundaryEigenvalue Gradients"),
                 (["--weight-sum", "--boundary-eigenvalue", "--curvature", "--gradients"],
@@ -636,7 +638,7 @@ class Options(CommandLineTest):
             self.assertFalse(set(missing.split()) & names)
 
     def test_period_of_field_data(self):
-        """Said where it is there, used when asked for."""
+        """Field data with a period are mentioned, and used only with --periodic."""
         free, length = ["--free-surface", "--iso", "0.5", "--no-attributes"], 10 * files.SPACING
         plain = self.input.read_text()
         self.succeed(*free, "--periodic", f"{length!r},{length!r},0")
@@ -664,7 +666,7 @@ class Options(CommandLineTest):
             self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data of the particles give no period")
 
     def test_output_is_a_function_of_the_input(self):
-        """Two runs write one file, byte for byte; so does one that ran more than once."""
+        """Two runs write the same bytes, and so does a run with --repeat."""
         written = []
         for options in ((), (), ("--repeat", "2")):
             self.succeed(*ISO, "--weight-sum", *options)
@@ -686,7 +688,7 @@ class Options(CommandLineTest):
         self.assertEqual(self.succeed(*ISO, "--device", found["device"])["device"], found["device"])
 
     def test_dashes(self):
-        # After -- a dash begins a file name; joined by = a value may begin with one.
+        # After -- a file name may begin with a dash, and after = a value may.
         self.run_good("--free-surface", "--stats=-s.json", "--", self.input, "-o.vtp")
         json.loads((self.directory / "-s.json").read_text())
         self.assertTrue((self.directory / "-o.vtp").exists())
@@ -697,13 +699,13 @@ class Picture(CommandLineTest):
     """--screenshot, with and without a display."""
 
     def picture(self, *arguments):
-        """Width, height and rows of (r, g, b) of what the program draws."""
+        """Returns the width, the height and the rows of (r, g, b) of the picture that the program draws."""
         path = self.directory / "p.png"
         self.run_good(self.input, *arguments, "--screenshot", path, "--quiet", display=True)
         return read_png(path)
 
     def test_fit(self):
-        """All of the outline is there, from every side: the picture's border is white, and not far inside."""
+        """The whole outline is in the picture from every side: its border is white, and drawn pixels are not far from it."""
         for arguments in ([], ["--up", "z"], ["--up", "-x", "--view", "3,1,1"], ["--view", "0,1,0"],
                           ["--color-by", "Radius"]):
             with self.subTest(arguments):
@@ -717,7 +719,8 @@ class Picture(CommandLineTest):
                 self.assertTrue(drawn[0] < 60 or columns[0] < 60, (drawn[0], columns[0]))
 
     def test_colors(self):
-        """--color-by has many colours and a bar, and so have several iso values; a plain surface has shades of one blue."""
+        """With --color-by, or with several iso values, a picture has many colours; with --color-by a bar, too. A plain surface has shades of one
+        blue."""
         def hues(rows, columns):
             return {(r > b, g > b, g > r) for row in rows for r, g, b in row[columns] if max(r, g, b) - min(r, g, b) > 60}
         plain = self.picture("s.vtp", *ISO)[2]
@@ -726,14 +729,14 @@ class Picture(CommandLineTest):
         self.assertGreater(len(hues(colored, slice(0, 1100))), 2)
         self.assertGreater(len(hues(colored, slice(1130, 1165))), 2)
         several = self.picture("s.vtp", "--scalar", "Radius", "--iso", "0.15,0.25", "--node-threshold", "0.9",
-                               "--box", "0,9,-9,9,-9,9")[2]  # halves, so that both are seen
+                               "--box", "0,9,-9,9,-9,9")[2]  # The box cuts the surfaces into halves, so that both can be seen.
         self.assertGreater(len(hues(several, slice(0, 1100))), 1)
         self.assertGreater(len(hues(several, slice(1130, 1165))), 2)
 
     def test_slice(self):
-        """Seen straight on: yellow is outside, violet inside, white where there is no fluid."""
+        """A slice is seen straight on: large values are yellow, small ones violet, and places without fluid white."""
         rows = self.picture("s.vti", "--slice", "z=0", "--color-by", "Radius", "--resolution", "101")[2]
-        self.assertGreater(rows[400][556][2], rows[400][556][0])  # the middle, violet
+        self.assertGreater(rows[400][556][2], rows[400][556][0])  # The middle is violet.
         drawn = [x for x in range(1100) if max(rows[400][x]) - min(rows[400][x]) > 60]
         self.assertGreater(rows[400][drawn[-1] - 3][1], rows[400][556][1] + 60)
         self.assertEqual(rows[5][556], (255, 255, 255))
@@ -747,7 +750,7 @@ class Picture(CommandLineTest):
             result = self.extract(*ISO, "--screenshot", "p.png", env=environment)
             self.assertTrue(self.output.exists())
             if result.returncode == 0:
-                # A VTK that renders without X, through EGL or in memory.
+                # This VTK renders without X, through EGL or in memory.
                 self.assertTrue((self.directory / "p.png").exists())
                 continue
             self.assertEqual(result.returncode, 1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pieces of surfaces by the program marching-correctors: test_components.py PROGRAM PRELOAD."""
+"""Tests --components of the program, a table of a surface's pieces: test_components.py PROGRAM PRELOAD."""
 import particle_files as files
 from command_line_test import CommandLineTest, main, read_table
 
@@ -10,7 +10,7 @@ FREE = ["--free-surface"]
 
 
 class Components(CommandLineTest):
-    """A block of particles with the sides 1 around the origin, and one of 0.5 in 2, 0, 0."""
+    """Makes a block of particles with sides of 1 around the origin, and one with sides of 0.5 around (2, 0, 0)."""
 
     def setUp(self):
         super().setUp()
@@ -36,7 +36,7 @@ class Components(CommandLineTest):
         self.assertEqual([large["parent"], large["closed"], small["closed"]], ["", "1", "1"])
         for row, side in ((large, 1.0), (small, 0.5)):
             self.assertAlmostEqual(float(row["volume"]), side ** 3, delta=0.1 * side ** 2)
-        # But for the corners, around which less than half is filled.
+        # The 8 corner particles are missing, because less than half of the space around them is filled.
         self.assertEqual([large["particles"], small["particles"]], ["992", "117"])
         self.assertAlmostEqual(float(large["mass"]), 992, delta=1e-6)
         self.assertEqual([round(float(small[v]), 9) for v in ("vx", "vy", "vz")], [4, 5, 6])
@@ -59,7 +59,7 @@ class Components(CommandLineTest):
         self.assertNotIn("ComponentId", self.output.read_text())
 
     def test_film(self):
-        """One table, with the times."""
+        """Several files give one table, with the times."""
         files.write_vtp(self.directory / "later.vtp", self.points, self.arrays)
         self.run_good(self.input, "later.vtp", "film.pvd", *FREE, "--components", self.table,
                       "--time-step", "0.5")
@@ -67,7 +67,8 @@ class Components(CommandLineTest):
                          [("0", "0"), ("0", "1"), ("0.5", "0")])
 
     def test_numbers_of_a_film(self):
-        """A row for each step, between steps, too, with what gauges read; without the pieces that are left out."""
+        """The table has a row for each piece of each step, interpolated steps, too, and the columns of gauges; pieces that are left out have no
+        row."""
         moving = {**self.all_arrays, "Id": list(range(1125)), "Velocity": [(0.0, 0.0, 0.4)] * 1125}
         self.write_rising_steps(2, 0.1, points=self.all_points, **moving)
         numbers = self.directory / "numbers.csv"
@@ -91,7 +92,7 @@ class Components(CommandLineTest):
             self.assertLess(int(one["triangles"]), int(both["triangles"]))
 
     def test_iso_values(self):
-        """Each iso value has its own rows, as if it were the only one, in space and in a plane."""
+        """Each iso value has its own rows, the same as in a run with this value alone, in space and in a plane."""
         height = [0.6 - r for r in self.arrays["Radius"]]
         files.write_vtp(self.input, self.points, {**self.arrays, "Height": height})
         numbers = self.directory / "numbers.csv"
@@ -131,7 +132,7 @@ class Components(CommandLineTest):
         self.assertAlmostEqual(statistics["volume"] / float(row["volume"]), 1, delta=1e-6)
 
     def test_period(self):
-        """A block across a side is one."""
+        """A block that crosses a side of the period counts as one piece."""
         files.write_vtp(self.input, [((x + 1.5) % 2, y, z) for x, y, z in self.points], self.arrays)
         block, = self.pieces("--periodic", "0,2,0,0,0,0")
         self.assertEqual((block["closed"], block["particles"]), ("1", "992"))

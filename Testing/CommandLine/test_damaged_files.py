@@ -21,7 +21,7 @@ NUMBERS = [b"0", b"-1", b"1", b"3", b"26", b"28", b"1000000", b"2147483647", b"2
 
 
 def mutated(data, rng):
-    """A little of it changed: a number or a word, a tag or a line, a byte, or some bytes lost."""
+    """Returns the data with one random change: another number or word, a lost tag or line, another byte, or some bytes less."""
     def replaced(match, by):
         return data[:match.start()] + by + data[match.end():]
 
@@ -41,7 +41,7 @@ def mutated(data, rng):
 
 
 class DamagedFiles(CommandLineTest):
-    """A damaged file is read all the same or refused: status 0 or 1, and one sentence at most."""
+    """A damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
 
     def setUp(self):
         super().setUp()
@@ -78,7 +78,7 @@ class DamagedFiles(CommandLineTest):
                 path = self.directory / ("damaged" + name)
                 path.write_bytes(data)
                 result = self.extract("--scalar", "Nothing", "--iso", "1", source=path, timeout=300)
-                if "no point array 'Nothing'" in result.stderr:  # it could be read: now in earnest
+                if "no point array 'Nothing'" in result.stderr:  # The file could be read, so the next run asks for a real surface.
                     result = self.extract("--free-surface", "--quiet", source=path, timeout=300)
                 statuses.add(result.returncode)
                 if result.returncode == 0:
@@ -89,7 +89,7 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """Without a check, these crash the readers of VTK 9.1 and 9.3."""
+        """These files crash the readers of VTK 9.1 and 9.3 unless they are checked first."""
         for name in ("inline.vtp", "appended.vtu"):
             with self.subTest(name):
                 data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')
@@ -98,7 +98,7 @@ class DamagedFiles(CommandLineTest):
         self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "point_data is 2700000, more than")
 
     def test_huge_numbers(self):
-        """No memory is asked for that a file of some kilobytes cannot need."""
+        """No memory is allocated that a file of some kilobytes cannot need."""
         for name, good, bad in (
                 ("inline.vtp", b'Components="1"', b'Components="2147483647"'),
                 ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"'),
@@ -110,7 +110,7 @@ class DamagedFiles(CommandLineTest):
                 self.cannot_read(result, name, "more than a file of its size can hold; it may be damaged$")
 
     def test_crash_of_the_reader(self):
-        """Whatever it does: VTK's XML library is replaced by one that goes astray."""
+        """The program survives any crash of VTK's XML library, which is replaced here by one that aborts, faults or recurses."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):
@@ -121,7 +121,7 @@ class DamagedFiles(CommandLineTest):
                             rf"\({why}\); the file may be damaged$")
 
     def test_crash_of_a_driver(self):
-        """As PoCL's over a damaged file that it has kept, which crashes every run: the folder is named."""
+        """A driver may crash in every run, as PoCL does over a damaged file that it has kept. The sentence names the folder of kept files."""
         drivers, kept = self.directory / "drivers", self.directory / "kept"
         drivers.mkdir()
         kept.mkdir()
@@ -130,10 +130,10 @@ class DamagedFiles(CommandLineTest):
         result = self.extract("--free-surface", "--quiet", env=environment)
         self.refuse(result, 1, r"the run failed: the program crashed there \(Aborted\); the OpenCL driver may be at fault, "
                                rf"files that PoCL keeps may be damaged \(remove the folder {kept}\), or memory ran out$")
-        self.extract_good("--free-surface", "--device", "built in", env=environment)  # looks for no driver
+        self.extract_good("--free-surface", "--device", "built in", env=environment)  # A run on the built-in device loads no driver.
 
     def test_damaged_kernels(self):
-        """Files that PoCL has kept are cut off, empty, or something else: its folder is named, whatever PoCL does."""
+        """Files that PoCL has kept are cut off, emptied or overwritten. Whatever PoCL does then, the sentence names its folder."""
         whole, kept = self.directory / "whole", self.directory / "kept"
         whole.mkdir()
         if self.extract("--free-surface", "--device", "pocl", env={**os.environ, "POCL_CACHE_DIR": str(whole)}).returncode:
@@ -154,7 +154,7 @@ class DamagedFiles(CommandLineTest):
                 self.assertRegex(result.stderr.splitlines()[-1], rf"^marching-correctors: .*(remove the folder {kept}|set POCL_CACHE_DIR)")
 
     def test_wrong_sizes(self):
-        """An array of fewer entries than points never reaches the filter."""
+        """A file with an array that has fewer entries than there are points is refused, so that the filter never sees it."""
         data = self.forms["ascii.vtk"].replace(b"POINTS 27", b"POINTS 26")
         self.cannot_read(self.run_with("ascii.vtk", data), "ascii.vtk", "")
 

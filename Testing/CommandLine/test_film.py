@@ -16,14 +16,14 @@ FREE = ["--free-surface"]
 
 
 class Film(CommandLineTest):
-    """Many steps: one surface for each, and a list of them."""
+    """Tests films: one surface for each of many steps, and a list of the surfaces."""
 
     def setUp(self):
         super().setUp()
         self.film = self.directory / "film.pvd"
 
     def write_steps(self, count, step=0.1, **changes):
-        """drop_0.vtp, ... and steps.pvd, which lists them at 0, `step`, ..."""
+        """Writes drop_000.vtp, ... and steps.pvd, which lists them at the times 0, `step`, ..."""
         entries = []
         for i in range(count):
             path = self.directory / f"drop_{i:03}.vtp"
@@ -41,7 +41,7 @@ class Film(CommandLineTest):
         return json.loads(statistics.read_text())
 
     def listed(self):
-        """[(time, path)] of the film."""
+        """Returns [(time, path)] as the film's list has them."""
         root = xml.etree.ElementTree.parse(self.film).getroot()
         self.assertEqual(root.get("type"), "Collection")
         return [(float(e.get("timestep")), self.directory / e.get("file"))
@@ -56,9 +56,9 @@ class Film(CommandLineTest):
     # Films
 
     def test_ten_steps_by_one_command(self):
-        """Five of them interpolated."""
+        """Of ten times five lie between two steps and are interpolated."""
         self.write_steps(6)
-        times = [0.05 * i for i in range(10)]  # 0.30000000000000004, too
+        times = [0.05 * i for i in range(10)]  # One of these times is 0.30000000000000004.
         result = self.run_good("steps.pvd", self.film, *FREE, "--times", ",".join(map(repr, times)), "--stats", "s.json")
         self.assertEqual(result.stdout.count("\n"), 10)
         self.assertRegex(result.stdout, r"(?m)^.*film_0003\.vtp \(time 0\.15\): \d+ points, \d+ triangles")
@@ -71,13 +71,13 @@ class Film(CommandLineTest):
         self.assertEqual([len(s["inputs"]) for s in steps], [1, 2] * 5)
         builds = [s["seconds"]["program_build"] for s in steps]
         self.assertGreater(builds[0], 0)
-        self.assertEqual(builds[1:], [0] * 9)  # one program for all
+        self.assertEqual(builds[1:], [0] * 9)  # All steps use the program that the first one built.
         for step in steps:
             self.assertGreater(step["statistics"]["triangles"], 1000)
             self.assertGreater(step["wall_seconds"], 0)
 
     def test_steps_are_as_surfaces_alone(self):
-        """Buffers that live on change no byte; files are in the order of their numbers."""
+        """A film of several files has the same bytes as single runs, though buffers are reused. Files are taken in the order of their numbers."""
         paths = self.write_steps(3)
         self.good(*paths[::-1])
         self.assertEqual([t for t, _ in self.listed()], [0, 1, 2])
@@ -109,7 +109,7 @@ class Film(CommandLineTest):
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
-        """A range is its times; frames are as many as the unit of time and the slow motion say."""
+        """A range of --times means all times in it. The number of frames follows from the unit of time and the slow motion."""
         paths = self.write_steps(3)
         film = [*paths, self.film, *FREE, "--quiet", "--time-step", "0.1"]
         for options, times in ((["--times", "0:0.2:0.05"], [0, 0.05, 0.1, 0.15, 0.2]), (["--times", "0.2,0:0.1:0.04"], [0, 0.04, 0.08, 0.2]),
@@ -124,7 +124,7 @@ class Film(CommandLineTest):
             self.one_sentence(self.run_program(*film, *options), 2, sentence)
 
     def test_points_over_time(self):
-        """--probe with several steps and a .csv output: a row for each step and point, empty where there is no fluid."""
+        """With several steps and a .csv output, --probe writes a row for each step and point; cells are empty where there is no fluid."""
         paths = self.write_steps(3)
         (self.directory / "points.csv").write_text("x,y,z,name\n0,0,0,middle\n0.2,0.1,0,side\n9,0,0,far\n")
         table = self.directory / "table.csv"
@@ -139,7 +139,7 @@ class Film(CommandLineTest):
         self.assertEqual({row["Density"] for row in found if row["valid"] == "0"}, {""})
         for row in found:
             if row["name"] == "side":
-                self.assertAlmostEqual(float(row["Velocity:0"]), -0.2, delta=0.02)  # 2 / s around z
+                self.assertAlmostEqual(float(row["Velocity:0"]), -0.2, delta=0.02)  # The velocity is that of a rotation of 2 / s around z.
                 self.assertAlmostEqual(float(row["Velocity:2"]), -float(row["time"]), delta=0.01)
         alone = rows(paths[1], table)
         for one, row in zip(alone, found[6:9]):
@@ -147,7 +147,7 @@ class Film(CommandLineTest):
         self.one_sentence(self.run_program(*paths, "o.vtp", "--probe", "points.csv"), 2, ".csv")
 
     def test_color_names(self):
-        """A name that no array has is told before a surface is made; one that differs in case is offered."""
+        """A wrong array name is told before a surface is made, and one that differs only in case is offered as a correction."""
         files.write_vtp(self.input, *files.drop_at(0.0))
         for name, sentence in (("velocity", "no array 'velocity' to colour by; did you mean 'Velocity'?"), ("Nope", "there are .*Velocity")):
             result = self.run_program(self.input, self.input, "film_%04d.ply", "--free-surface", "--color-by", name)
@@ -155,7 +155,7 @@ class Film(CommandLineTest):
             self.assertEqual((result.returncode, result.stdout), (1, ""))
 
     def test_period_between_steps(self):
-        """Particles that cross the side of a period go on beyond it, not back through the box."""
+        """Particles that cross a side of the period are interpolated beyond it, not back through the box."""
         points, arrays = files.lattice(6)
         for i, x in enumerate((0.6, 0.8)):
             moved = [((p[0] + x) % 1, p[1] + 0.5, p[2] + 0.5) for p in points]
@@ -184,7 +184,7 @@ class Film(CommandLineTest):
         self.one_sentence(result, 1, r"film_0001.vtp \(time 0.05\): There is no point array 'Idp'")
 
     def test_parts(self):
-        """Several files of one time are parts of one set of particles."""
+        """Several files of the same time are parts of one set of particles."""
         self.write_steps(1)
         self.good("steps.pvd")
         whole = self.listed()[0][1].read_bytes()
@@ -197,7 +197,7 @@ class Film(CommandLineTest):
         self.assertEqual(self.listed()[0][1].read_bytes(), whole)
 
     def test_other_formats(self):
-        """With the step's number in the name: no list, and files of one's own are replaced."""
+        """With the step's number in the output name there is no list, and files of an earlier run are replaced."""
         self.write_steps(3)
         for ending, begin in ((".ply", b"ply\n"), (".obj", b"# by"), (".stl", b"binary"), (".vtp", b"<?xml")):
             with self.subTest(ending):
@@ -206,11 +206,11 @@ class Film(CommandLineTest):
                 for i in range(3):
                     self.assertTrue((self.directory / f"drop_{i:02}{ending}").read_bytes().startswith(begin))
         self.assertFalse(self.film.exists())
-        result = self.run_program("steps.pvd", "drop_%03d.vtp", *FREE)  # these are the steps themselves
+        result = self.run_program("steps.pvd", "drop_%03d.vtp", *FREE)  # This pattern names the steps themselves.
         self.one_sentence(result, 2, "drop_000.vtp would overwrite the input")
 
     def test_pictures(self):
-        """One of each step."""
+        """--screenshot makes one picture of each step."""
         self.write_steps(2)
         self.run_good("steps.pvd", self.film, *FREE, "--quiet", "--screenshot", "frame_%d.png", "--color-by", "Velocity", "--up",
                       "z", display=True)
@@ -223,7 +223,7 @@ class Film(CommandLineTest):
     # Failures
 
     def test_step_without_points(self):
-        """As VTK writes it."""
+        """A step without particles, as VTK writes it, gives an empty surface."""
         path = self.write_steps(3)[1]
         files.write_vtp(path, [], {})
         text = path.read_text()
@@ -246,7 +246,7 @@ class Film(CommandLineTest):
         self.assertEqual([t for t, _ in self.listed()], [0.1, 0.3, 0.35])
 
     def test_crash_of_the_reader(self):
-        """A sentence that names the file; what was made before is listed."""
+        """When a step fails, a sentence names the file, and the surfaces made before are listed."""
         paths = self.write_steps(3)
         result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault", reader_call=2))
         if result.returncode == 0:
@@ -263,7 +263,7 @@ class Film(CommandLineTest):
         self.assertEqual(self.surfaces(), [])
 
     def test_signal(self):
-        """Steps that were done stay, and are listed; a second run goes over them."""
+        """After an interrupted run the finished steps stay and are listed, and a second run overwrites them."""
         self.write_steps(3)
         run = subprocess.Popen([self.program, "steps.pvd", self.film, *FREE, "--quiet"],
                                cwd=self.directory, env=self.misbehaving(
@@ -279,12 +279,12 @@ class Film(CommandLineTest):
         self.good("steps.pvd")
         self.assertEqual(len(self.listed()), 3)
 
-    # Whose files are whose
+    # ---- Which files a film may replace ----
 
     def test_no_file_of_others_is_lost(self):
         paths = self.write_steps(2)
         self.good("steps.pvd")
-        self.good("steps.pvd")  # over its own
+        self.good("steps.pvd")  # The film replaces its own files.
         mine = self.directory / "film_0001.vtp"
         for content in ("precious", self.without_mark(mine)):
             mine.write_text(content)
@@ -302,7 +302,7 @@ class Film(CommandLineTest):
         self.one_sentence(result, 2, "steps.pvd would overwrite the input")
 
     def test_names(self):
-        """The list names what XML and shells know how to quote."""
+        """Names in the list are quoted for XML, and names in sentences for a shell."""
         folder = self.directory / 'a "b" & <c> ü'
         folder.mkdir()
         self.film = folder / 'd "e" & <f> ö.pvd'
@@ -354,7 +354,7 @@ class Film(CommandLineTest):
     # Costs
 
     def test_memory_is_flat(self):
-        """100 steps, of which 50 are interpolated, take no more than the first 20 do."""
+        """100 steps, of which 50 are interpolated, need no more memory than the first 20."""
         self.write_steps(51, step=0.01, n=16)
         steps = self.good("steps.pvd", "--times", ",".join(repr(0.005 * i) for i in range(100)))["steps"]
         self.assertEqual(len(steps), 100)

@@ -12,14 +12,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def box_of(path):
-    """Smallest and largest coordinates of an ASCII .obj file."""
+    """Returns (smallest, largest) of each coordinate of an ASCII .obj file."""
     points = [tuple(map(float, line.split()[1:4])) for line in path.read_text().splitlines()
               if line.startswith("v ")]
     return [(min(p[c] for p in points), max(p[c] for p in points)) for c in range(3)]
 
 
 class Formats(CommandLineTest):
-    """Surfaces as .stl, .ply and .obj; particles from .pvtp, .pvtu and .vtkhdf."""
+    """Tests surfaces as .stl, .ply and .obj, and particles from .pvtp, .pvtu and .vtkhdf."""
 
     def extract_as(self, ending, *options):
         self.output = self.directory / ("surface" + ending)
@@ -57,7 +57,7 @@ class Formats(CommandLineTest):
             self.assertTrue(all(0 <= c < points for c in corners) and len(set(corners)) == 3)
 
     def test_ply_arrays(self):
-        """Properties of the points' own types, as .vtp has the arrays; a name that is there already gets another one."""
+        """Properties in a .ply file have the types that the arrays have in a .vtp file. An array whose name is taken already gets another one."""
         self.arrays.update({"x": [1.5] * len(self.points), "a b": list(range(len(self.points)))})
         files.write_vtp(self.input, self.points, self.arrays)
         data = self.extract_as(".ply")
@@ -73,7 +73,7 @@ class Formats(CommandLineTest):
         for i in range(points):
             values = dict(zip(names, row.unpack_from(body, i * row.size)))
             self.assertAlmostEqual(values["x_"], 1.5)
-            for axis in "xyz":  # the velocity is the place; at the surface the mean of one side
+            for axis in "xyz":  # The velocity equals the position; at the surface the mean has particles on one side only.
                 self.assertAlmostEqual(values["Velocity_" + axis], values[axis], delta=0.1)
         self.assertIn(b"property double IsoValue\n", self.extract_as(".ply", "--iso", "0.4,0.5").split(b"end_header")[0])
 
@@ -86,7 +86,7 @@ class Formats(CommandLineTest):
         self.assertLess(abs(box_of(self.output)[0][0] + box_of(self.output)[0][1]), 1e-3)
 
     def test_obj_digits(self):
-        """Nine: every float comes back."""
+        """Nine digits are written, so that every float is read back exactly."""
         self.points = [(1e-3 * x + 1.0, y, z) for x, y, z in self.points]
         files.write_vtp(self.input, self.points, self.arrays)
         self.extract_as(".obj", "--output-precision", "single")
@@ -98,7 +98,7 @@ class Formats(CommandLineTest):
             self.assertEqual(struct.pack("=3f", *place), data[start + 24 * i:start + 24 * i + 12])
 
     def test_colors(self):
-        """The array of --color-by is in a .ply file as colours; what others leave out is said."""
+        """A .ply file has the array of --color-by as colours. Other formats say that they leave it out."""
         points, triangles = self.counts()
         self.output = self.directory / "surface.ply"
         self.extract_good("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7",
@@ -110,9 +110,9 @@ class Formats(CommandLineTest):
         for i in range(points):
             x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 51 * i)
             speeds.append(((x * x + y * y + z * z) ** 0.5, green))
-        speeds.sort()  # the speed is about the distance from the centre; the colours grow in green with it
+        speeds.sort()  # The speed is nearly the distance from the centre, and the green of the colours grows with it.
         self.assertLess(speeds[0][1], 60)
-        self.assertEqual(speeds[-1][1], 231)  # the last colour, beyond the range
+        self.assertEqual(speeds[-1][1], 231)  # Values beyond the range have the last colour.
         for ending, hint in ((".obj", "--no-attributes"), (".stl", ".vtp keeps all, .ply those of numbers")):
             self.output = self.directory / ("surface" + ending)
             self.one_sentence(self.extract("--free-surface", "--quiet"), 0,
@@ -131,7 +131,7 @@ class Formats(CommandLineTest):
     # Inputs
 
     def write_pieces(self, kind, write, ghosts=False):
-        """particles.p<kind> with two pieces and an empty one."""
+        """Writes particles.p<kind> with two pieces and an empty one."""
         pieces = []
         for i, numbers in enumerate((range(0, 600 if ghosts else 500), range(500, 1000), [])):
             path = self.directory / f"piece{i}.{kind}"
@@ -158,7 +158,7 @@ class Formats(CommandLineTest):
                     self.assertEqual(found["triangles"], expected)
 
     def test_pieces_of_several_types(self):
-        """An array in one piece as float, in another as double, with numbers that both hold."""
+        """One piece stores an array as float, another as double; both types hold these numbers exactly."""
         path, pieces = self.write_pieces("vtp", files.write_vtp)
         expected = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
         text = pieces[1].read_text()
@@ -168,7 +168,7 @@ class Formats(CommandLineTest):
         self.assertEqual(found, expected)
 
     def test_range_that_vtk_cannot_read(self):
-        """VTK writes inf as an array's range, if it is, and cannot read it; the numbers count."""
+        """VTK writes inf as the range of an array that holds inf, but cannot read it back. The program ignores this range and reads the numbers."""
         files.write_vtp(self.input, *files.drop_at(0))
         text = self.input.read_text()
         key = ('<InformationKey name="L2_NORM_RANGE" location="vtkDataArray" length="2"><Value index="0">0</Value>'
@@ -191,7 +191,7 @@ class Formats(CommandLineTest):
         self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
 
     def test_gadget(self):
-        """Both binary formats, in both orders of bytes; several files are one snapshot. Gas alone, h half of GADGET's."""
+        """Reads both binary formats in both byte orders; several files are one snapshot. Only gas is read, and h is half of GADGET's."""
         points, arrays = files.lattice(4)
         files.write_vtp(self.input, points, {name: arrays[name] for name in ("SmoothingLength", "Mass", "Density")})
         self.succeed("--free-surface", "--no-attributes")
@@ -225,9 +225,9 @@ class Formats(CommandLineTest):
         def made(source):
             self.succeed("--free-surface", source=source)
             found = re.findall(r'<DataArray [^>]*Name="(\w+)"[^>]*>\s*(.*?)\s*</DataArray>', self.output.read_text(), re.DOTALL)
-            return {name: text for name, text in found if name != "Kind"}  # of another type of integers there
+            return {name: text for name, text in found if name != "Kind"}  # Kind has another integer type in the grid's file.
         self.assertGreater(set(made(self.input)), {"Points", "Normals", "Velocity", "connectivity"})
-        self.assertEqual(made(grid), made(self.input))  # to the last bit
+        self.assertEqual(made(grid), made(self.input))  # Both surfaces have the same bits.
         self.output.unlink()
         self.assertEqual(made(HERE / "lattice_poly.vtkhdf"), made(self.input))
         film = self.directory / "film.pvd"
@@ -251,10 +251,10 @@ class Formats(CommandLineTest):
         damaged = self.directory / "damaged.vtkhdf"
         self.output.unlink(missing_ok=True)
         data = grid.read_bytes()
-        for bad in (data[:2000], data[:2002] + b"\xf5" + data[2003:]):  # HDF5 says more of the second when it ends
+        for bad in (data[:2000], data[:2002] + b"\xf5" + data[2003:]):  # With the second file HDF5 prints more when the program ends.
             damaged.write_bytes(bad)
             self.refuse(self.extract("--free-surface", source=damaged), 1, "damaged.vtkhdf cannot be read: ")
-        for name in ("link", "storage", "virtual"):  # whether or not there is such a file
+        for name in ("link", "storage", "virtual"):  # The file is refused whether or not the file that it points to exists.
             self.refuse(self.extract("--free-surface", source=HERE / f"{name}.vtkhdf"), 1,
                         "its 'VTKHDF/PointData/Secret' lies in another file, which is not opened")
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gauges and fluxes by the program marching-correctors, and the volumes of particles that these tell of:
-test_meters.py PROGRAM PRELOAD GROUP."""
+"""Tests gauges and fluxes of the program, and the volumes of particles that they show: test_meters.py PROGRAM PRELOAD GROUP."""
 import math
 import os
 import subprocess
@@ -16,13 +15,13 @@ WALL = "wall=0.1,-.2,-.2:0.1,.2,-.2:0.1,-.2,.3"
 CUBE = [(-.2, -.2, -.2), (.2, -.2, -.2), (.2, .2, -.2), (-.2, .2, -.2),
         (-.2, -.2, .2), (.2, -.2, .2), (.2, .2, .2), (-.2, .2, .2)]
 SIDES = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6), (0, 5, 1), (0, 4, 5), (1, 6, 2), (1, 5, 6), (2, 7, 3), (2, 6, 7),
-         (3, 4, 0), (3, 7, 4)]  # normals inwards, which are turned
+         (3, 4, 0), (3, 7, 4)]  # The normals point inwards, so the program turns them.
 
 DX = files.SPACING
 
 
 class Meter(CommandLineTest):
-    """Tests of both tables."""
+    """Has the tests that gauges and fluxes share."""
 
     def setUp(self):
         super().setUp()
@@ -48,7 +47,7 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """The time of a single file counts; where files tell none, one line says so, and what velocities say."""
+        """The time in a single file is used. Where files hold no time, one line says so, and says what this means for velocities."""
         for step in range(3):
             points, arrays = files.drop_at(0.05 * step)
             files.write_vtp(self.directory / f"step_{step}.vtp", points, arrays)
@@ -64,7 +63,7 @@ class Meter(CommandLineTest):
         self.run_good(*steps, self.table, *self.one, "--time-step", "0.05")
 
     def test_steps_without_fluid(self):
-        """A step without particles of the type, or without any, is a step like others; in a plane, too."""
+        """A step without particles, or without particles of the fluid's type, gives rows like other steps, in a plane, too."""
         plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
         z = self.points[0][2]
         for flat in (False, True):
@@ -87,7 +86,7 @@ class Meter(CommandLineTest):
                     self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
-        """cases of exit status 2 and 1, and those that both tables have; the table stays as it was."""
+        """Refuses these usages (status 2) and data (status 1), and the ones that are wrong for both tables. The table stays as it was."""
         many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
             (["--iso", "0.2,0.5"], "all but one --iso value"), (["--iso", "0"], "--iso value above 0"),
@@ -106,7 +105,7 @@ class Meter(CommandLineTest):
 
 
 class Gauge(Meter):
-    """A block of particles with the sides 1 around the origin, on gauges."""
+    """Tests gauges in a block of particles with sides of 1 around the origin."""
 
     one = ["--gauge", UP]
     columns = ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"]
@@ -145,7 +144,7 @@ class Gauge(Meter):
         self.assertEqual([row["gauge"] for row in rows], ["mast", "one", "two"])
 
     def test_steps(self):
-        """Several files, or those of a .pvd file, at their times."""
+        """Several files, or the files of a .pvd file, are measured at their times."""
         self.write_rising_steps(3, 0.1)
         rows = self.good("--gauge", UP, "--gauge", "other=0.1,0,-1:0.1,0,1", source="steps.pvd")
         self.assertEqual([(float(row["time"]), row["gauge"]) for row in rows],
@@ -158,7 +157,7 @@ class Gauge(Meter):
         self.assertEqual(self.table.read_text(), before)
 
     def test_a_table_that_grows(self):
-        """Steps that were measured are in the table before the others are."""
+        """Rows of measured steps are in the table before the run ends."""
         program = subprocess.Popen([self.program, *[self.input] * 1000, self.table, "--gauge", UP], cwd=self.directory,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         end = time.monotonic() + 300
@@ -175,7 +174,7 @@ class Gauge(Meter):
             part.unlink()
 
     def test_a_step_that_fails(self):
-        """The others are in the table."""
+        """When one file cannot be read, the table has the rows of all other files."""
         result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP, "--time-step", "1")
         self.one_sentence(result, 1, "marching-correctors: missing.vtp cannot be read: ")
         self.assertEqual([row["time"] for row in self.read_rows()], ["0", "2"])
@@ -201,7 +200,7 @@ class Gauge(Meter):
 
 
 class Flux(Meter):
-    """A block of particles with the sides 1 around the origin, which moves by (1, -2, 3) and as one."""
+    """Tests fluxes of a block with sides of 1 around the origin, which moves as one with (1, -2, 3)."""
 
     one = ["--flux", WALL]
     columns = ["time", "section", "area", "volume_flux", "mass_flux", "velocity", "volume", "mass"]
@@ -237,7 +236,7 @@ class Flux(Meter):
         self.assertEqual(self.rows("--fluxes", "sections.txt", "--flux", WALL), [rows[0], rows[1], rows[4]])
 
     def test_outwards(self):
-        """The velocity is the position: 3 times the volume flows out of a closed file, whatever its triangles' normals."""
+        """Where the velocity is the position, 3 times the volume flows out of a closed mesh, whatever the direction of its triangles' normals."""
         for turned in (False, True):
             faces = "".join(f"3 {a + 0} {b if turned else d} {d if turned else b}\n" for a, b, d in SIDES)
             (self.directory / "cube.vtk").write_text(
@@ -257,7 +256,7 @@ class Flux(Meter):
         self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
 
     def test_volume_that_has_passed(self):
-        """The volume of fluid in a box, as of the capped surface, grows by what flows in through its sides."""
+        """The volume of fluid in a box is that of the capped surface, and grows by what flows in through its sides."""
         self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],
@@ -303,10 +302,10 @@ class Flux(Meter):
 
 
 class Volumes(CommandLineTest):
-    """A block of 10 x 10 x 10 particles around the origin, half a spacing beyond which its surface is."""
+    """Tests the level of a block of 10 x 10 x 10 particles around the origin, whose surface is half a spacing beyond the particles."""
 
     def level(self, *options, arrays=(), points=None):
-        """In spacings above the uppermost particles, and what was said of volumes."""
+        """Returns the level, in spacings above the uppermost particles, and what the program said about volumes."""
         given = points or self.points
         files.write_vtp(self.input, given, {name: self.arrays[name][:len(given)] for name in arrays})
         table = self.directory / "levels.csv"
@@ -315,7 +314,7 @@ class Volumes(CommandLineTest):
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):
-        """Whatever tells volumes; gauges say what did."""
+        """The level is the same whatever tells the volumes, and gauges say what did."""
         for options, arrays, told in (
                 (("--smoothing-length", "0.13"), (), "computed from the positions"),
                 (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),
@@ -346,10 +345,10 @@ class Volumes(CommandLineTest):
         self.assertEqual(len(set(map(tuple, ranges.values()))), 2)
         low, high = ranges["neighbours"]
         self.assertAlmostEqual(low, 1.3 * DX, delta=0.03 * DX)  # inside
-        self.assertGreater(high, 1.2 * low)  # at corners
+        self.assertGreater(high, 1.2 * low)  # At corners the volumes are larger.
         self.assertLess(ranges["neighbours=1.1"][0], 0.9 * low)
         summed = self.succeed("--scalar", "Density", "--iso", "900", "--field", "sum", "--smoothing-length", "neighbours")
-        self.assertAlmostEqual(summed["statistics"]["scalar_range"][1], 1000, delta=50)  # where it is not there
+        self.assertAlmostEqual(summed["statistics"]["scalar_range"][1], 1000, delta=50)  # This is the density where Density is missing.
         self.output.unlink()
         free = "--free-surface", "--smoothing-length"
         self.refuse_all(2, [(["neighbours=0"], "--smoothing-length")], *free)

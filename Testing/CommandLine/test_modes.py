@@ -19,7 +19,7 @@ import particle_files as files
 from command_line_test import WITH_DISPLAY, CommandLineTest, main
 
 BOX = "-0.15,0.15,-0.4,0.4,-0.4,0.02"
-# The files and options of a command line in each mode.
+# Each mode has its input files, its output and the options that a plain command line needs.
 MODES = {
     "surface": (["step_0.vtp"], "out.vtp", {"--scalar": "Radius", "--iso": "0.3"}),
     "film": (["step_0.vtp", "step_1.vtp"], "out.pvd", {"--scalar": "Radius", "--iso": "0.3"}),
@@ -36,11 +36,11 @@ PICTURE = {"--screenshot": "p.png"}
 
 
 class Trial(collections.namedtuple("Trial", "value context extra output inputs", defaults=("", {}, {}, None, None))):
-    """An option's value; options that are there without it, too; options that it needs, or None in place of one that it replaces;
-    and other files."""
+    """A trial has an option's value; `context`: options that are there with and without it; options that it needs, or None for an option that it
+    replaces; and other files."""
 
 
-# How each option is tried. What a mode does not take of the context is left out there.
+# These rows say how each option is tried. In each mode, options of the context that do not act there are left out.
 TRIALS = {
     "--scalar": Trial("Noise"), "--component": Trial("0", {"--scalar": "Velocity", "--iso": "0.02"}), "--iso": Trial("0.25"),
     "--free-surface": Trial("", {}, FREE), "--derive": Trial("Velocity"), "--field": Trial("sum"), "--probe": Trial("others.vtp"),
@@ -68,7 +68,7 @@ TRIALS = {
     "--up": Trial("x", PICTURE), "--view": Trial("1,2,3", PICTURE), "--device": Trial("nonesuch"), "--threads": Trial("1"),
     "--memory-limit": Trial("1", {"--cube-size": "0.01"})}
 FILM_PICTURE = {"--screenshot": "p_%04d.png"}
-# Where a mode needs something else.
+# These modes need another trial of the option.
 OTHER_TRIALS = {
     ("--gauge-grid", "gauge"): TRIALS["--gauge-grid"]._replace(output="out.vti", inputs=["step_0.vtp"]),
     ("--derive", "project"): Trial("Velocity", {}, {"--scalar": "Divergence"}),
@@ -99,7 +99,7 @@ HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("sli
 
 
 def numbers_of(report):
-    """The statistics in the file of --stats, at any depth."""
+    """Returns the statistics, at any depth, that the file of --stats holds."""
     if isinstance(report, list):
         return [numbers_of(each) for each in report]
     return report.get("statistics") or numbers_of(report.get("steps", []))
@@ -119,7 +119,8 @@ class Modes(CommandLineTest):
             self.arrays["Tag"].reverse()
             files.write_vtp(self.directory / f"step_{step}.vtp",
                             [tuple(x + 0.1 * x * step for x in p) for p in self.points], self.arrays)
-        bare = {name: values for name, values in self.arrays.items() if name not in ("Mass", "Density")}  # volumes are computed
+        # Without masses and densities, volumes are computed.
+        bare = {name: values for name, values in self.arrays.items() if name not in ("Mass", "Density")}
         files.write_vtp(self.directory / "bare.vtp", self.points, bare)
         files.write_image(self.directory / "many.vti", "0 99 0 99 0 9", "-0.5 -0.5 -0.5", "0.01 0.01 0.1")
         many = files.lattice(36)[0]
@@ -137,7 +138,7 @@ class Modes(CommandLineTest):
         self.runs = {}
 
     def run_once(self, key):
-        """Exit status, standard error and all that the run writes, but for the seconds."""
+        """Returns the exit status, the standard error, and all that a run writes, without seconds."""
         inputs, output, options = key
         folder = self.directory / f"run_{len(os.listdir(self.directory))}_{abs(hash(key))}"
         folder.mkdir()
@@ -146,7 +147,7 @@ class Modes(CommandLineTest):
                 (folder / name).symlink_to(self.directory / name)
         words = [word for option, value in options for word in ([option, value] if value else [option])]
         result = self.run_program(*inputs, output, *words, cwd=folder)
-        # Numbers of a run are not its parameters: these would differ in any case.
+        # The report's parameters differ in any case, so only its statistics are compared.
         written = {path.name: path.read_bytes() for path in folder.iterdir() if not path.is_symlink() and path.suffix != ".json"}
         written.update((path.name, numbers_of(json.loads(path.read_text()))) for path in folder.glob("*.json"))
         told = "\n".join(line.split(" ")[0] if re.match("seconds|device|memory|program", line) else re.sub(r"[\d.]+ s$", "", line)
@@ -154,13 +155,13 @@ class Modes(CommandLineTest):
         return result.returncode, result.stderr, (written, told)
 
     def acting(self):
-        """{mode: options} that --help lists."""
+        """Returns {mode: options}, as --help lists them."""
         names = {mode: re.findall(r"(?m)^  (--[\w-]+)", self.run_good("--help", mode).stdout) for mode in (*MODES, "all")}
         self.assertEqual(set(names["all"]), set(TRIALS) | QUESTIONS)
         return {mode: set(names[mode]) for mode in MODES}
 
     def key(self, mode, trial, option=None):
-        """The command line with an option, or without it."""
+        """Returns the key of the run with the option, or without it."""
         inputs, output, base = MODES[mode]
         options = {**base, **{name: value for name, value in trial.context.items() if name in self.help[mode]}}
         if option:
@@ -178,14 +179,14 @@ class Modes(CommandLineTest):
                                             for _, _, base in MODES.values()) or option in ("--gauges", "--gauge-grid", "--fluxes")
 
     def judge(self, option, mode, trial):
-        """Returns what the option does, and what is wrong with that."""
+        """Returns (what the option does, what is wrong with it)."""
         status, said, written = self.runs[self.key(mode, trial, option)]
         base_status, base_said, base = self.runs[self.key(mode, trial)]
         if base_status != 0:
             return "?", f"fails without it: {base_said}"
         if option not in self.help[mode]:
             sentence = rf"^marching-correctors: {option} is for [\w, ]+, not for \w+; leave it out.*\n$"
-            if self.makes_mode(option):  # another one, in which the mode's own options do not act
+            if self.makes_mode(option):  # The option chooses another mode, in which options of this one do not act.
                 sentence = r"^marching-correctors: .*\n$"
             good = status == 2 and re.match(sentence, said) and not written[0]
             return "refused", "" if good else f"is not in --help {mode}, but {status} {said}"
@@ -196,7 +197,7 @@ class Modes(CommandLineTest):
         return "?", said or "does nothing"
 
     def test_the_guide_says_it(self):
-        """parameters.md lists which options act where, as --help does."""
+        """The table in parameters.md says the same as --help about which option acts where."""
         acting = self.acting()
         page = (pathlib.Path(__file__).parents[2] / "Documentation" / "Guide" / "parameters.md").read_text(encoding="utf-8")
         rows = re.findall(r"(?m)^\| (`--.*?) \|((?: [x ]? ?\|){8})$", page)
@@ -219,6 +220,6 @@ class Modes(CommandLineTest):
 
 
 if __name__ == "__main__":
-    if not os.environ.get("DISPLAY"):  # one for all pictures
+    if not os.environ.get("DISPLAY"):  # All pictures share one display.
         os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
     main()

@@ -24,7 +24,7 @@ def mode_of(path):
 
 
 class OutputFiles(CommandLineTest):
-    """Every output is whole or untouched, and what is no regular file stays what it is."""
+    """Tests that every output is whole or untouched, and that devices, pipes and links stay what they are."""
 
     def good(self, *options, **run_options):
         return self.extract_good(*FREE, *options, **run_options)
@@ -34,16 +34,16 @@ class OutputFiles(CommandLineTest):
         self.assertTrue(text.startswith("<?xml") and text.rstrip().endswith("</VTKFile>"))
         return text
 
-    # Outputs that are no regular files
+    # ---- Outputs that are not regular files ----
 
     def device(self, name, minor):
-        """A device of our own where we may make one: the fault would cost the machine its own."""
+        """Returns a device file of the test's own, where one may be made, because a fault would destroy the machine's."""
         path = self.directory / name
         try:
             os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, minor))
             path.open("wb").close()
         except PermissionError:
-            path = pathlib.Path("/dev") / name  # such a user cannot replace it
+            path = pathlib.Path("/dev") / name  # A user who may not make devices cannot replace this one either.
         return path
 
     def test_device(self):
@@ -58,14 +58,14 @@ class OutputFiles(CommandLineTest):
         reader = threading.Thread(target=lambda: texts.append(fifo.read_text()))
         reader.start()
         result = self.extract(*FREE, "--stats", fifo)
-        if not stat.S_ISFIFO(fifo.stat().st_mode):  # the reader would wait for ever
+        if not stat.S_ISFIFO(fifo.stat().st_mode):  # Without this check, the reader would wait for ever on a replaced pipe.
             os.kill(os.getpid(), signal.SIGKILL)
         reader.join()
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(json.loads(texts[0])["output"], str(self.output))
 
     def test_standard_output(self):
-        for name in ("/dev/fd/1", "/proc/self/fd/1"):  # /dev/stdout is a link to it
+        for name in ("/dev/fd/1", "/proc/self/fd/1"):  # /dev/stdout is a link to the first of these.
             with self.subTest(name):
                 link = self.directory / "link"
                 link.symlink_to(name)
@@ -78,11 +78,11 @@ class OutputFiles(CommandLineTest):
         with log.open("w") as stream:
             self.extract("--free-surface", "--stats", "/dev/fd/1", capture_output=False, stdout=stream)
         text = log.read_text()
-        self.assertTrue(text.startswith("particles "), text)  # what came first is still there
+        self.assertTrue(text.startswith("particles "), text)  # The text that the file had before is still there.
         self.assertIn("statistics", json.loads(text[text.index("{"):]))
 
     def test_closed_standard_output(self):
-        # No file that the program opens becomes its standard output.
+        # With standard output closed, no file that the program opens takes its place.
         result = subprocess.run(["sh", "-c", '"$@" >&-', "sh", self.program, self.input, self.output,
                                  "--free-surface", "--stats", "s.json"], cwd=self.directory,
                                 capture_output=True, text=True, timeout=1200)
@@ -99,7 +99,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(self.extract(*FREE, "--stats", self.device("full", 7)), 1,
                           "/full could not be written: No space left on device")
 
-    # Links and modes
+    # ---- Links and modes ----
 
     def test_symbolic_link(self):
         (self.directory / "a").mkdir()
@@ -108,7 +108,7 @@ class OutputFiles(CommandLineTest):
         link = self.directory / "a" / "link.vtp"
         link.symlink_to("../b/other.vtp")
         (self.directory / "b" / "other.vtp").symlink_to("target.vtp")
-        for old in (None, "old"):  # the links lead nowhere at first
+        for old in (None, "old"):  # In the first round the links lead nowhere.
             with self.subTest(old=old):
                 if old:
                     target.write_text(old)
@@ -148,7 +148,7 @@ class OutputFiles(CommandLineTest):
         self.good()
         status = self.output.stat()
         self.assertEqual((status.st_uid, status.st_gid, mode_of(self.output)), (12345, 54321, 0o666))
-        # A user who cannot keep owner and group gives nobody what the old group had.
+        # A user who cannot keep owner and group does not pass the old group's rights on to the new one.
         self.good(preexec_fn=drop_privileges)
         self.assertEqual((self.output.stat().st_uid, oct(mode_of(self.output))), (0, oct(0o606)))
 
@@ -172,7 +172,7 @@ class OutputFiles(CommandLineTest):
             self.assertEqual((victim.read_text(), part.read_text()), ("precious", "precious"))
             part.unlink()
 
-    # One file twice
+    # ---- One file named twice ----
 
     def test_same_file(self):
         hard = self.directory / "hard.vtp"
@@ -185,7 +185,7 @@ class OutputFiles(CommandLineTest):
             with self.subTest(output):
                 self.one_sentence(self.run_program(self.input, output, *FREE), 2,
                                   "would overwrite the input")
-        (self.directory / "later").symlink_to("surface.vtp")  # before there is one
+        (self.directory / "later").symlink_to("surface.vtp")  # The link is made before its target exists.
         for name in "folder/surface.vtp", "later", "./surface.vtp":
             with self.subTest(name):
                 self.one_sentence(self.extract(*FREE, "--stats", name), 2, "would be written twice")
@@ -196,7 +196,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(result, 2, "log.json would be written twice: standard output goes there, too")
 
     def test_pieces_are_inputs(self):
-        """Files that a list of pieces names are read, too, and not written over, under any name."""
+        """Files that a list of pieces names are inputs, too, and are not overwritten under any name."""
         piece = self.directory / "piece.vtp"
         self.input.rename(piece)
         before = piece.read_text()
@@ -234,7 +234,7 @@ class OutputFiles(CommandLineTest):
         self.assertFalse((self.directory / "film.pvd").exists())
 
     def test_no_output_replaces_an_input(self):
-        """Every option that names an output, with every way to name an input: what is read stays as it was."""
+        """Each option that names an output is tried with each way to name an input. The input is refused as output and stays as it was."""
         at = self.directory
         files.write_gadget(at / "snap.0", self.points, self.arrays, range(500), count=2)
         files.write_gadget(at / "snap.1", self.points, self.arrays, range(500, 1000), count=2)
@@ -287,7 +287,7 @@ class OutputFiles(CommandLineTest):
                     out.unlink()
 
     def test_names_for_xml(self):
-        """Names of files and arrays, those of field data, too, come back as they were."""
+        """Unusual names of files, arrays and field data are read back as they were."""
         name = "a<b>&\"c' d"
         points = self.directory / f"{name}.vtp"
         field = f'<FieldData>{files.xml_array(name.replace("&", "&amp;").replace("<", "&lt;").replace(QUOTE, "&quot;"), [1.0])}</FieldData>'
@@ -301,10 +301,10 @@ class OutputFiles(CommandLineTest):
         self.assertEqual([each.get("file") for each in listed], [f"{name}2_{i:04d}.vtp" for i in range(2)])
         self.run_good(f"{name}2.pvd", "again.pvd", *FREE, "--smoothing-length", "0.3", says=".*")
 
-    # Whole or untouched
+    # ---- Whole or untouched ----
 
     def test_what_may_not_be_written(self):
-        """As a normal user: what the system forbids is not replaced either, and is told early."""
+        """As a normal user: a file that may not be written is not replaced, and the run says so before it computes."""
         self.output.write_text("old")
         self.output.chmod(0o444)
         refused = self.extract(*FREE, preexec_fn=drop_privileges)
@@ -338,7 +338,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(self.extract(*FREE, source="a/" * 3000 + "a.vtp"), 1, "File name too long")
 
     def test_full_disk(self):
-        """On a file system of `pages` pages, of which an older output takes one."""
+        """Runs the program on a file system of `pages` pages, one of which holds an older output."""
         script = """mount -t tmpfs -o size=$1 none full || exit 77
             echo old >full/$2; shift 2; "$@"; status=$?; ls -A full; cat full/*; exit $status"""
         unshare = ["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else [])
@@ -393,9 +393,10 @@ class OutputFiles(CommandLineTest):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
                 self.output.write_text("old")
-                run = self.start_and_wait_for_writing(  # even where tests run under nohup, or behind a script's &
+                # The run starts with default signals, even where the tests run under nohup or in a script's background.
+                run = self.start_and_wait_for_writing(
                     start_new_session=True, preexec_fn=lambda number=number: signal.signal(number, signal.SIG_DFL))
-                os.killpg(run.pid, number)  # as a terminal sends Ctrl-C
+                os.killpg(run.pid, number)  # This is what a terminal does on Ctrl-C.
                 self.assertEqual((run.communicate()[1], run.returncode), ("", -number))
                 self.assertEqual(self.output.read_text(), "old")
                 self.tearDown()
@@ -405,7 +406,7 @@ class OutputFiles(CommandLineTest):
             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         run.send_signal(signal.SIGHUP)
         run.terminate()
-        self.assertEqual((run.communicate()[1], run.returncode), ("", -signal.SIGTERM))  # not by the hangup
+        self.assertEqual((run.communicate()[1], run.returncode), ("", -signal.SIGTERM))  # SIGTERM ended the run, not the hangup.
         self.assertFalse(self.output.exists())
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two dimensions by the program marching-correctors: test_plane.py PROGRAM PRELOAD."""
+"""Tests two-dimensional particles in the program: test_plane.py PROGRAM PRELOAD."""
 import csv
 import math
 import re
@@ -13,7 +13,7 @@ SIDE = 20
 
 
 class Plane(CommandLineTest):
-    """A square of particles with the sides 2 around the origin, in y = 0.25."""
+    """Makes a square of particles with sides of 2 around the origin, in the plane y = 0.25."""
 
     def setUp(self):
         super().setUp()
@@ -67,7 +67,7 @@ class Plane(CommandLineTest):
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
     def test_values_in_filled_regions(self):
-        """The contoured array varies as the field does; the iso value of each point is another array."""
+        """The contoured array holds the field's own values, and another array holds the iso value of each point."""
         self.extract_good("--scalar", "Radius", "--iso", "0.2,0.5", "--filled", "--quiet")
         ranges = {name: (float(low), float(high)) for name, low, high in
                   re.findall(r'Name="(\w+)"[^>]*RangeMin="(\S+)"[^>]*RangeMax="(\S+)"', self.output.read_text())}
@@ -80,13 +80,13 @@ class Plane(CommandLineTest):
         self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, says("CAPPING_WITH_FILLED", "--capping", "--filled"))
 
     def test_flat_box(self):
-        """Around the particles it is one."""
+        """A box that has no thickness works like a thick one if it lies around the particles."""
         half, thick = (self.succeed("--free-surface", f"--box=-inf,inf,{y},0,inf")["statistics"] for y in ("0.25,0.25", "0.2,0.3"))
         self.assertGreater(half["points"], 50)
         self.assertEqual((half["points"], half["length"]), (thick["points"], thick["length"]))
 
     def test_columns_of_a_table(self):
-        """Arrays with the names of other columns, or of formulas, and integers that no double can tell apart."""
+        """Tables keep arrays whose names are those of other columns or look like formulas, and integers too large for a double."""
         big = 2 ** 60 + 1
         arrays = {**self.arrays, **{name: [7.5] * len(self.points) for name in ("X", "Line", "Velocity:0", "=1+1")}}
         files.write_vtp(self.input, self.points, arrays, files.xml_array("Id", [big] * len(self.points), "Int64") +
@@ -110,7 +110,7 @@ class Plane(CommandLineTest):
             self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
 
     def test_points_as_a_table(self):
-        """Two lines stand one after the other; a closed one ends with its first point."""
+        """Two lines stand one after the other, and a closed line ends with its first point."""
         table = self.directory / "surface.csv"
         self.run_good(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
         rows = read_table(table)
@@ -122,7 +122,7 @@ class Plane(CommandLineTest):
         for line in "0", "1":
             of_line = [row for row in rows if row["Line"] == line]
             self.assertEqual(of_line[0], of_line[-1])
-        # The numbers are those of the .vtp file, to the last bit.
+        # The table's numbers are, to the last bit, those of the .vtp file.
         self.extract("--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
         self.run_program(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
         rows = read_table(table)
@@ -135,7 +135,7 @@ class Plane(CommandLineTest):
         self.refuse(self.run_program(self.input, table, *ISO), 1, "holds the points of lines")
 
     def test_too_many_squares_to_fill(self):
-        """Said before lines are made: a few particles with a small smoothing length make squares small everywhere."""
+        """A warning comes before lines are made: a few particles with a small smoothing length make all squares small."""
         self.arrays["SmoothingLength"] = self.arrays["SmoothingLength"][:]
         self.arrays["SmoothingLength"][0] *= 5e-4
         files.write_vtp(self.input, self.points, self.arrays)
@@ -152,7 +152,7 @@ class Plane(CommandLineTest):
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
 
     def test_tables(self):
-        """A film's lines, and gauges in their plane, have tables."""
+        """A film of lines and gauges in their plane write tables."""
         files.write_pvd(self.directory / "steps.pvd", [("0", "particles.vtp"), ("1", "particles.vtp")])
         table = self.directory / "numbers.csv"
         self.run_good("steps.pvd", "film_%d.vtp", "--free-surface", "--numbers", table)
@@ -176,7 +176,7 @@ class Plane(CommandLineTest):
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
 
     def test_particle_distance(self):
-        """DualSPHysics' smoothing length is that of the dimension."""
+        """DualSPHysics' smoothing length depends on the number of dimensions."""
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Projections by the program marching-correctors: test_project.py PROGRAM PRELOAD."""
+"""Tests projections of the program: test_project.py PROGRAM PRELOAD."""
 import math
 import struct
 import xml.etree.ElementTree
@@ -10,14 +10,14 @@ from command_line_test import CommandLineTest, main
 
 
 class Project(CommandLineTest):
-    """A block of particles with the sides 1 around the origin and the mass 1000."""
+    """Makes a block of particles with sides of 1 around the origin and a mass of 1000."""
 
     def setUp(self):
         super().setUp()
-        self.image = self.directory / "surface.vti"  # a name that refuse() looks for
+        self.image = self.directory / "surface.vti"  # refuse() looks for files whose names begin like this.
 
     def project(self, *options, source=None):
-        """Name, size, spacing, and values of the image."""
+        """Returns the name, size, spacing and values of the image."""
         self.run_good(source or self.input, self.image, *options)
         image = xml.etree.ElementTree.parse(self.image).getroot().find("ImageData")
         array, = image.iter("DataArray")
@@ -35,7 +35,7 @@ class Project(CommandLineTest):
         return sum(values) * math.prod(spacing)
 
     def test_mass(self):
-        """All of it is there, whatever the direction and the size of pixels."""
+        """The image holds all of the mass, whatever the direction and the size of pixels."""
         for how in (["x", "--resolution", "33"], ["y", "--resolution", "7"], ["0,-3,0", "--resolution", "60"],
                     ["1,2,-1", "--kernel", "quintic", "--resolution", "50"]):
             axis = {"x": 0, "y": 1, "0,-3,0": 1}.get(how[0], 2)
@@ -46,7 +46,7 @@ class Project(CommandLineTest):
         self.assertEqual((name, size), ("ColumnDensity", [20, 1, 20]))
         self.assertAlmostEqual(spacing[0], (0.9 + 4 * 0.13) / 20)
         middle = values[10 * 20 + 10]
-        self.assertAlmostEqual(middle, 1000, delta=20)  # through the middle of water, over a length of 1
+        self.assertAlmostEqual(middle, 1000, delta=20)  # The line of sight goes through the middle of 1 m of water.
         self.assertEqual(values[0], 0)
         name, size, _, values = self.project("--project", "z", "--scalar", "Velocity", "--component", "0", "--resolution", "9")
         self.assertEqual((name, size), ("Velocity", [9, 9, 1]))
@@ -70,7 +70,7 @@ class Project(CommandLineTest):
         self.assertAlmostEqual(self.mass("--project", "z", "--box=-2,2,-2,2,-1,0", "--resolution", "40"), 500, delta=1e-3)
 
     def test_plane(self):
-        """Particles in a plane: the field itself."""
+        """Of particles in a plane, the image shows the field itself."""
         points = [(x, y, 0.5) for x, y, z in self.points if z == self.points[0][2]]
         arrays = {name: self.arrays[name][:100] for name in ("SmoothingLength", "Density", "Mass")}
         arrays["Mass"] = [10.0] * 100
@@ -88,7 +88,7 @@ class Project(CommandLineTest):
             self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
 
     def test_film(self):
-        """An image for each step, in a list or by number, each as it is alone; a failing step does not end the others."""
+        """Each step gives one image, listed or numbered, with the same bytes as a single run. A step that fails does not end the film."""
         options = ["--project", "z", "--resolution", "9", "--box=-1,1,-1,1,-1,1"]
         self.project(*options)
         expected = self.image.read_bytes()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files as people have them, by the program marching-correctors: test_real_files.py PROGRAM PRELOAD."""
+"""Tests files as users have them: test_real_files.py PROGRAM PRELOAD."""
 import json
 import math
 import re
@@ -19,7 +19,7 @@ def block(sides, spacing=0.1, origin=(0, 0, 0)):
 
 
 def write_csv(path, points, arrays):
-    """Text that may hold nan and inf, as VTK's formats may not."""
+    """Writes a table as text, which may hold nan and inf; VTK's formats may not."""
     columns = [[p[a] for p in points] for a in range(3)] + list(arrays.values())
     path.write_text(",".join(["x", "y", "z", *arrays]) + "\n" +
                     "\n".join(",".join(map(repr, row)) for row in zip(*columns)) + "\n")
@@ -27,11 +27,11 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Checks a run that may have a surface of one before it."""
+        """Checks a failed run, even if an earlier run has left a surface."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):
-        """The free surface's; `words` must stand in what is said, which is nothing where there are none."""
+        """Returns the volume, or area, of the free surface. What the program says must hold `words`, or nothing if there are none."""
         self.statistics = self.succeed(*FREE, *options, source=source, told=words)["statistics"]
         return self.statistics.get("volume", self.statistics.get("area"))
 
@@ -104,7 +104,7 @@ class RealFiles(CommandLineTest):
                 heights = [level for _, _, level in levels]
                 self.assertEqual(heights, sorted(heights))
                 self.assertAlmostEqual(heights[0], 0.7, delta=0.02)
-        # --time-step sets others; where some files have no time, there is a word.
+        # --time-step replaces the times in the files. If some files hold no time, a sentence says so.
         self.assertEqual([time for time, _, _ in self.levels(paths, *H, "--time-step", "0.5")], [0, 0.5, 1, 1.5, 2])
         self.write_tank(9, 14)
         self.assertEqual([time for time, _, _ in self.levels(paths, *H, words="are missing in some")], [0, 1, 2, 3, 4])
@@ -116,7 +116,7 @@ class RealFiles(CommandLineTest):
             files.write_vtp(path, block((5, 5, 5)), {})
             value = {"ascii": f'format="ascii">{0.25 * number}', "appended": f'format="appended" RangeMin="{0.25 * number}" '
                      f'RangeMax="{0.25 * number}" offset="0">',
-                     "binary": 'format="binary">CAAAAAAAAAAAAAhA'}[kind]  # 8 bytes: 3.0
+                     "binary": 'format="binary">CAAAAAAAAAAAAAhA'}[kind]  # These 8 bytes are the number 3.0.
             text = path.read_text().replace("<PolyData>", '<PolyData><FieldData><DataArray type="Float64" Name="TimeValue" '
                                             f'NumberOfTuples="1" {value}</DataArray></FieldData>')
             if kind == "appended":
@@ -214,7 +214,8 @@ class RealFiles(CommandLineTest):
             self.assertAlmostEqual(run["statistics"]["scalar_range"][1], 0.25 * 0.55)
 
     def test_pieces_of_meshes(self):
-        """Pieces without a vertex hold particles only where none has one; points without cells always are."""
+        """Among pieces with vertices, points of a piece whose cells are no vertices are not particles. If no piece has vertices, all points are.
+        Points without cells always are."""
         tank, corners = block((6, 6, 6)), block((2, 2, 2), 5, (9, 9, 9))
         files.write_vtu(self.directory / "water.vtu", tank, {})
         files.write_vtu(self.directory / "hull.vtu", corners, {}, [(12, range(8))])
@@ -248,7 +249,7 @@ class RealFiles(CommandLineTest):
                                      *H, source=file, told="(?s).*")["statistics"]["scalar_range"]
             for value in (low, high):
                 self.assertAlmostEqual(abs(value), 4, delta=1e-5)
-            self.assertEqual(low > 0, normal != 1)  # x, z around y turn the other way
+            self.assertEqual(low > 0, normal != 1)  # With x and z as axes around y, the sense of rotation is reversed.
             low, high = self.succeed("--derive", "velocity", "--scalar", "Divergence", "--iso", "1", *H, source=file,
                                      told="(?s).*")["statistics"]["scalar_range"]
             self.assertLess(max(abs(low), abs(high)), 1e-5)
@@ -285,7 +286,7 @@ class RealFiles(CommandLineTest):
             self.assertEqual(result.stderr.count("extend over 1.9 along x"), 1, result.stderr)
 
     def test_bodies_in_vacuum(self):
-        """The threshold that leaves nothing is named; without it there is the body in thin gas."""
+        """The sentence names the threshold that removes everything. Without the threshold there is the body in thin gas."""
         gas = [(0.8 * i, 0.8 * j, 0.8 * k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) != (0, 0, 0)]
         file = self.directory / "planet.vtp"
         cube = block((8, 8, 8), origin=(-0.4, -0.4, -0.4))
@@ -367,7 +368,7 @@ class RealFiles(CommandLineTest):
                           source=file)
         steps = "".join(f"{25 * n}\nTime={0.1 * n}\n" + "".join(f"A {x} {y} {z}\n" for x, y, z in block((5, 5, n)))
                         for n in (4, 6, 9))
-        two = self.directory / "two.xyz"  # water and air, told apart by a text
+        two = self.directory / "two.xyz"  # The file holds water and air, which a column of text tells apart.
         both = [("O", *p) for p in points] + [("N", x, y, z + 3) for x, y, z in points] + [("H", x, y, z + 6) for x, y, z in points]
         two.write_text(f"{len(both)}\n\n" + "".join("%s %r %r %r\n" % row for row in both))
         for words, volume in (("O",), 0.216), (("O", "H"), 0.432), (("X",), None):
@@ -405,7 +406,7 @@ class RealFiles(CommandLineTest):
         self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
         self.check_table("scaled.dump", step(100, 5, "id type xs ys zs vx", True), volume=0.125, words="period")
         self.check_table("dump.txt", step(100, 5), volume=0.125, words="period")
-        tilted = "BOX BOUNDS xy xz yz pp pp pp\n-1 2 0.5\n0 3 0.5\n0 4 1\n"  # sides (2, 0, 0), (0.5, 2, 0), (0.5, 1, 4)
+        tilted = "BOX BOUNDS xy xz yz pp pp pp\n-1 2 0.5\n0 3 0.5\n0 4 1\n"  # The sides are (2, 0, 0), (0.5, 2, 0) and (0.5, 1, 4).
         rows = [((x + 1 - 0.5 * s - 0.5 * z / 4) / 2, s, z / 4) for x, y, z in block((5, 5, 5)) for s in ((y - z / 4) / 2,)]
         self.check_table("tilted.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n125\nITEM: " + tilted + "ITEM: ATOMS xs ys zs\n" +
                          "\n".join(f"{x} {y} {z}" for x, y, z in rows) + "\n", volume=0.125, words="cell of the particles is tilted")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Smoother surfaces: --widen, --widening and --compact."""
+"""Tests smoother surfaces: --widen, --widening and --compact."""
 import pathlib
 import random
 import re
@@ -16,7 +16,8 @@ class Smooth(CommandLineTest):
         self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
 
     def test_factors_in_a_file(self):
-        """The products of factors and lengths, with volumes of the lengths themselves and as large cubes."""
+        """The surface is that of lengths which were multiplied by the factors before, with the volumes of the original lengths and with cubes as
+        large."""
         for computed in (True, False):
             arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (
                 "Mass", "Density", "Volume")}
@@ -26,12 +27,12 @@ class Smooth(CommandLineTest):
             self.run_good(self.input, wide, *cube, "--widen", "2", "--widening", factors)
             volumes = ["--volume", "WideningVolume"] if computed else []
             self.run_good(factors, plain, *cube, "--smoothing-length", "WidenedSmoothingLength", "--cubes", "uniform", *volumes,
-                          says=".*")  # which warns of so many neighbours
+                          says=".*")  # This run warns of too many neighbours.
             self.assertEqual(wide.read_bytes(), plain.read_bytes())
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_gauges_read_the_widened_field(self):
-        """A level is where the widened surface is, and a row of a film has both of one field; volumes may be computed."""
+        """A gauge's level lies on the widened surface, and in a film gauges and pieces read the same field, with computed volumes, too."""
         files.write_vtp(self.directory / "bare.vtp", self.points, {"SmoothingLength": self.arrays["SmoothingLength"]})
         for source in (self.input, "bare.vtp"):
             levels = []
@@ -50,7 +51,7 @@ class Smooth(CommandLineTest):
             self.assertEqual(len({round(level, 6) for level in levels}), 2, levels)
 
     def test_pieces(self):
-        """Threads that hang at the rims of films do not part."""
+        """Threads at the rims of sheets stay connected."""
         table = self.directory / "pieces.csv"
         for options in ([], ["--smooth"]):
             self.extract_good("--free-surface", "--components", table, *options, source=pathlib.Path(__file__).parents[2] / "Examples"
@@ -58,7 +59,7 @@ class Smooth(CommandLineTest):
             self.assertEqual(len(table.read_text().splitlines()), 1 + 9)
 
     def test_empty(self):
-        """Where nothing reaches the iso value, the surface is empty, as without."""
+        """Where the field never reaches the iso value, the surface is empty, with smoothing as without."""
         for field in (["--free-surface"], ["--scalar", "Density"]):
             for options in ([], ["--compact"], ["--smooth"]):
                 self.run_good(self.input, self.directory / "empty.vtp", *field, "--iso", "5000", *options,

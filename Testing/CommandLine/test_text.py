@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names that hold any bytes: test_text.py PROGRAM PRELOAD."""
+"""Tests names that hold any bytes: test_text.py PROGRAM PRELOAD."""
 import json
 import os
 import re
@@ -9,16 +9,16 @@ import xml.etree.ElementTree
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, main
 
-# Characters that a terminal acts upon: control characters, also the ones of two bytes in UTF-8, line separators
-# and marks that turn the direction of writing.
+# These characters act on a terminal: control characters, those of two UTF-8 bytes included, line separators, and marks that turn the direction of
+# writing.
 UNSAFE = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 
 
 class Text(CommandLineTest):
-    """Printed text cannot steer a terminal, and every file written is valid."""
+    """Tests that printed text cannot steer a terminal, and that every written file is valid."""
 
     def printed(self, result):
-        """Standard error and output, which must be UTF-8 without control characters."""
+        """Returns standard error and output, which must be UTF-8 without control characters."""
         text = (result.stderr + result.stdout).decode("utf-8")
         self.assertIsNone(UNSAFE.search(text), ascii(text))
         return text
@@ -72,7 +72,7 @@ class Text(CommandLineTest):
                                                                       b"\x1b[31m\xff\n", text=False)))
 
     def write_named(self, encoded):
-        """A legacy file with an array of this name, in which VTK decodes %1b."""
+        """Writes a legacy file with an array of this name. VTK decodes %1b in it."""
         path = self.directory / "named.vtk"
         arrays = {"SmoothingLength": self.arrays["SmoothingLength"], "NAME": self.arrays["Radius"]}
         files.write_legacy(path, self.points, arrays)
@@ -87,7 +87,7 @@ class Text(CommandLineTest):
                 result = self.extract_bytes(*ISO, source=source)
                 self.assertEqual(result.returncode, 1)
                 self.assertIn(shown, self.printed(result))
-                # It can be named as it is shown, and what is written can be read.
+                # An option accepts the array's name as the program prints it, and the outputs can be read.
                 for name in {shown.encode(), *([b"T\xe9mp"] if b"\xe9" in encoded else [])}:
                     result = self.extract_bytes("--scalar", name, "--iso", "0.3", "--stats", "s.json",
                                                 source=source)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Walls in files of their own, --walls of the program marching-correctors: test_walls.py PROGRAM PRELOAD."""
+"""Tests --walls, walls in files of their own: test_walls.py PROGRAM PRELOAD."""
 import particle_files as files
 from command_line_test import CommandLineTest, main
 
@@ -9,7 +9,7 @@ WRITERS = {".vtp": files.write_vtp, ".vtu": files.write_vtu, ".vtk": files.write
 
 
 class Walls(CommandLineTest):
-    """The block's Kind 0 as fluid, its Kind 1 as walls: a file each is as good as one of both and --fluid."""
+    """Compares fluid (Kind 0) and walls (Kind 1) in separate files with one file and --fluid."""
 
     def setUp(self):
         super().setUp()
@@ -40,7 +40,7 @@ class Walls(CommandLineTest):
                          self.surface(*free, "--fluid", "Kind=0"))
 
     def test_several_bodies(self):
-        """In all formats, in any order; what walls lack is the fluid's, as all of it is alike here."""
+        """Walls may come in all formats and any order. Arrays that they lack are filled from the fluid, all of whose particles are alike here."""
         wanted = self.surface(*HOW, "--fluid", "Kind=0")
         lacking = ["Density", "Velocity", "SmoothingLength", "Mass", "Radius"]
         low = self.write("Left.vtu", lambda kind, point: kind == 1 and point[1] < 0, lacking[:2])
@@ -59,7 +59,7 @@ class Walls(CommandLineTest):
         self.assertNotIn("IsWall", text)
 
     def test_film(self):
-        """Between two steps, too, though walls have the fluid's numbers: each body counts from 0."""
+        """Steps are interpolated though walls and fluid use the same numbers, because each body counts from 0."""
         numbers = {0: 0, 1: 0}
         self.arrays["Idp"] = []
         for kind in self.arrays["Kind"]:
@@ -75,7 +75,7 @@ class Walls(CommandLineTest):
         self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
 
     def test_walls_of_each_step(self):
-        """Walls go by the number in the step's name, or by a list, beside ones that stand still."""
+        """Walls of the same step are found by the number in the name, or by a list. Walls in a single file stand still."""
         steps, wanted = (0, 12), []
         still = self.write("Still.vtp", lambda kind, point: kind == 1 and point[1] < 0)
         for step, fluid in zip(steps, ("Fluid_0000.vtp", "Fluid_0012.vtp")):

@@ -302,7 +302,7 @@ class Film(CommandLineTest):
         self.one_sentence(result, 2, "steps.pvd would overwrite the input")
 
     def test_names(self):
-        """Names in the list are quoted for XML, and names in sentences for a shell."""
+        """The list holds names with quotes, <, & and umlauts. A name with a control character is refused."""
         folder = self.directory / 'a "b" & <c> ü'
         folder.mkdir()
         self.film = folder / 'd "e" & <f> ö.pvd'

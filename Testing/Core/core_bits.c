@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of
- * the environment. "small": small cases only, for slow devices. "fewer": of these, those that reach
- * few nodes and have kernels that no other has, for tools that slow everything down. "devices": some
- * of these on all devices, each against the first. "usual": the cases that every device can do; "kernels":
- * the others, and one for each SPH kernel and precision. */
+/* Prints a hash of all bits of a few surfaces. same_bits.cmake compares the hashes between settings of the environment.
+ * "small": small cases only, for slow devices. "fewer": the small cases with few nodes and with kernels that no other
+ * case has, for tools that slow everything down. "devices": some small cases on all devices, each compared with the
+ * first device. "usual": the cases that every device can do. "kernels": all other cases, and one for each SPH kernel
+ * and precision. */
 
 #include "core_fixture.h"
 #include "core_keep.h"
@@ -63,7 +63,7 @@ static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)
   {
-    const int doublings = (int)(random_bits(seed) % 6); /* no pow: the same bits everywhere */
+    const int doublings = (int)(random_bits(seed) % 6); /* pow is avoided, because its bits differ between systems */
     const double factor = ldexp(1 + random_unit(seed), doublings);
     set->smoothing_length[i] *= factor;
     set->volume[i] *= factor * factor * factor;
@@ -72,7 +72,7 @@ static void widen(particle_set* set, uint64_t* seed)
 
 static int run_case(mcor_context* context, const bits_case* at, int small, uint64_t* hash)
 {
-  const int noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
+  const int noise = at->topology == MCOR_TOPOLOGY_FIELD; /* noise makes ambiguous faces */
   const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
   const double small_iso = eigenvalue && !at->mixed ? 5 : 6;
   const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? small_iso : at->iso;
@@ -117,7 +117,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const mcor_statistics* statistics = &surface.statistics;
   const int trimmed = statistics->trim_vertices > statistics->trim_vertices_linear;
   const int resolved = statistics->joined_faces > 0 && statistics->ambiguous_cells > 0;
-  /* Without a driver, the built-in device may lack double precision and SPH kernels. */
+  /* Without a driver there is only the built-in device, which may lack double precision and some SPH kernels. */
   const int left_out =
     status == MCOR_DEVICE_ERROR && (at->precision == MCOR_FLOAT64 || at->kernel > MCOR_WENDLAND_C2);
   const int good = left_out ||
@@ -146,7 +146,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   return good;
 }
 
-/* In single precision and with the built-in device's SPH kernel, so every device can do it. */
+/* Returns whether every device can do the case: in single precision, with a kernel that the built-in device always has. */
 static int is_usual(const bits_case* at)
 {
   return at->precision == MCOR_FLOAT32 && at->kernel == MCOR_CUBIC_SPLINE;
@@ -169,7 +169,8 @@ static int run_kernels(mcor_context* context)
   return good;
 }
 
-/* Runs the cases of one build (a driver may take half a minute for each program) and compares with `expected`, which the first device sets. */
+/* Runs the cases that need the same device program (a driver may compile it for half a minute). The first device sets
+ * `expected`; the hashes of all others must be equal. */
 static int run_device(int device, uint64_t expected[])
 {
   char number[16];
@@ -192,7 +193,7 @@ static int run_device(int device, uint64_t expected[])
   return good;
 }
 
-/* All devices that the loader knows, each in the form that it gets. */
+/* Runs the cases on all devices that the loader knows, each with the form of the kernels that it gets by default. */
 static int run_devices(void)
 {
   uint64_t expected[sizeof cases / sizeof cases[0]];

@@ -11,11 +11,11 @@
 #include <string.h>
 #include <threads.h>
 
-/* The call that fails, counted from 0; -1: none. */
+/* The number of the call that fails, from 0; -1: no call fails. */
 static int fail_at = -1, call_count;
 
-/* Kinds of calls that may fail: an argument of a launch, another call of OpenCL, an allocation
- * of the host. */
+/* The kinds of calls that may fail: setting an argument of a launch, any other OpenCL call, an
+ * allocation of the host. */
 enum
 {
   ARGUMENT = 1,
@@ -51,7 +51,7 @@ static int fails(const char* name, int kind)
     return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
-/* Writes a buffer that the host has written to once more, if CORE_SHADOWS says so. */
+/* Writes once more to a buffer that the host has written to, if CORE_SHADOWS is set. */
 static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
 
 #define FAULT_WRITE(name, mem, parameters, arguments)                                              \
@@ -90,7 +90,7 @@ FAULT_WRITE(mcor_clEnqueueCopyBuffer, to,
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
 FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
 
-/* Reports a failure but unmaps, as else the buffer would stay mapped by this test's fault. */
+/* Reports a failure but unmaps all the same; otherwise this test would leave the buffer mapped. */
 WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
   (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
     cl_event* event))
@@ -158,7 +158,7 @@ WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
   return getenv("CORE_SHADOWS") ? CL_SUCCESS : __real_mcor_clReleaseMemObject(mem);
 }
 
-/* For calls that return the object that they make. */
+/* Decides whether a call that returns a new object fails. */
 static int fails_to_make(const char* name, cl_int* error)
 {
   const int failed = fails(name, COMMAND);
@@ -169,7 +169,7 @@ static int fails_to_make(const char* name, cl_int* error)
   return failed;
 }
 
-/* The device of the context that was made last. */
+/* The device of the context that was created last. */
 static cl_device_id device_now;
 
 WRAP(cl_context, mcor_clCreateContext,

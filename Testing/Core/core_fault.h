@@ -3,28 +3,28 @@
 #ifndef core_fault_h
 #define core_fault_h
 
-/* OpenCL calls, and allocations of the host, that fail when a test wants it: the linker puts these in
- * front of the real ones (CMakeLists.txt). CORE_FILL=BYTE in the environment: new buffers are filled with
- * this byte, so that reading what was never written changes results. CORE_SHADOWS: for oclgrind
- * --uninitialized, which takes a buffer for as large as what the host wrote last, and a new one for the one
- * released before: here none is released, and what the host has written to is written once more as a whole. */
+/* Lets OpenCL calls and allocations of the host fail when a test wants it: the linker puts these functions in front of
+ * the real ones (CMakeLists.txt). With CORE_FILL=BYTE in the environment new buffers are filled with this byte, so that
+ * reading unwritten memory changes results. CORE_SHADOWS is for oclgrind --uninitialized, which believes that a buffer
+ * is as large as the host's last write, and that a new buffer is the one released before: with CORE_SHADOWS no buffer
+ * is released, and each write by the host is repeated for the whole buffer. */
 
 #include "core_fixture.h"
 
-/* The n-th call from now on, counted from 0, fails with this error; none: -1. */
+/* The n-th call from now on, counted from 0, fails with this error; -1: no call fails. */
 void core_fail_call(int n, cl_int error);
-/* Likewise, but arguments of launches, which are most of the calls, never fail. */
+/* Does the same, but arguments of launches, which are most calls, are not counted and never fail. */
 void core_fail_command(int n, cl_int error);
-/* Likewise for malloc, calloc and realloc. */
+/* Does the same for malloc, calloc and realloc. */
 void core_fail_allocation(int n);
 void core_fail_nothing(void);
-/* The call that has failed, "" if none has. */
+/* Returns the name of the call that has failed, or "". */
 const char* core_failed_call(void);
 
-/* The log of a build that failed. Like real ones, it is not handed over in part. */
+/* Sets the log of a failed build. Like real drivers, this one does not return a part of it. */
 void core_set_build_log(const char* log);
 
-/* Fails unless the context holds nothing of a run: these are what it keeps. */
+/* Fails unless the context holds exactly `bytes` in `buffers` buffers after a run. */
 void core_expect_nothing_held(mcor_context* context, int64_t bytes, int buffers);
 
 #endif

@@ -170,8 +170,8 @@ mcor_options core_options(const double* iso)
 {
   mcor_options options;
   mcor_set_default_options(&options);
-  options.wall_share = 0;  /* ends nothing, unless a test says so */
-  options.level_limit = 0; /* where a test does not ask for others */
+  options.wall_share = 0;  /* surfaces do not end at solids, unless a test asks for it */
+  options.level_limit = 0; /* cubes have one size, unless a test asks for levels */
   options.iso_values = iso;
   options.iso_count = iso != NULL;
   return options;
@@ -296,7 +296,8 @@ uint64_t core_hash(const mcor_surface* surface)
   hash = core_hash_bytes(hash, &s.attribute_count, sizeof s.attribute_count);
   for (int a = 0; a < s.attribute_count; ++a)
   {
-    hash = core_hash_bytes(hash, s.attributes[a], n * sizeof(double)); /* at least */
+    /* these bytes are hashed even where an array has fewer components */
+    hash = core_hash_bytes(hash, s.attributes[a], n * sizeof(double));
   }
   return hash;
 }
@@ -316,7 +317,7 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* Masks of cells, and what the field's topology is made of, belong to the lattice's program. */
+  /* Masks of cells, and topology by the field, belong to the lattice's program. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
   const mcor_program base = of_lattice ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
   const cl_uint count = (cl_uint)mcor_program_sources(cl, base, sources);
@@ -356,5 +357,5 @@ void core_extend_program(mcor_context* context, const char* source)
       assert_int_equal(error, CL_SUCCESS);
     }
   }
-  clReleaseProgram(program); /* its kernels keep it */
+  clReleaseProgram(program); /* the kernels keep the program alive */
 }

@@ -31,16 +31,16 @@ void core_keep_size(const char* name, int64_t points, int64_t cells)
   core_keep(name, "size", text, (size_t)length);
 }
 
-/* Corners of triangles or pieces of lines, one after the other. */
+/* Triangles or pieces of lines; the bytes of their corners, one after the other. */
 typedef struct keep_cells
 {
-  int corners;  /* of each cell */
-  size_t width; /* bytes of a corner */
+  int corners;  /* corners of each cell */
+  size_t width; /* bytes of each corner */
   int64_t count;
   unsigned char* bytes;
 } keep_cells;
 
-/* Adds a cell, from its least corner on. */
+/* Adds a cell. Its corners begin with the least one and keep their cyclic order. */
 static void add_cell(
   keep_cells* cells, const mcor_input* input, mcor_surface* s, const int32_t* points)
 {

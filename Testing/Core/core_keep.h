@@ -3,20 +3,20 @@
 #ifndef core_keep_h
 #define core_keep_h
 
-/* Results in files, for bits.cmake, which compares their hashes with Testing/Regression/bits.csv. If the
- * environment's CORE_KEEP names no folder, nothing is kept. */
+/* Writes results to files. bits.cmake compares their hashes with Testing/Regression/bits.csv. If CORE_KEEP in the
+ * environment names no folder, nothing is written. */
 
 #include "core_fixture.h"
 
-/* Appends bytes to the file NAME.PART of the folder. */
+/* Appends bytes to the file NAME.PART in the folder of CORE_KEEP. */
 void core_keep(const char* name, const char* part, const void* data, size_t bytes);
-/* Makes NAME a case of the table: its numbers of points and of cells (triangles, lines), or what else it
- * has. cells < 0: the device lacks what the case needs. */
+/* Makes NAME a case of the table, with two counts: usually points and cells (triangles, lines). cells < 0: the device
+ * cannot do this case. */
 void core_keep_size(const char* name, int64_t points, int64_t cells);
 
-/* Keeps a surface. Parts: geometry (points, triangles, lines, bands), arrays (of points, and measures), keys,
- * and canonical: triangles and pieces of lines, each from its least corner on, with all that corners have but
- * keys, sorted. It stays the same whatever the order of points and triangles. */
+/* Writes a surface in four parts. geometry: points, triangles, lines, bands. arrays: all arrays of points, and area,
+ * volume, length. keys. canonical: triangles and pieces of lines, each from its least corner on, with all that their
+ * corners carry but keys, sorted, so that it does not depend on the order of points and triangles. */
 void core_keep_surface(const char* name, const mcor_input* input, mcor_surface* surface);
 
 #endif

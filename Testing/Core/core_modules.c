@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
- * and a tank with all options in turn. Prints a hash of all bits of their results, for same_bits.cmake, and keeps
- * them for bits.cmake; whether these are right is tested elsewhere. With words: those of these runs. */
+/* Has the smallest runs that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
+ * and a tank with all options in turn. Prints a hash of all result bits for same_bits.cmake, and writes the results for
+ * bits.cmake; other tests check that they are right. Words on the command line choose runs by name. */
 
 #include "core_keep.h"
 #include "core_parts.h"
@@ -14,7 +14,7 @@
 
 static const double modules_weight = 0.4, modules_isos[2] = { 0.6, 1.1 };
 
-/* Particles of spacing 1, and beside them some of spacing 4. */
+/* Makes particles of spacing 1, and some of spacing 4 beside them. */
 static particle_set modules_set(void)
 {
   particle_set set = particle_set_make(27 + 27);
@@ -44,7 +44,7 @@ static void modules_print(
   fflush(stdout);
 }
 
-/* The hash of a result that is no surface. */
+/* Collects the hash of a result that is not a surface. */
 typedef struct modules_hash
 {
   const char* name;
@@ -133,7 +133,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   return modules_surface(context, "uniform_period_caps", &fine, &options) && good;
 }
 
-/* The lowest layer of the fine particles; then that of the coarse ones, too. */
+/* Runs the lowest layer of the fine particles in a plane, then the coarse particles' lowest layer, too. */
 static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
@@ -265,8 +265,8 @@ static int modules_flux(mcor_context* context, const mcor_input* input)
   return good;
 }
 
-/* A tank along x in three blocks of spacing 1, 2 and 4, on a layer of solids; the fluid's top slopes and is
- * rough. Particles repeat along y. Without libm, so the bits are the same everywhere. */
+/* Makes a tank along x: three blocks of spacing 1, 2 and 4 on a layer of solids. The fluid's top slopes and is rough.
+ * Particles repeat along y. libm is not used, so that the bits are the same everywhere. */
 static particle_set tank_set(bool flat)
 {
   particle_set set = particle_set_make(5000);
@@ -301,23 +301,23 @@ static particle_set tank_set(bool flat)
   return set;
 }
 
-/* Properties of a run in the tank. */
+/* Flags of a run in the tank. */
 enum
 {
   TANK_LEVELS = 1,
   TANK_FLAT = 2,
   TANK_FILLED = 4 | TANK_FLAT,
-  TANK_CAPS = 8,    /* of whatever sides there are */
-  TANK_PERIOD = 16, /* along y; in the plane along x */
+  TANK_CAPS = 8,    /* caps at all sides that the run has */
+  TANK_PERIOD = 16, /* along y; in a plane along x */
   TANK_BOX = 32,
-  TANK_TOPOLOGY = 64, /* by the field, with noise */
+  TANK_TOPOLOGY = 64, /* topology by the field; the scalar has noise */
   TANK_PAIRS = 128,
   TANK_WALL = 256, /* the surface ends at solids */
   TANK_EIGENVALUE = 512,
-  TANK_PREVIEW = 1024,   /* and normals of triangles */
+  TANK_PREVIEW = 1024,   /* a preview, with normals by triangles */
   TANK_COMPUTED = 2048,  /* volumes */
-  TANK_MASS = 4096,      /* volumes of masses */
-  TANK_ESTIMATED = 8192, /* smoothing lengths */
+  TANK_MASS = 4096,      /* volumes come from masses alone */
+  TANK_ESTIMATED = 8192, /* smoothing lengths are estimated */
   TANK_AGAIN = 16384     /* a second call with the same particles and another iso value */
 };
 
@@ -455,7 +455,7 @@ static int modules_project(mcor_context* context, const mcor_input* input)
   modules_hash hash = { "project", CORE_HASH_OF_NOTHING };
   const int64_t pixels = (int64_t)found.size[0] * found.size[1];
   double sum = 0;
-  for (int64_t i = 0; i < pixels; ++i) /* the bits of no number are another machine's */
+  for (int64_t i = 0; i < pixels; ++i) /* the bits of NaN differ between machines */
   {
     found.values[i] = isnan(found.values[i]) ? -1 : found.values[i];
     sum += fabs(found.values[i]);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t g_width; /* bytes that qsort's function compares */
+static size_t g_width; /* how many bytes qsort's function compares */
 
 static int compare_bytes(const void* a, const void* b)
 {
@@ -43,7 +43,8 @@ unsigned char* core_put_point(
   return to;
 }
 
-/* Its key, and how many before it have the same: so triangles sort as the whole surface has them. */
+/* Writes a triangle's key, and how many earlier triangles have the same key: sorted by these, triangles are in the
+ * whole surface's order. */
 static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_t i, uint64_t* nth)
 {
   const uint64_t* key = s->triangle_keys + MCOR_TRIANGLE_KEY * i;
@@ -110,7 +111,7 @@ void core_expect_same(const char* name, core_triangles* all, core_triangles* who
     other == 0, "%s: %lld of %lld triangles differ", name, (long long)other, (long long)all->count);
 }
 
-/* Points that no triangle uses, or triangles without a point, are nobody's. */
+/* Fails if a point is used by no triangle, or a triangle names a point that does not exist. */
 static void check_points(const mcor_surface* s)
 {
   CORE_FREED uint8_t* used = oracle_allocate(s->point_count + 1, 1);
@@ -125,8 +126,8 @@ static void check_points(const mcor_surface* s)
   }
 }
 
-/* Each point has a key of its own, and they ascend; so do those of triangles, which share them. Boxes'
- * points and triangles have those of the whole surface, as they are compared along with all else. */
+/* Checks that points have different, ascending keys, and that triangles' keys ascend, where several may be equal. That
+ * boxes have the whole surface's keys shows when records are compared. */
 static void check_keys(const mcor_surface* s)
 {
   for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
@@ -143,7 +144,7 @@ static void check_keys(const mcor_surface* s)
   }
 }
 
-/* The sets below lie around the origin, 10 or so in each direction. */
+/* These cuts are for sets around the origin, about 10 across. */
 const core_cut core_cuts[CORE_CUTS] = {
   { "2 boxes", { 1, 0, 0 }, { { 0.37 } } },
   { "3, one thinner than a support", { 0, 0, 2 }, { { 0 }, { 0 }, { 1.1, 1.9 } } },
@@ -161,7 +162,7 @@ void core_set_box(mcor_options* options, const core_cut* cut, const int at[3])
   }
 }
 
-/* The whole surface, and what its boxes' statistics must add up to. */
+/* The whole surface, and the statistics that its boxes' statistics must add up to. */
 typedef struct core_whole
 {
   core_triangles triangles;

@@ -7,7 +7,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Particles of spacing 1 in a box at the origin with sides of these lengths; a scalar that repeats. */
+/* Makes particles of spacing 1 in a box at the origin with sides of these lengths; the scalar repeats. */
 particle_set core_make_period(const int length[3], uint64_t seed)
 {
   particle_set set = particle_set_make((int64_t)length[0] * length[1] * length[2]);
@@ -26,7 +26,7 @@ particle_set core_make_period(const int length[3], uint64_t seed)
   return set;
 }
 
-/* The set and its images in all 27 periods, or those along the axes that have one. */
+/* Returns the set with its images in the neighbouring periods, along the axes that have one. */
 particle_set core_add_images(const particle_set* set, const double period[6])
 {
   particle_set all = { 0 };

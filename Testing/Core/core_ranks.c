@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The lock is held. */
+/* Ends the round if all ranks have come. The caller holds the lock. */
 static void end_round_where_all_came(core_world* world)
 {
   if (world->came > 0 && world->came >= world->count - world->left)
@@ -17,7 +17,7 @@ static void end_round_where_all_came(core_world* world)
   }
 }
 
-/* Waits until all ranks that are left have come here; nonzero where one has gone. */
+/* Waits until all ranks that take part have come here. Returns nonzero if a rank has left. */
 static int wait_for_all(core_world* world)
 {
   pthread_mutex_lock(&world->lock);
@@ -28,7 +28,8 @@ static int wait_for_all(core_world* world)
   {
     pthread_cond_wait(&world->all_came, &world->lock);
   }
-  const int failed = world->failed; /* as when the round ended: others may have left since */
+  const int failed = world->failed; /* the state when the round ended; other ranks may have left
+                                     * since */
   pthread_mutex_unlock(&world->lock);
   return failed;
 }
@@ -42,7 +43,7 @@ void core_leave(core_rank* rank)
   pthread_mutex_unlock(&world->lock);
 }
 
-/* Shows a value to all ranks, until wait_for_all is called again. */
+/* Shows a value to all ranks until the next call of wait_for_all. */
 static int show(core_rank* rank, const void* value, int64_t size)
 {
   rank->world->value[rank->number] = value;
@@ -56,7 +57,7 @@ static int reduce_doubles(void* user, mcor_reduction reduction, double* values, 
   core_rank* rank = user;
   double* result = malloc((size_t)count * sizeof *result);
   int failed = !result || show(rank, values, count);
-  /* Whatever the order, for sums, too: here it is another one on each rank. */
+  /* Sums must not depend on the order, so each rank adds in another order. */
   for (int r = 0; r < rank->world->count && !failed; ++r)
   {
     const int from = (r + rank->number) % rank->world->count;

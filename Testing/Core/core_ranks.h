@@ -3,7 +3,7 @@
 #ifndef core_ranks_h
 #define core_ranks_h
 
-/* Threads as ranks. */
+/* Runs ranks as threads of one process. */
 
 #include "mcor_parts.h"
 
@@ -16,9 +16,9 @@ typedef struct core_world
   int count;
   pthread_mutex_t lock;
   pthread_cond_t all_came;
-  int came, round, failed, left; /* left: ranks that gave up, and take no part any more */
+  int came, round, failed, left; /* left: ranks that gave up and take part no longer */
   int64_t calls[CORE_MOST_RANKS];
-  const void* value[CORE_MOST_RANKS]; /* of each rank's call that is under way */
+  const void* value[CORE_MOST_RANKS]; /* what each rank shows in the present exchange */
   int64_t size[CORE_MOST_RANKS];
 } core_world;
 
@@ -30,11 +30,11 @@ typedef struct core_rank
   mcor_ranks ranks; /* for options.ranks */
 } core_rank;
 
-/* The work of a rank, in a thread of its own. */
+/* What a rank does in its thread. */
 typedef void (*core_rank_body)(core_rank* rank, void* data);
 
-/* Runs `count` ranks to their ends. A rank whose body has called core_leave takes no part in what
- * others go on to exchange: they fail. */
+/* Runs `count` ranks until all have ended. After a rank has called core_leave, exchanges of the
+ * other ranks fail. */
 void core_run_ranks(int count, core_rank_body body, void* data, core_world* world);
 void core_leave(core_rank* rank);
 

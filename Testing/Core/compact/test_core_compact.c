@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: what the mesh was before it is after, with fewer and better triangles and the
- * same residual; boxes make the whole surface. */
+/* Compact contours. The mesh is as sound as before, with fewer and better triangles and the same
+ * residual; boxes together make the whole surface. */
 
 #include "core_parts.h"
 #include "core_period.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A block, a sheet, a thread and lone drops. */
+/* Makes a block, a sheet, a thread and lone drops. */
 static particle_set make_splash(double jitter, uint64_t seed)
 {
   const int n = 10, side = 20;
@@ -80,7 +80,7 @@ static particle_set make_period(void)
   return core_make_period(length, 4);
 }
 
-/* All of them in a plane. */
+/* Makes random particles, all in one plane. */
 static particle_set make_plane(void)
 {
   particle_set set = core_make_random(900, 14, 0.5, 0.8, 9);
@@ -97,13 +97,14 @@ typedef struct compact_case
   const char* name;
   particle_set (*make)(void);
   mcor_field field;
-  double iso[2]; /* two where they differ */
+  double iso[2]; /* the second differs only in cases with two iso values */
   double cube;
   int levels, capping;
   mcor_topology topology;
   mcor_type precision;
   double period[6];
-  double share, sharp; /* of the triangles without, at most; and with an angle below 20 degrees */
+  double share, sharp; /* upper limits: triangles over those of the plain contour; the share with an
+                        * angle below 20 degrees */
 } compact_case;
 
 static const compact_case cases[] = {
@@ -293,7 +294,7 @@ static void boxes(void** state)
   }
 }
 
-/* Returns whether the surface has exactly this point. */
+/* Returns whether the surface has a point with exactly these coordinates. */
 static int has_point(const mcor_surface* s, const double* point)
 {
   int has = 0;
@@ -304,7 +305,8 @@ static int has_point(const mcor_surface* s, const double* point)
   return has;
 }
 
-/* Four cubes away from caps, nearly all points are those of the contour without caps. */
+/* Nearly all points that are four cubes or more away from caps are those of the contour without
+ * caps. */
 static void away_from_caps(void** state)
 {
   const compact_case* at = cases;
@@ -318,7 +320,7 @@ static void away_from_caps(void** state)
   options.compact = 1;
   CORE_SURFACE capped = core_extract(*state, &input, &options);
   options.capping = MCOR_CAP_NONE;
-  options.level_limit = 0; /* as with caps */
+  options.level_limit = 0; /* A run with caps has one level, too. */
   CORE_SURFACE open = core_extract(*state, &input, &options);
   int far = 0, same = 0;
   for (int64_t i = 0; i < open.point_count; ++i)
@@ -335,7 +337,8 @@ static void away_from_caps(void** state)
   CORE_CHECK(far > 100 && same > 0.95 * far, "%d of %d points are the same", same, far);
 }
 
-/* Images of particles of several levels lie farther around a period than those of one size. */
+/* In a period, images of particles of several levels must be kept from farther away than those of
+ * one size. */
 static void boxes_in_period(void** state)
 {
   const double iso = 0.5, period[6] = { 0, 14, 0, 14, 0, 14 };

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces of adaptive cubes: those of uniform cubes where there is one level, at no cost where nothing is. The
- * oracle has their edges and triangles; core_adaptive_parts their bits in boxes. */
+/* Surfaces of adaptive cubes: with one level they are those of uniform cubes, and empty space costs nothing. The oracle
+ * checks their edges and triangles, core_adaptive_parts their bits in boxes. */
 
 #include "core_fixture.h"
 
@@ -30,9 +30,8 @@ static void one_level_is_uniform(void** state)
   assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
 }
 
-/* Half of the lattice has values above, the other half below. Nodes are evaluated only between
- * the halves and where the weight is low; nodes of leaves that are certain, next to these where
- * an edge is crossed. */
+/* Half of the lattice has values above, the other half below. Nodes are evaluated only between the halves and where the
+ * weight is low. In leaves that lie on one side for certain, only nodes next to a crossed edge are evaluated. */
 static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;
@@ -50,8 +49,8 @@ static void few_nodes_are_evaluated(void** state)
   assert_true(surface.statistics.cells_used > 100);
 }
 
-/* Two groups whose sizes, and distance, differ by thousands: nothing is of the size of the finest
- * lattice between. */
+/* Two groups differ in size by thousands and are as far apart. Nothing in memory is as large as the finest lattice
+ * between them. */
 static void far_apart(void** state)
 {
   static const double half = 0.5;

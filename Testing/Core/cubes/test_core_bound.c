@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The bound of complete seeds against samples of the field; and the proof that bricks are inside. */
+/* Compares the bound on the field, which complete seeds use, with samples of the field, and the
+ * bricks that are proved to be inside with their nodes. */
 
 #include "core_fixture.h"
 #include "mcor_sph_kernel.h"
@@ -9,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* box: first brick, and edge in cubes. out: low, high, their rounding, weight, its rounding, count,
- * state. Then: which bricks are inside. */
+/* Kernels that return for each box (first brick, and edge in cubes): low and high value, their
+ * rounding, weight, its rounding, count, state; and which bricks are inside. */
 static const char source[] =
   "__kernel void test_bound(MCOR_GRID_PARAMS, const int box_count, const real iso,\n"
   "  const real node_threshold, __global const int4* boxes, __global real* out)\n"
@@ -47,7 +48,7 @@ static const char source[] =
   "  inside[b] = mcor_seed_proof(&grid, boxes[b], false, &wide, iso) == MCOR_ABOVE;\n"
   "}\n";
 
-/* The particles as they are on the device, lengths in cubes. */
+/* The particles as the device has them; lengths are in cubes. */
 typedef struct particles
 {
   int count;
@@ -103,7 +104,7 @@ static double norm_of(mcor_sph_kernel kernel)
   return norms[kernel];
 }
 
-/* F + level (*field) and the trimming weight at a point, in double precision. */
+/* Computes F + level (*field) and the trimming weight at a point, in double precision. */
 static void evaluate(const particles* p, const mcor_options* options, double iso,
   const double at[3], double* field, double* weight)
 {
@@ -125,7 +126,7 @@ static void evaluate(const particles* p, const mcor_options* options, double iso
   }
 }
 
-/* Sample s of a box: its corners, points of its edges and faces, and points inside. */
+/* Places sample s of a box: at its corners, on its edges and faces, and inside. */
 static void place_sample(const cl_int4* box, int s, uint64_t* seed, double at[3])
 {
   for (int a = 0; a < 3; ++a)
@@ -153,7 +154,7 @@ static void check_box(const particles* p, const mcor_options* options, double is
       "kernel %s, field %d: weight %.9g, not below %.9g + %.3g",
       mcor_sph_kernel_name(options->sph_kernel), (int)options->field, weight, (double)out[3],
       (double)out[4]);
-    const int state = (int)out[6]; /* see mcor_bound.cl */
+    const int state = (int)out[6]; /* mcor_bound.cl defines the states */
     CORE_CHECK(state == 0 ? weight < options->node_threshold
         : state == 1      ? field > level
         : state == 2      ? field < level
@@ -162,8 +163,8 @@ static void check_box(const particles* p, const mcor_options* options, double is
   }
 }
 
-/* Boxes of several sizes, all over the lattice; the first ones hold a particle, or the place where
- * its kernel is lowest. */
+/* Returns box b. Boxes have several sizes and lie all over the lattice; the first ones hold a
+ * particle, or the place where its kernel is lowest. */
 static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, uint64_t* seed)
 {
   static const int sizes[] = { 3, 7, 3, 31 };
@@ -177,14 +178,15 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
     box.s[a] = box.s[a] < 8 * lattice->blocks[a] ? box.s[a] : 8 * lattice->blocks[a] - 1;
   }
   box.s[3] = sizes[b % 4];
-  for (int a = 0; a < 3; ++a) /* of this size's cubes */
+  for (int a = 0; a < 3; ++a) /* boxes of this size are as many cubes long */
   {
     box.s[a] -= box.s[a] % ((box.s[3] + 1) / 4);
   }
   return box;
 }
 
-/* Extracts nothing, but leaves the grid on the device, and the kernels above in the program. */
+/* Extracts an empty surface, so that the grid stays on the device and the program has the kernels
+ * above. */
 static void make_grid(mcor_context* context, const particle_set* set, const mcor_options* options)
 {
   const mcor_input input = core_input_to_keep(set);
@@ -198,7 +200,7 @@ static void check_bound(mcor_context* context, const particle_set* set, mcor_opt
   uint64_t seed = 11;
   const double far = 1e6;
   const double iso = options->iso_values[0];
-  options->iso_values = &far; /* no surface: the grid is all that is wanted */
+  options->iso_values = &far; /* no surface is wanted, only the grid */
   make_grid(context, set, options);
   options->iso_values = &iso;
   particles p = read_particles(context);
@@ -250,7 +252,8 @@ static void test_bound(void** state)
     { MCOR_SINC_6, MCOR_SHEPARD, 0 }, { MCOR_SINC_6, MCOR_WEIGHT_SUM, 0 } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
-    /* Few particles, which a fault in the bound of one shows; many, of mixed sizes; one. */
+    /* A set of few particles shows a fault in the bound of a single one; another has many particles
+     * of mixed sizes; the last has one. */
     static const int counts[] = { 6, 150, 1 };
     for (int s = 0; s < 3; ++s)
     {
@@ -272,7 +275,7 @@ static void test_bound(void** state)
   }
 }
 
-/* So many particles in one place that rounding adds up: sums of equal terms are off in the same
+/* So many particles lie in one place that rounding adds up: equal terms are rounded in the same
  * direction at each step. */
 static void test_many_particles(void** state)
 {
@@ -301,7 +304,8 @@ static void test_many_particles(void** state)
   }
 }
 
-/* Nodes of a brick where the weight sum is at least iso, the brick's first node being `first`. */
+/* Counts the nodes of a brick where the weight sum is at least iso. The brick begins at node
+ * `first`. */
 static int count_above(
   const particles* p, const mcor_options* options, const cl_int4* brick, double iso)
 {
@@ -317,9 +321,9 @@ static int count_above(
   return above;
 }
 
-/* Bricks that are proved to be inside, against all of their nodes. At some of these iso values the
- * particles within half their support, which the proof looks at, are above at some nodes of a brick
- * and not at others. */
+/* Checks with all of their nodes that bricks which are proved to be inside are. The proof looks at
+ * particles within half their support. At some of these iso values those alone decide at some nodes
+ * of a brick and not at others. */
 static void check_inside(mcor_context* context, const particles* p, const mcor_options* options,
   const cl_int4* bricks, int count, double iso)
 {
@@ -359,7 +363,7 @@ static void test_inside(void** state)
   {
     for (int a = 0; a < 3; ++a)
     {
-      /* The block of particles is about the world's origin, a corner of a brick. */
+      /* The block of particles surrounds the origin, which is a corner of a brick. */
       bricks[b].s[a] = (b >> 3 * a & 7) - 4 - (int)(context->lattice.origin[a] / 4);
     }
     bricks[b].s[3] = 0;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Triangles of cells: those of the case table with any decisions, and those of cells beside finer ones. Cells with
- * nodes on either side at random, side by side, make a closed surface. */
+/* Triangles of cells: from the case table with all decisions, and of cells beside finer ones. Cells with random nodes,
+ * side by side, must make a closed surface. */
 
 #include "core_fixture.h"
 #include "mcor_adaptive_cell.h"
@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A lattice of nodes, `ends` along an axis, those on its border below. Triangles between vertices on edges, which
- * their lower node and axis name. */
+/* A lattice with `ends` nodes along an axis; nodes on its border are below. A vertex is named by its edge's lower node
+ * and axis. */
 typedef struct lattice
 {
   int ends;
@@ -28,8 +28,8 @@ static int node_at(const lattice* l, int x, int y, int z)
   return (z * l->ends + y) * l->ends + x;
 }
 
-/* The sign changes every `pitch` nodes near z = 0, and the less regularly the farther away: cells of all cases, many
- * of which are ambiguous. */
+/* The sign changes every `pitch` nodes near z = 0, and less regularly farther away. So cells of all cases occur, many
+ * of them ambiguous. */
 static lattice make_lattice(int ends, int pitch, uint64_t seed)
 {
   const size_t nodes = (size_t)ends * (size_t)ends * (size_t)ends, cells = 12 * nodes;
@@ -51,7 +51,7 @@ static lattice make_lattice(int ends, int pitch, uint64_t seed)
   return l;
 }
 
-/* The vertex on the edge from a node along an axis, where chance has it. */
+/* Returns the vertex on the edge from a node along an axis, at a random place. */
 static int32_t vertex_on(lattice* l, int node, int axis, int length)
 {
   int32_t* vertex = l->vertex + 3 * (size_t)node + axis;
@@ -69,8 +69,8 @@ static int32_t vertex_on(lattice* l, int node, int axis, int length)
   return *vertex;
 }
 
-/* Fails unless the triangles enclose what is above, as an oriented manifold. A node above that is alone has less
- * volume than a cell. */
+/* Fails unless the triangles are an oriented manifold that encloses the nodes above. A lone node above has less volume
+ * than a cell. */
 static void check_closed(lattice* l, double volume_above)
 {
   const mcor_surface surface = { .points = l->points,
@@ -98,7 +98,7 @@ static int set_up(void** state)
   return 0;
 }
 
-/* The number of the edge from a corner along an axis: axis << 3 | lower corner. */
+/* Returns the number of the edge from a corner along an axis: axis << 3 | lower corner. */
 static int edge_of(int corner, int axis)
 {
   return axis << 3 | (corner & ~(1 << axis));
@@ -116,8 +116,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* On an ambiguous face each corner above, or, where these are joined, each corner below has a side of a triangle
- * around it. */
+/* Checks ambiguous faces: one side of a triangle goes around each corner above or, where those are joined, around each
+ * corner below. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };
@@ -138,8 +138,8 @@ static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
   }
 }
 
-/* A row of a case, with a tunnel if it has one and chance wants it. Loops of a and b sides have a + b - 4 triangles,
- * and with a tunnel 4 more. */
+/* Chooses a row of a case, at random one with a tunnel. Loops of a and b sides have a + b - 4 triangles, with a tunnel
+ * 4 more. */
 static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed)
 {
   const mcor_cell_row* first = table.rows + (table.cases[cube_case] >> 6);
@@ -162,7 +162,7 @@ static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed
   return tunnel > 0 ? first + tunnel : row;
 }
 
-/* Decisions on faces and in cells as chance has them. */
+/* Makes the triangles of all cells, with random decisions on faces and tunnels. */
 static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS])
 {
   const int n = l->ends;
@@ -184,7 +184,7 @@ static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS
     }
     for (int face = 0; face < 6; ++face)
     {
-      /* By the face's lowest node, for both of its cells. */
+      /* The decision depends on the face's lowest node, so that both of its cells take the same. */
       uint64_t chance = of_round + (uint64_t)(3 * node[(face & 1) << face / 2] + face / 2);
       joined |= (int)(random_bits(&chance) & (uint64_t)table.cases[cube_case] >> face & 1) << face;
     }
@@ -200,7 +200,7 @@ static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS
   check_closed(l, volume);
 }
 
-/* All rows of the table are used. */
+/* Random lattices use all rows of the table. */
 static void test_whole_table(void** state)
 {
   static uint8_t used[MCOR_CASE_ROWS];
@@ -216,15 +216,15 @@ static void test_whole_table(void** state)
   (void)state;
 }
 
-/* Cells without finer ones around them are those of the case table where nothing is joined, without a tunnel. Opposite
- * corners alone have the tunnel that joins them. */
+/* A cell with no finer cell around it has the table's row where nothing is joined, without a tunnel. Only two opposite
+ * corners have the tunnel that joins them. */
 static void test_first_rows(void** state)
 {
   for (int c = 0; c < 256; ++c)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-    uint32_t above = 0x2aaaaaa; /* at nodes that are not there */
+    uint32_t above = 0x2aaaaaa; /* these bits of nodes that do not exist are set to test that they do not matter */
     int flat = 0;
     for (int k = 0; k < 8; ++k)
     {
@@ -246,8 +246,8 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
-/* A side between two of a cell's triangles is no line within one part of a face, which the cell beside it could have,
- * too, but between triangles that lie flat in the face. Places are in halves of the cell. */
+/* Checks a side between two triangles of a cell. It may not be a line within one part of a face, because the cell
+ * beside it could have it, too, unless both triangles lie flat in the face. Places are in half cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {
@@ -287,7 +287,7 @@ static void check_inner_sides(
   }
 }
 
-/* Adds a cell whose nodes are `step` apart, with these middles as nodes. */
+/* Adds a cell whose nodes are `step` apart; `split` says which middles are nodes. */
 static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
 {
   static const int stride[3] = { 1, 3, 9 };
@@ -298,7 +298,7 @@ static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
   {
     node[n] =
       node_at(l, at[0] + n % 3 * step / 2, at[1] + n / 3 % 3 * step / 2, at[2] + n / 9 * step / 2);
-    above |= (uint32_t)l->above[node[n]] << n; /* bits of what is no node do not matter */
+    above |= (uint32_t)l->above[node[n]] << n; /* bits of places that are no nodes do not matter */
   }
   const int count = mcor_adaptive_triangulate(split, above, triangles, &flat);
   assert_in_range(count, 0, MCOR_ADAPTIVE_TRIANGLES);
@@ -313,7 +313,7 @@ static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
   l->triangle_count += count;
 }
 
-/* Which middles of a cell's edges and faces are nodes: where one of the cells that touch them is divided. */
+/* Finds which middles of a cell's edges and faces are nodes: the ones that a divided cell touches. */
 static uint32_t find_split(const uint8_t* divided, int cells, const int cell[3])
 {
   uint32_t split = 0;
@@ -336,7 +336,7 @@ static uint32_t find_split(const uint8_t* divided, int cells, const int cell[3])
   return split;
 }
 
-/* Few or many cells are divided into eight, so that the others have split faces and edges of all kinds. */
+/* Few or many cells are divided into eight, so that the other cells have all kinds of split faces and edges. */
 static void test_beside_finer(void** state)
 {
   enum

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction: cells in any pattern, node by node; outliers; parts of a surface. */
+/* Extraction: cells in any pattern, made node by node; outliers; surfaces of parts of the particles. */
 
 #include "core_fixture.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The surface around one huge value is found, and ends where the support does. */
+/* The surface around one huge value is found, and it ends where the particle's support does. */
 static void test_outlier(void** state)
 {
   for (int sign = -1; sign <= 1; sign += 2)
@@ -36,8 +36,8 @@ static void test_outlier(void** state)
   }
 }
 
-/* A block of particles, of which some have a far larger support; and the others once more, far away on
- * the left, where the lattice then begins. */
+/* Makes a block of particles, some with a far larger support. twice: the others are copied to a place far away on the
+ * left, where the lattice then begins. */
 static particle_set make_mixed(int twice)
 {
   particle_set block = core_make_block(10, 0.3, 5, core_ball),
@@ -59,8 +59,8 @@ static particle_set make_mixed(int twice)
   return set;
 }
 
-/* A point's bits depend on it and the particles that reach it alone: not on where the lattice, and so
- * blocks, begin, nor on other points. */
+/* A point's bits depend only on its place and on the particles that reach it, not on where the lattice and its blocks
+ * begin, nor on other points. */
 static void test_parts_have_the_bits_of_the_whole(void** state)
 {
   const double iso = -14;
@@ -90,16 +90,16 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   assert_true(i > 100 && i < b.point_count);
 }
 
-/* ---- Node by node: a particle on a node reaches no other one, so that the value there is its own,
- * and a node without a particle has no weight. Cells then are valid, or not, in any pattern. ---- */
+/* ---- Node by node. Each particle lies on a node and reaches no other one, so the value there is its own, and nodes
+ * without a particle have no weight. Cells are then valid, or not, in any pattern. ---- */
 
 #define NODES 8
 
 typedef struct node_pattern
 {
   int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
-  int64_t points, triangles;       /* of its surface */
-  int64_t pinched[3][2];           /* edges by axis, and by which two of the cells are valid */
+  int64_t points, triangles;       /* of the surface that the pattern must have */
+  int64_t pinched[3][2];           /* [axis][which two opposite cells are valid]: edges that have two vertices */
 } node_pattern;
 
 static int pattern_at(const node_pattern* p, const int at[3])
@@ -114,7 +114,7 @@ static int pattern_at(const node_pattern* p, const int at[3])
   return p->sign[(at[2] * NODES + at[1]) * NODES + at[0]];
 }
 
-/* The Marching Cubes case of a cell; -1 if it is not valid. */
+/* Returns the Marching Cubes case of a cell, or -1 if the cell is not valid. */
 static int pattern_case(const node_pattern* p, const int cell[3])
 {
   int result = 0;
@@ -131,8 +131,8 @@ static int pattern_case(const node_pattern* p, const int cell[3])
   return result;
 }
 
-/* Counts the vertices on the edge from a node: 0, 1, or 2 where only two cells around it are valid
- * and touch in nothing else. */
+/* Counts the vertices on the edge from a node: 0, 1, or 2 if only two cells around it are valid and they touch only in
+ * this edge. */
 static void count_edge(node_pattern* p, const int node[3], int axis)
 {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -187,7 +187,7 @@ static particle_set pattern_particles(const node_pattern* p)
     const int64_t i = set.count;
     for (int a = 0; a < 3; ++a)
     {
-      set.position[3 * i + a] = at[a] - 3; /* across the borders of bricks and of blocks */
+      set.position[3 * i + a] = at[a] - 3; /* the pattern lies across borders of bricks and blocks */
     }
     set.smoothing_length[i] = 0.45;
     set.volume[i] = 1;
@@ -220,7 +220,7 @@ static void check_pattern(
     surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
-    /* The two vertices of a pinched edge lie in one place. */
+    /* The two vertices of a pinched edge are in the same place. */
     CORE_CHECK(report.faults[fault] == (fault == MESH_COINCIDENT_POINT ? pinched : 0),
       "topology %d, %lld of: %s; %s", (int)topology, (long long)report.faults[fault],
       mesh_fault_name(fault), report.first[fault]);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Seeds: bricks between both sides are requested, the digital line misses no cell between a pair. That complete
- * ones miss no edge, the oracle knows. */
+/* Seeds: bricks between particles on both sides are requested, and the digital line marks every cell between a pair.
+ * The oracle checks that complete seeds miss no edge. */
 
 #include "core_fixture.h"
 
@@ -12,13 +12,13 @@
 
 #define NO_BRICK 4
 
-/* The cells marked by the last call with pairs, as one byte per cell of a box of the lattice; of bricks that are
- * certain of one side none is. */
+/* The cells that the last call with pairs marked, one byte per cell of a box of the lattice. In bricks that are
+ * certainly on one side no cell is marked. */
 typedef struct marked_cells
 {
   int low[3], size[3];
   uint8_t* cell;
-  int count, hits; /* hits: those that the surface uses */
+  int count, hits; /* hits: marked cells that the surface uses */
 } marked_cells;
 
 static uint8_t* find_cell(const marked_cells* m, const int at[3])
@@ -71,8 +71,8 @@ static marked_cells read_cells(mcor_context* context)
   return m;
 }
 
-/* Walks a segment (in cubes) in small steps: every cell on it, to within rounding, must be marked;
- * cells within rounding of it get the value 2. */
+/* Walks along a segment (in cubes) in small steps. Every cell on it must be marked, to within rounding; cells within
+ * rounding of it get the value 2. */
 static void check_line(marked_cells* m, const double p[3], const double q[3])
 {
   enum
@@ -103,7 +103,7 @@ static void check_line(marked_cells* m, const double p[3], const double q[3])
   }
 }
 
-/* Extracts with pair seeds, and checks the lines of all pairs that straddle 0 and are closer than the smoothing length
+/* Extracts with pair seeds. Checks the lines of all pairs on both sides of 0 that are closer than the smoothing length
  * of one of them. */
 static void check_pairs(mcor_context* context, const particle_set* set, double cube)
 {
@@ -147,7 +147,7 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   free(m.cell);
 }
 
-/* One pair: along axes, through edges and corners of cells, within one cell, and at random. */
+/* Lines of one pair: along axes, through edges and corners of cells, within one cell, and at random. */
 static void test_line(void** state)
 {
   static const double ends[][6] = { { 0.5, 0.5, 0.5, 17.5, 0.5, 0.5 },
@@ -179,7 +179,7 @@ static void test_line(void** state)
   }
 }
 
-/* Which pairs count: the smoothing length of either particle reaches the other. */
+/* A pair counts if the smoothing length of either particle reaches the other. */
 static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)
@@ -190,8 +190,8 @@ static void test_pairs(void** state)
   }
 }
 
-/* Pairs as far apart as a pair may be, to within rounding, and far from each other in rows of particles:
- * which count does not depend on the particles that are looked at together. */
+/* The pairs are as far apart as a pair may be, to within rounding, and far apart in the order of particles. Which pairs
+ * count does not depend on which particles are looked at together. */
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;
@@ -225,8 +225,8 @@ static void test_pairs_in_each_form(void** state)
   (void)state;
 }
 
-/* Means of values that all equal the iso value round to either side: cells there are seeds, too, and the same ones
- * whether or not their nodes are known from another iso value. */
+/* The mean of values that all equal the iso value may round to either side. Cells there are seeds, and the same cells
+ * are, whether or not their nodes are known from another iso value. */
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: bridges and gaps of known shape. The oracle has noise. */
+/* Topology by the field, tested with bridges and gaps of known shape; the oracle tests it with noise. */
 
 #include "core_fixture.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Particles around the origin, closer together than the cubes, whose scalar is given by `value`. */
+/* Makes particles around the origin, closer together than the cubes, with the scalar given by `value`. */
 static particle_set make_particles(
   double (*value)(const double x[3], const double end[3], double sign), const double end[3],
   double sign)
@@ -35,7 +35,7 @@ static particle_set make_particles(
   return set;
 }
 
-/* A straight thread from the origin to `end`, thinner than a cube. */
+/* The scalar of a straight thread from the origin to `end`, thinner than a cube. */
 static double thread(const double x[3], const double end[3], double sign)
 {
   double along = 0, length2 = 0, distance2 = 0;
@@ -53,7 +53,7 @@ static double thread(const double x[3], const double end[3], double sign)
   return 1.2 * 1.2 - distance2;
 }
 
-/* Two balls around the ends that do not touch. */
+/* The scalar of two balls around the ends, which do not touch. */
 static double balls(const double x[3], const double end[3], double sign)
 {
   double first = 0, second = 0;
@@ -66,7 +66,7 @@ static double balls(const double x[3], const double end[3], double sign)
   return 1.2 * 1.2 - fmin(first, second);
 }
 
-/* Checks a closed surface, and returns its parts. */
+/* Checks that the surface is closed, and returns the number of its parts. */
 static int64_t count_parts(mcor_context* context, const particle_set* set, double cube,
   mcor_topology topology, mcor_statistics* statistics)
 {
@@ -85,13 +85,14 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
   return parts;
 }
 
-/* Diagonals of a cube's faces and of the cube itself. */
+/* The diagonals of a cube's faces and of the cube itself. */
 static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
-/* Above or below the iso value, a thread stays whole and balls that do not touch stay apart, as on a fine lattice; the
- * table joins nodes below across a face, and keeps all others apart. Counted by hand: the face that the diagonal
- * crosses, between two cells; whether the nodes above are joined there; cells with two loops; tunnels. */
+/* Above or below the iso value, by the field a thread stays whole and balls that do not touch stay apart, as on a fine
+ * lattice. The table joins nodes below across a face, and keeps all others apart. These are counted by hand: the face
+ * that the diagonal crosses, between two cells; whether the nodes above are joined there; cells with two loops;
+ * tunnels. */
 static void test_diagonals(void** state)
 {
   for (int i = 0; i < 40; ++i)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Making the leaves of adaptive cubes: levels, limits, cancelling. Which leaves there are, the oracle knows. */
+/* Making the leaves of adaptive cubes: levels, limits, cancelling. The oracle checks which leaves there are. */
 
 #include "core_fixture.h"
 #include "mcor_tree.h"
@@ -41,7 +41,7 @@ static void level_limit(void** state)
   context->run.options = NULL;
 }
 
-/* A level begins at exactly 2^L times the smallest h. */
+/* Level L begins at exactly 2^L times the smallest h. */
 static void levels_of_particles(void** state)
 {
   (void)state;
@@ -51,10 +51,10 @@ static void levels_of_particles(void** state)
   assert_int_equal(mcor_tree_level_of(0.3 * 1024, 0.3, 24), 10);
   assert_int_equal(mcor_tree_level_of(nextafter(0.3 * 1024, 0), 0.3, 24), 9);
   assert_int_equal(mcor_tree_level_of(1e30, 1, 24), 24);
-  assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0); /* of a solid */
+  assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0); /* a solid smaller than all fluid has level 0 */
 }
 
-/* So many levels that bricks of the lowest could not be numbered. */
+/* There are so many levels that bricks of the lowest one have numbers too large for an int. */
 static void more_bricks_than_numbers(void** state)
 {
   mcor_context* context = *state;
@@ -62,14 +62,14 @@ static void more_bricks_than_numbers(void** state)
   mcor_input input;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
-  context->lattice.levels = 24; /* as with h 1:10^7 and a cube size that lets the lattice be */
+  context->lattice.levels = 24; /* as with h from 1 to 10^7 and a cube size that the lattice allows */
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), "%s", mcor_last_error(context));
   context->run.options = NULL;
 }
 
-/* Particles that reach far beyond their volume: that there are too many leaves is known before the sets
- * of bricks grow large. */
+/* Particles reach far beyond their volume. That there are too many leaves is noticed before the sets of bricks grow
+ * large. */
 static void more_leaves_than_the_limit(void** state)
 {
   mcor_context* context = *state;
@@ -92,8 +92,8 @@ static void more_leaves_than_the_limit(void** state)
   context->run.options = NULL;
 }
 
-/* Each level alone is within the limit. Where they are sparse, bricks that have to be divided because of
- * others are many more than those that particles divide. */
+/* Each level alone is within the limit, but all together are not. Where leaves are sparse, most bricks are divided
+ * because of other bricks, few because of particles. */
 static void more_leaves_of_all_levels(void** state)
 {
   mcor_context* context = *state;
@@ -120,8 +120,8 @@ static int stop_at(void* user, double fraction, const char* phase)
   return (*left)-- == 0;
 }
 
-/* Whoever waits is asked whether to go on all along: while particles split bricks, few at a time where
- * they reach far, while bricks are joined and split, and while leaves are listed. */
+/* Making leaves asks often whether to go on: while particles split bricks (few at a time where they reach far), while
+ * bricks are joined and split, and while leaves are listed. */
 static void making_leaves_can_be_cancelled(void** state)
 {
   enum
@@ -148,7 +148,7 @@ static void making_leaves_can_be_cancelled(void** state)
   {
     left = stop;
     assert_int_equal(mcor_make_tree(context, &input), MCOR_CANCELLED);
-    assert_int_equal(left, -1); /* and no more */
+    assert_int_equal(left, -1); /* no report comes after the one that stopped the run */
   }
   left = often;
   CORE_OK(context, mcor_make_tree(context, &input));

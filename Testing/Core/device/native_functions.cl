@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A kernel for each built-in function and type: r[i] = f(a[i], b[i], c[i]). Compiled ahead by mcor_native.cl,
- * and by a driver with functions of its own; test_core_native.c compares. */
+/* Has a kernel for each built-in function and type: r[i] = f(a[i], b[i], c[i]). It is compiled ahead with
+ * mcor_native.cl, and by a driver with the driver's own functions; test_core_native.c compares. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 
 #define TRY(name, RESULT, A, B, value)                                                             \

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device where no driver is; ctest hides them from this program. */
+/* The built-in device on a machine without drivers; ctest hides them from this program. */
 
 #include "core_fixture.h"
 
@@ -29,7 +29,7 @@ static mcor_status extract(mcor_context* context, uint64_t* hash)
   return extract_with(context, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, hash);
 }
 
-/* A message names kernels that were not compiled with the library, and the way out. */
+/* The message names the kernels that were not compiled with the library, and what to do. */
 static void test_names_what_is_missing(void** state)
 {
   (void)state;
@@ -57,7 +57,7 @@ static void test_names_what_is_missing(void** state)
   }
 }
 
-/* A call for what no device can do fails, and the next ones are as if it had not been. */
+/* A call that no device can do fails, and does not change later calls. */
 static void test_goes_on(void** state)
 {
   (void)state;
@@ -66,7 +66,7 @@ static void test_goes_on(void** state)
   assert_string_equal(context->cl.platform_name, "built in");
   uint64_t before, after;
   CORE_OK(context, extract(context, &before));
-  setenv("MCOR_LANES", "1", 1); /* of such kernels none is compiled */
+  setenv("MCOR_LANES", "1", 1); /* no kernel is compiled ahead for this number of lanes */
   for (int i = 0; i < 2; ++i)
   {
     assert_int_equal(extract(context, &after), MCOR_DEVICE_ERROR);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Processes of one machine: each takes a device in turn, and a share of a CPU. PoCL shows one twice. */
+/* Processes of one machine take devices in turn, and a share of the CPU each. PoCL shows one device twice. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -28,7 +28,7 @@ static void test_turns_and_shares(void** state)
   mcor_free_surface(&surface);
   for (int place = 0; place < PROCESSES; ++place)
   {
-    /* Three have the first device, two the second. */
+    /* Three processes have the first device, two the second. */
     const int share = mcor_processors(place % 2 ? 2 : 3);
     CORE_OK(context, mcor_create_shared_context(NULL, place, PROCESSES, &context));
     assert_int_equal(context->cl.device_number, first + place % 2);
@@ -40,7 +40,7 @@ static void test_turns_and_shares(void** state)
   }
 }
 
-/* A device that is asked for by number is taken; those of one name are taken in turn. */
+/* A device that is named by number is taken; devices that share a name are taken in turn. */
 static void test_named_device(void** state)
 {
   mcor_context* context = *state;

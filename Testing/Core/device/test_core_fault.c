@@ -1,20 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL calls, allocations of the host and callbacks of ranks that fail, one after the other: each
- * gives a status and a sentence, an empty result and no buffer left over, and the next call on the same
- * context is right. */
+/* OpenCL calls, allocations of the host and callbacks of ranks fail one after the other. Each time there are a status,
+ * a sentence, an empty result and no buffer left over, and the next call on the same context is right. */
 
 #include "core_fault.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A call of the library whose faults are swept. */
+/* A call of the library in which every step is made to fail once. */
 typedef struct sweep
 {
-  /* Makes the call; if it succeeds, *hash becomes that of its result. Fails the test if a result that is
-   * not there is not empty. */
+  /* Makes the call; if it succeeds, *hash becomes its result's hash. If it fails, the result must be empty. */
   mcor_status (*call)(
     mcor_context* context, const struct sweep* s, const mcor_input* input, uint64_t* hash);
   mcor_input input;
@@ -23,11 +21,11 @@ typedef struct sweep
   int point_count;
   uint64_t expected;
   int64_t bytes;
-  bool arguments; /* those of launches fail, too */
+  bool arguments; /* setting arguments of launches fails, too */
   int step;
 } sweep;
 
-#define BUFFERS_KEPT 2 /* by a context: tables */
+#define BUFFERS_KEPT 2 /* the tables that a context holds after creation */
 
 static mcor_status extract(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
@@ -110,7 +108,7 @@ static mcor_status flux(
   return status;
 }
 
-/* Callbacks of a single rank. */
+/* A single rank's callbacks. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -138,8 +136,7 @@ static const mcor_ranks alone = { .reduce_doubles = reduce_doubles,
   .reduce_counts = reduce_counts,
   .gather = gather };
 
-/* The work of a rank: it measures with all others, then extracts its box, and cells grow from
- * box to box. */
+/* Does a rank's work: it measures with all others, then extracts its box, and seeds grow from box to box. */
 static mcor_status extract_as_rank(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
@@ -167,7 +164,8 @@ static void expect_right(mcor_context* context, const sweep* s)
   CORE_CHECK(hash == s->expected, "after a fault in %s: another result", core_failed_call());
 }
 
-/* After a fault that made the call fail: a sentence, nothing left over, and the next one is right. */
+/* Checks, after a fault that made the call fail, that there is a sentence and nothing is left over, and that the next
+ * call is right. */
 static void expect_sound(mcor_context* context, const sweep* s, const char* words)
 {
   const char* sentence = mcor_last_error(context);
@@ -177,7 +175,7 @@ static void expect_sound(mcor_context* context, const sweep* s, const char* word
   expect_right(context, s);
 }
 
-/* Other numbers: nothing is reused, only given back. */
+/* Gives the input other versions: then nothing on the device is used again, but it can be given back. */
 static mcor_input with_other_versions(const sweep* s, int n)
 {
   mcor_input input = s->input;
@@ -186,8 +184,8 @@ static mcor_input with_other_versions(const sweep* s, int n)
   return input;
 }
 
-/* Lets every step-th OpenCL call fail. kept: something is on the device that can be given back, so that a
- * call without memory succeeds at the second attempt. */
+/* Lets every step-th OpenCL call fail. kept: the device holds something that can be given back, so that a call that
+ * finds no memory succeeds at its second attempt. */
 static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int kept)
 {
   const mcor_status expected = error == CL_INVALID_COMMAND_QUEUE ? MCOR_DEVICE_ERROR
@@ -222,7 +220,7 @@ static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int 
   return n;
 }
 
-/* Lets every allocation of the host fail. Some can be done without. */
+/* Lets every allocation of the host fail. Some calls succeed without it. */
 static int sweep_allocations(mcor_context* context, const sweep* s)
 {
   int n = 0;
@@ -253,7 +251,7 @@ static int sweep_allocations(mcor_context* context, const sweep* s)
   return n;
 }
 
-/* Keeps the right result, and what a context holds when it holds nothing of a run. */
+/* Keeps the right result, and the number of bytes and buffers that a context holds after a release. */
 static void begin_sweep(mcor_context* context, sweep* s)
 {
   s->input.particles_version = s->input.scalar_version = 1000000;
@@ -262,8 +260,8 @@ static void begin_sweep(mcor_context* context, sweep* s)
   s->bytes = context->cl.bytes;
 }
 
-/* All that a variation of what test_every_call_fails_once does asks of OpenCL; where memory runs out,
- * every step-th of it. */
+/* Lets all OpenCL calls of a smaller variation of test_every_call_fails_once fail; where memory runs out, every step-th
+ * call. */
 static void sweep_room(mcor_context* context, sweep* s, int step, int least_calls)
 {
   begin_sweep(context, s);
@@ -272,7 +270,7 @@ static void sweep_room(mcor_context* context, sweep* s, int step, int least_call
   CORE_CHECK(calls > least_calls, "only %d calls", calls);
   s->step = step;
   sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
-  if (!s->options.ranks) /* those do not try again */
+  if (!s->options.ranks) /* ranks do not try again */
   {
     sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 1);
   }
@@ -286,8 +284,8 @@ static double flat(const double x[3])
   return x[2];
 }
 
-/* All that a run may do on the device: attributes, topology by the field, both kinds of trimming
- * quantities, pairs that grow. */
+/* The run does all that a run may do on the device: attributes, topology by the field, both trimming quantities, pairs
+ * that grow. */
 static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;
@@ -343,7 +341,7 @@ static void test_probe_and_derive(void** state)
   free(points);
 }
 
-/* Bands of a plane, trimmed. */
+/* The same with trimmed bands of a plane. */
 static void test_filled(void** state)
 {
   static const double isos[2] = { -1e9, 0.5 };
@@ -361,7 +359,7 @@ static void test_filled(void** state)
   sweep_room(*state, &filled, 23, 100);
 }
 
-/* A box, a period, walls; each with what it alone does. */
+/* The same with a box, a period and walls, each with the steps that only it has. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;
@@ -438,7 +436,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* A large buffer's pages are asked for through a view of it, which may fail. */
+/* Pages of a large buffer are reserved through a view of it, which may fail. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;
@@ -463,10 +461,10 @@ static void test_extend(void** state)
       break;
     }
   }
-  assert_int_equal(n, 4); /* create, map, unmap, copy */
+  assert_int_equal(n, 4); /* the calls are create, map, unmap and copy */
 }
 
-/* A program that does not build says so, with the beginning of its log, however long that is. */
+/* When a program does not build, the sentence says so and begins the log, however long the log is. */
 static void test_build_fails(void** state)
 {
   mcor_context* context = *state;
@@ -505,7 +503,7 @@ static void test_error_names(void** state)
     core_fail_nothing();
     CORE_CHECK(strstr(mcor_last_error(context), names[i].name), "%s", mcor_last_error(context));
   }
-  /* Every code of OpenCL 1.2: -1 to -19, and -30 to -68. */
+  /* These are all codes of OpenCL 1.2: -1 to -19, and -30 to -68. */
   for (cl_int code = -68; code < 0; ++code)
   {
     core_fail_call(0, code);
@@ -517,7 +515,7 @@ static void test_error_names(void** state)
   mcor_release(context, &buffer);
 }
 
-/* A context that could not be made: its sentence says why, and a run on it fails. */
+/* When a context cannot be made, its sentence says why, and a run on it fails. */
 static void test_no_context(void** state)
 {
   (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device: its functions against PoCL's, its threads, its objects. */
+/* The built-in device: its functions compared with PoCL's, its threads, its objects. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -15,23 +15,23 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* native_functions.cl, compiled ahead. */
+/* native_functions.cl, compiled for the built-in device. */
 void test_native(unsigned number, void* const* arguments, size_t first, size_t last);
 extern const char test_native_kernels[];
 
 enum
 {
   ITEMS = 4096,
-  ITEM_BYTES = 128, /* of the largest type */
+  ITEM_BYTES = 128, /* the size of the largest type */
   BYTES = ITEMS * ITEM_BYTES
 };
 
-/* Numbers at which functions differ, as float and as double. */
+/* Numbers for which implementations differ, as float and as double. */
 static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2.5f, -2.5f, 1e-45f,
   -1e-45f, 1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f,
   -0.49999997f, 0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
 
-/* Bits of numbers of `size` bytes: extreme ones, infinite ones, NaN, small integers, and any. */
+/* Fills with bits of numbers of `size` bytes: extreme ones, infinities, NaN, small integers, and random ones. */
 static void fill(unsigned char* bytes, size_t size, uint64_t seed)
 {
   const size_t many = sizeof extremes / sizeof extremes[0];
@@ -61,7 +61,7 @@ static int is_nan(const unsigned char* bytes, size_t size)
   return size == 4 ? single != single : wide != wide;
 }
 
-/* Runs a kernel of a driver, whose last argument is read and written. */
+/* Runs a kernel on a driver's device; the last argument is read and written. */
 static void run_driver(
   mcor_context* context, cl_program program, const char* name, unsigned char* const data[4])
 {
@@ -104,7 +104,7 @@ static cl_program build(mcor_context* context)
   return program;
 }
 
-/* Bytes of the numbers that a kernel returns. */
+/* Returns the number of bytes of a number that a kernel returns. */
 static size_t result_size(const char* name)
 {
   const int wide = strstr(name, "_double") || strncmp(name, "try_double", 10) == 0 ||
@@ -203,7 +203,7 @@ static void test_loops(void** state)
   for (int threads = 1; threads < 9; ++threads)
   {
     mcor_pool pool = { .threads = threads };
-    fesetround(FE_UPWARD); /* the caller's own affair */
+    fesetround(FE_UPWARD); /* the caller may round as it likes */
     check_loops(&pool);
     assert_int_equal(fegetround(), FE_UPWARD);
     fesetround(FE_TONEAREST);
@@ -233,7 +233,7 @@ static mcor_context* make_native(void)
   return context;
 }
 
-/* A process made by fork goes on with threads of its own. */
+/* A process made by fork has threads of its own. */
 static void test_fork(void** state)
 {
   (void)state;
@@ -252,13 +252,13 @@ static void test_fork(void** state)
   assert_true(extract(context) == hash);
 }
 
-/* Where drivers would end the process: the built-in device works, named or not, and a driver's is refused in a
- * sentence. Processes are limited where the test may not start all that it likes, as root may. */
+/* Some drivers would end the process here. The built-in device works, named or by default, and a driver's device is
+ * refused in a sentence. Only threads are limited, where the test may start any number, as root may. */
 static void test_little_room_for_drivers(void** state)
 {
   (void)state;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  skip(); /* sanitizers take all address space */
+  skip(); /* sanitizers reserve all address space */
 #endif
   const pid_t child = fork();
   if (child == 0)
@@ -349,7 +349,7 @@ static void test_shares(void** state)
   }
 }
 
-/* Memory locked for mappings, as with a GPU, is no larger than a driver allows. */
+/* Memory that is locked for mappings, as with a GPU, stays within what a driver allows. */
 static void test_locked(void** state)
 {
   (void)state;

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Loops in several threads: every element once, and results that do not depend on how many
- * threads. */
+/* Loops in several threads visit every element once, and their results do not depend on the number of threads. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -13,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often the elements and slices of a loop were visited. */
+/* Counts how often a loop visits its elements and slices. */
 typedef struct visits
 {
   int64_t count;
   uint8_t* elements;
   int64_t sizes[MCOR_SLICES];
-  int strange; /* slices that do not exist */
+  int strange; /* visits of slices that do not exist */
 } visits;
 
 static void visit(void* data, int slice, int64_t first, int64_t last)
@@ -37,7 +36,7 @@ static void visit(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Whether a loop visits everything once. */
+/* Returns whether a loop visits every element and slice once. */
 static bool is_complete(int64_t count, int64_t grain)
 {
   visits v = { .count = count, .elements = calloc((size_t)count + 1, 1) };
@@ -99,8 +98,8 @@ static int ask(void* user, double fraction, const char* phase)
   return loop->asked++ == loop->asked_most;
 }
 
-/* A loop of a call asks after each of its own slices, and leaves out what no thread has begun: of one thread,
- * all that follow. */
+/* A loop asks after each slice whether to go on, and when cancelled leaves out the slices that no thread has begun:
+ * with one thread, all later ones. */
 static void test_cancelled(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -154,7 +153,7 @@ static void test_several_at_once(void** state)
   }
 }
 
-/* The first of several bad particles is named, whichever thread finds one first. */
+/* Of several bad particles the first is named, whichever thread finds one first. */
 static void test_first_bad_particle(void** state)
 {
   CORE_SET set = core_make_block(40, 0.2, 3, core_ball);
@@ -180,8 +179,7 @@ static void test_first_bad_particle(void** state)
   }
 }
 
-/* Ranges are those of the fluid alone, or of nothing where all are solids; slices may have no
- * fluid. */
+/* Ranges cover the fluid alone; where all particles are solids they are empty. Slices may have no fluid. */
 static void test_ranges(void** state)
 {
   (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature: of balls and cylinders by hand; of any field from differences of the oracle's gradients. */
+/* Curvature: of balls and cylinders worked out by hand; of any field by differences of the oracle's gradients. */
 
 #include "core_fixture.h"
 
@@ -18,7 +18,7 @@ static mcor_surface curved(mcor_context* context, const particle_set* set, mcor_
   return core_extract(context, &input, options);
 }
 
-/* Volume of the part of a unit cube around x that is in a ball; x becomes its centre. */
+/* Returns the volume of the part of a unit cube around x that is in a ball; x becomes the centre of this part. */
 static double share_of_ball(double x[3], double radius)
 {
   double sum[3] = { 0, 0, 0 };
@@ -41,7 +41,8 @@ static double share_of_ball(double x[3], double radius)
   return in / 8000.0;
 }
 
-/* On a lattice: what is 1 / R and 1 / R^2 of a ball, within 1e-3 of these. axes: 3 of a ball, 2 of a cylinder. */
+/* A ball or cylinder on a lattice has the curvature 1 / R, or 1 / R^2, to within 1e-3. axes: 3 for a ball, 2 for a
+ * cylinder. */
 static void test_ball_and_cylinder(void** state)
 {
   static const struct
@@ -82,7 +83,7 @@ static void test_ball_and_cylinder(void** state)
       const double* x = surface.points + 3 * p;
       if (cases[c].field != MCOR_WEIGHT_SUM && (fabs(x[0]) > 6 || fabs(x[1]) > 6 || fabs(x[2]) > 4))
       {
-        continue; /* near the end of the lattice */
+        continue; /* This point is near the end of the lattice. */
       }
       const double r = sqrt(x[0] * x[0] + x[1] * x[1] + (cases[c].axes == 3 ? x[2] * x[2] : 0));
       const double mean = cases[c].axes == 3 ? cases[c].sign : 0.5 * cases[c].sign;
@@ -97,7 +98,7 @@ static void test_ball_and_cylinder(void** state)
   }
 }
 
-/* In a plane the mean curvature is the line's, and there is no other one. */
+/* In a plane the mean curvature is the line's curvature, and there is no Gaussian one. */
 static void test_circle(void** state)
 {
   const double iso = 0;
@@ -128,7 +129,7 @@ static void test_circle(void** state)
   }
 }
 
-/* Mean and Gaussian curvature by central differences of gradients, in double precision. */
+/* Computes mean and Gaussian curvature by central differences of gradients, in double precision. */
 static void reference(
   const oracle_field* field, const double x[3], double step, double curvature[2])
 {
@@ -166,8 +167,8 @@ static void reference(
   curvature[1] = gauss / g2 / g2;
 }
 
-/* Curvatures of each field, with solids among the fluid, and with the kernel that is a product.
- * Where W'' jumps, differences are of no use. */
+/* Curvatures of each field, with solids among the fluid, and with the kernel that is a product of axes. Points where
+ * W'' jumps are left out, because differences do not work there. */
 static void test_any_field(void** state)
 {
   CORE_SET set = core_make_block(9, 0.5, 3, core_slope);

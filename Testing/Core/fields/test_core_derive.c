@@ -19,16 +19,17 @@ static mcor_derivatives derive(mcor_context* context, const particle_set* set, c
   input.attribute_count = 1;
   mcor_options options = core_options(NULL);
   options.precision = precision;
-  options.dimension = 3; /* also of three particles */
+  options.dimension = 3; /* three particles would otherwise be two-dimensional */
   mcor_derivatives derivatives;
   CORE_OK(context, mcor_derive(context, &input, &options, form, &derivatives));
   return derivatives;
 }
 
-/* v = J x, J with a rotation, a shear and a strain; far from 0. */
+/* The velocity is v = J x, where J is a rotation, a shear and a strain, far from 0. */
 static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, { 0, 0.7, 0.4 } };
 
-/* Disordered particles with one h, or with h that varies by a factor of 2. */
+/* Makes disordered particles with one h, or with h that varies by a factor of 2. The corrected gradient of a linear
+ * field must be exact. */
 static void derive_check_linear(
   mcor_context* context, bool varies, mcor_type precision, double tolerance)
 {
@@ -67,7 +68,7 @@ static void test_linear_is_exact(void** state)
   derive_check_linear(*state, true, MCOR_FLOAT64, 1e-12);
 }
 
-/* The standard form, summed in the test. */
+/* Sums the standard form of the gradient in the test. */
 static void derive_standard(const particle_set* set, int64_t i, double gradient[3])
 {
   gradient[0] = gradient[1] = gradient[2] = 0;
@@ -90,7 +91,7 @@ static void derive_standard(const particle_set* set, int64_t i, double gradient[
   }
 }
 
-/* Also with solids, whose values play no part. */
+/* The standard form equals the test's sum, with solids, too, whose values play no part. */
 static void test_standard_form(void** state)
 {
   CORE_SET set = core_make_random(2500, 9, 0.7, 2, 4);
@@ -120,8 +121,8 @@ static void test_standard_form(void** state)
   mcor_free_derivatives(&d);
 }
 
-/* A particle alone, two, three in a plane, and four almost: no matrix can be inverted; of the last, because that
- * would magnify rounding by the square of 100, the sides over the height. */
+/* One particle, two, three in a plane, and four that are nearly in a plane: no matrix can be inverted. With the last
+ * one, inversion would magnify rounding by the square of 100, its sides over its height. */
 static void test_too_few_neighbours(void** state)
 {
   CORE_SET set = particle_set_make(10);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Fluxes: of uniform flow by hand, of others against integrals of what mcor_probe and mcor_gauge find. */
+/* Fluxes: uniform flow by hand, other flow by integrals of what mcor_probe and mcor_gauge find. */
 
 #include "core_fixture.h"
 
@@ -11,7 +11,7 @@
 
 #define PI 3.14159265358979323846
 
-/* A pool of spacing 1 from 0 to 24, 16 and 12 along x, y and z; its top slopes. */
+/* Makes a pool of spacing 1 with sides of 24, 16 and 12 along x, y and z, from 0 on; its top slopes. */
 static particle_set make_pool(double jitter)
 {
   particle_set set = particle_set_make(24 * 16 * 14);
@@ -34,7 +34,7 @@ static particle_set make_pool(double jitter)
   return set;
 }
 
-/* Its middle in a plane of constant x, y or z, of the other coordinates in their order. */
+/* Makes the middle slice of the pool, in a plane of constant x, y or z; the other coordinates keep their order. */
 static particle_set make_slice(int axis)
 {
   particle_set set = particle_set_make(24 * 14);
@@ -141,7 +141,7 @@ static mcor_flux_reading flux_of(
   return reading;
 }
 
-/* Within 1e-6 of rho v A. */
+/* Checks that the flux is rho v A to within 1e-6. */
 static void check_reading(
   const mcor_flux_reading* r, double area, double flux, const char* what, size_t number)
 {
@@ -154,7 +154,7 @@ static void check_reading(
   assert_true(fabs(r->velocity - r->volume_flux / r->area) < 1e-12);
 }
 
-/* v = (1, -2, 3), rho = 1000, in fluid. */
+/* A uniform flow v = (1, -2, 3) of density 1000, in sections within the fluid. */
 static void test_uniform(void** state)
 {
   const struct
@@ -187,15 +187,15 @@ static void test_uniform(void** state)
   assert_true(isnan(r.mass_flux) && fabs(r.volume_flux - 30) < 1e-4);
 }
 
-/* In a plane a section is its line there. The axes that are not constant, in their order, are u and v. */
+/* In a plane a section is a line. u and v are the two axes of the plane, in their order. */
 static void test_uniform_in_a_plane(void** state)
 {
   const struct
   {
-    shape section; /* in the plane of constant z */
+    shape section; /* the section in the plane of constant z */
     double area, flux;
   } cases[] = {
-    { { MCOR_SECTION_LINES, 2, { 5, 3, 8, 5, 7, 8 }, 0 }, 4, 4 }, /* to the right of upwards */
+    { { MCOR_SECTION_LINES, 2, { 5, 3, 8, 5, 7, 8 }, 0 }, 4, 4 }, /* the normal points to the right of upwards */
     { { MCOR_SECTION_LINES, 4, { 5, 3, 8, 9, 3, 8, 9, 3, 8, 9, 7, 8 }, 0 }, 8,
       8 + 4 }, /* -v is 2 */
     { { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 7, 5, 7, 7, 5, 3, 9 }, 0 }, 4, 4 },
@@ -222,7 +222,7 @@ static void test_uniform_in_a_plane(void** state)
       {
         turned.points[p / 3 * 3 + to[p % 3]] = cases[i].section.points[p];
       }
-      /* The cross product of a rectangle's edges turns with odd orders of axes. */
+      /* When axes are exchanged in an odd order, a rectangle's normal, the cross product of its edges, changes sign. */
       const double sign = turned.kind == MCOR_SECTION_RECTANGLE && axis == 1 ? -1 : 1;
       mcor_flux_reading r = flux_of(*state, &input, &options, &turned);
       check_reading(
@@ -246,11 +246,11 @@ static void test_uniform_in_a_plane(void** state)
 
 /* ---- integrals of samples ---- */
 
-/* Gauss's points and shares on [-1, 1]. */
+/* Gauss's points and weights on [-1, 1]. */
 static const double gauss_at[3] = { -0.7745966692414834, 0, 0.7745966692414834 };
 static const double gauss_share[3] = { 5 / 18.0, 8 / 18.0, 5 / 18.0 };
 
-/* Point i of n, three in each of n / 3 parts of [low, high], and its share of the length. */
+/* Returns point i of n Gauss points on [low, high], three in each of n / 3 parts, and its share of the length. */
 static double gauss_point(double low, double high, int i, int n, double* share)
 {
   const double part = (high - low) / (n / 3);
@@ -261,7 +261,8 @@ static double gauss_point(double low, double high, int i, int n, double* share)
 #define COLUMNS 360
 #define ROWS 120
 
-/* A wall across the pool, from below the top to above it: against columns of samples up to where gauges find the top. */
+/* A wall stands across the pool, from below the top to above it. The flux is compared with columns of samples up to the
+ * top that gauges find. */
 static void test_half_out_of_the_water(void** state)
 {
   const double x = 8.2, low = 5, y0 = 2, y1 = 14;
@@ -306,7 +307,7 @@ static void test_half_out_of_the_water(void** state)
     r.mass_flux, flux);
 }
 
-/* A corner on the level itself, alone in fluid: nothing, and a number. */
+/* A corner on the level itself is all that is near the fluid: the flux is 0, or a small number, not NaN. */
 static void test_corner_on_the_level(void** state)
 {
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };
@@ -325,7 +326,8 @@ static void test_corner_on_the_level(void** state)
     level, r.area);
 }
 
-/* Alone and among others, from particles that stay on the device or do not, from any threads. */
+/* The bits are the same for a section alone and among others, for particles that stay on the device or not, and from
+ * any thread. */
 static void test_same_bits(void** state)
 {
   static const shape shapes[] = { { MCOR_SECTION_RECTANGLE, 3,
@@ -348,7 +350,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Beyond a period's side there is its image. */
+/* Beyond a period's side lies the image of the fluid. */
 static void test_period(void** state)
 {
   shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };
@@ -366,8 +368,8 @@ static void test_period(void** state)
     "%g, %.17g, %.17g", here.area, here.mass_flux, there.mass_flux);
 }
 
-/* A channel whose walls are solids beyond y = 0 and y = 12. The fluid begins a spacing inside of them: with solids it
- * ends where both weigh the same, a quarter of a spacing inside; alone, half a spacing beyond its last particles. The
+/* A channel has walls of solids beyond y = 0 and y = 12. The fluid begins a spacing inside of them. With solids it ends
+ * where both weigh the same, a quarter of a spacing inside; without, half a spacing beyond its last particles. The
  * solids have no velocities. */
 static void test_walls(void** state)
 {

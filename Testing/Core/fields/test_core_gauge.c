@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges: every crossing of the level, against sums in double precision at ten times as many points. */
+/* Gauges find every crossing of the level. They are compared with sums in double precision at ten times as many points. */
 
 #include "core_fixture.h"
 
@@ -12,7 +12,7 @@
 #define LEVEL 0.5
 #define ERROR_OF_WEIGHT 1e-4
 
-/* Fluid of a pool with waves, without a bubble in it, and a droplet above: of a lattice of spacing 1. */
+/* Returns whether a point of a lattice of spacing 1 is fluid: in a pool with waves and a bubble, or in a droplet above. */
 static int pool_has(const double x[3])
 {
   const double dx = x[0] - 12, dy = x[1] - 8, bubble = x[2] - 5, drop = x[2] - 15;
@@ -63,9 +63,8 @@ static double length_of(const mcor_gauge_line* line)
     pow(line->to[2] - line->from[2], 2));
 }
 
-/* Checks the reading of a line against its crossings as dense samples find them. Two crossings
- * between which the weight sum leaves the level by less than its error may be missing, or too
- * many. */
+/* Compares the reading of a line with the crossings that dense samples find. A pair of crossings may be missing or
+ * added where the weight sum between them leaves the level by less than its error. */
 static void check_line(const oracle_field* field, const mcor_gauge_line* line,
   const mcor_gauges* gauges, int64_t number, double step, gauge_counts* counts)
 {
@@ -78,7 +77,7 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
     const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
     CORE_CHECK(error <= ERROR_OF_WEIGHT, "line %lld: off by %g", (long long)number, error);
     CORE_CHECK(i == 0 || at[i] >= at[i - 1], "line %lld: not in order", (long long)number);
-    counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step; /* of samples 10 steps apart */
+    counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step; /* the samples are 10 steps apart */
   }
   double before = weight_at(field, line, 0), depth = 0;
   int64_t next = 0;
@@ -165,7 +164,7 @@ static void test_pool_with_waves(void** state)
   CORE_SET set = make_pool(1);
   const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
   CORE_FREED mcor_gauge_line* lines = random_lines(150, low, high);
-  for (int i = 0; i < 40; ++i) /* upright, through the bubble and the droplet */
+  for (int i = 0; i < 40; ++i) /* upright lines through the bubble and the droplet */
   {
     lines[i] =
       (mcor_gauge_line){ .from = { 0.6 * i + 0.2, 8, -3 }, .to = { 0.6 * i + 0.2, 8, 20 } };
@@ -179,8 +178,7 @@ static void test_pool_with_waves(void** state)
   }
 }
 
-/* Sparse particles in no order: the weight sum is near the level everywhere, and passes it often, and
- * by little. */
+/* Sparse random particles: the weight sum is near the level everywhere, and crosses it often and by little. */
 static void test_noise(void** state)
 {
   CORE_SET set = core_make_random(1500, 10, 0.6, 1.0, 3);
@@ -201,8 +199,8 @@ static void test_noise(void** state)
   }
 }
 
-/* With computed volumes, too, though upper layers lack half of their neighbours: with any kernel and usual smoothing
- * length, with masses or without, in space and in a plane. */
+/* With computed volumes the level is right, too, though particles of upper layers lack half of their neighbours: with
+ * any kernel and usual smoothing length, with masses or without, in space and in a plane. */
 static void test_still_pool_of_computed_volumes(void** state)
 {
   static const struct
@@ -241,7 +239,7 @@ static void test_still_pool_of_computed_volumes(void** state)
   }
 }
 
-/* Beyond a period's side there is its image, with the same bits where rounding lets them. */
+/* Beyond a period's side lies the image of the fluid, with the same bits where rounding allows. */
 static void test_period(void** state)
 {
   CORE_SET set = make_pool(1);
@@ -257,7 +255,7 @@ static void test_period(void** state)
   assert_true(memcmp(gauges.crossings, gauges.crossings + 2, 2 * sizeof(double)) == 0);
 }
 
-/* Readings are the same alone or among others, from particles that stay on the device or do not. */
+/* Readings are the same for a line alone and among others, and for particles that stay on the device or not. */
 static void test_same_bits(void** state)
 {
   CORE_SET set = make_pool(1);
@@ -312,7 +310,7 @@ static void test_weird(void** state)
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
   mcor_free_gauges(&gauges);
   CORE_OK(
-    *state, mcor_gauge(*state, &input, &options, &good, 1, &gauges)); /* shorter than a step */
+    *state, mcor_gauge(*state, &input, &options, &good, 1, &gauges)); /* the line is shorter than a step */
   assert_true(gauges.readings[0].state == MCOR_GAUGE_FULL && !gauges.readings[0].outside);
   assert_true(fabs(gauges.readings[0].depth - 0.1) < 1e-9);
   mcor_free_gauges(&gauges);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The field at points: against the oracle, and the same bits whatever the other points are. */
+/* The field at points: compared with the oracle, and with the same bits whatever the other points are. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* `count` points in a cube of edge `size` around the origin; free with free(). */
+/* Returns `count` points in a cube of edge `size` around the origin; free them with free(). */
 static double* probe_points(int64_t count, double size, uint64_t seed)
 {
   double* points = oracle_allocate(count * 3, sizeof(double));
@@ -28,7 +28,7 @@ static mcor_options probe_options(void)
   return options;
 }
 
-/* The set's scalar at points, [count][3]. */
+/* Evaluates the set's scalar at points, [count][3]. */
 static mcor_samples probe(mcor_context* context, const particle_set* set,
   const mcor_options* options, const double* points, int64_t count)
 {
@@ -42,8 +42,8 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
   return samples;
 }
 
-/* Compares everything at one point. scale: of the array's values; steep: gradients are relative to the expected
- * one. Returns that one's largest component. */
+/* Compares everything at one point with the oracle, and returns the largest component of the expected gradient. scale:
+ * the size of the array's values. steep: errors of gradients are relative to the expected one. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
   double scale, bool steep, double tolerance, const mcor_samples* samples, int64_t i)
 {
@@ -86,7 +86,8 @@ static void test_against_oracle(void** state)
     mcor_type precision;
     double offset; /* added to the scalar */
     double tolerance;
-    double size; /* of the particles' box; where it is small, more reach a point than are gathered at once */
+    double size; /* the edge of the particles' cube; in a small one more particles reach a point than are gathered at
+                  * once */
   } cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6, 10 },
     { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 1e-5, 3 },
     { MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32, 100, 3e-6, 10 },
@@ -125,19 +126,20 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* Smoothing lengths from 1 to 1000: values, weights and gradients in units of what they are made of. */
+/* With smoothing lengths from 1 to 1000, values, weights and gradients are right in proportion to the terms that they
+ * are made of. */
 static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] =
-      0.8 * pow(set.smoothing_length[i], 2); /* the small ones weigh most where they are */
+      0.8 * pow(set.smoothing_length[i], 2); /* small particles weigh most where they are */
   }
   const int64_t count = 3000;
   CORE_FREED double* points = oracle_allocate(count * 3, sizeof(double));
   uint64_t seed = 31;
-  for (int64_t i = 0; i < count; ++i) /* within the supports of single particles */
+  for (int64_t i = 0; i < count; ++i) /* points within the supports of single particles */
   {
     const int64_t j = (int64_t)(random_unit(&seed) * (double)set.count);
     for (int a = 0; a < 3; ++a)
@@ -156,17 +158,17 @@ static void wide_range_run(mcor_context* context, mcor_type precision, double to
   {
     most = fmax(most, probe_compare(&field, points + 3 * i, 0, 1, true, tolerance, &samples, i));
   }
-  assert_true(most > 20); /* some points are at small particles */
+  assert_true(most > 20); /* some points lie at small particles */
 }
 
 static void test_wide_range_against_oracle(void** state)
 {
-  wide_range_run(*state, MCOR_FLOAT32, 5e-5); /* positions have 1e-5 of the least h */
+  wide_range_run(*state, MCOR_FLOAT32, 5e-5); /* positions are rounded to 1e-5 of the least h */
   wide_range_run(*state, MCOR_FLOAT64, 1e-11);
 }
 
-/* Two arrays, 12 components in all, so that there is more than one round; particles in a cube of edge
- * `size`. */
+/* Probes two arrays, 12 components in all, so that there is more than one round, in another order of particles in a
+ * cube of edge `size`. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
   CORE_SET set = core_make_random(2000, size, h_min, h_max, 3);
@@ -208,12 +210,12 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
 static void test_bits_do_not_depend_on_other_points(void** state)
 {
   probe_in_another_order(*state, 8, 0.5, 0.9);
-  /* Supports of up to 256 cubes. */
+  /* The supports reach up to 256 cubes. */
   probe_in_another_order(*state, 30, 0.25, 16);
 }
 
-/* Probes at points in a cube of edge `size` around (x, 0, 0), with only the particles nearby, and with all
- * as for another call to take: the same bits. Returns how many points are valid. */
+/* Probes points in a cube of edge `size` around (x, 0, 0), once with only the nearby particles on the device, once with
+ * all, as for a further call. The bits must be the same. Returns how many points are valid. */
 static int probe_near(
   mcor_context* context, const particle_set* set, bool volumes, double x, double size)
 {
@@ -261,8 +263,8 @@ static void test_only_particles_nearby_are_needed(void** state)
   {
     assert_true(probe_near(*state, &set, volumes, 0, 2) > 0);
     assert_true(probe_near(*state, &set, volumes, 41, 1e-9) > 0);
-    assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* between them */
-    assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* outside of everything */
+    assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* the points lie between the groups */
+    assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* the points lie outside of everything */
   }
 }
 
@@ -299,7 +301,7 @@ static void test_odd_points(void** state)
   assert_null(samples.values[0]);
 }
 
-/* A weight of exactly the threshold is enough. */
+/* A weight that equals the threshold is enough. */
 static void test_threshold_itself(void** state)
 {
   mcor_context* context = *state;
@@ -334,8 +336,8 @@ typedef struct kept_call
 
 #define KEPT_POINTS 200
 
-/* Probes; `reused`: whether the attributes of the call before are. Bit for bit what a context that knows
- * nothing says. */
+/* Probes and checks that the bits are those of a new context. reused: whether the attributes of the call before must be
+ * used again. */
 static void kept_probe(mcor_context* context, const kept_call* call, bool reused, const char* step)
 {
   const mcor_array at = core_array(call->points, 3);
@@ -343,7 +345,7 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
   CORE_CONTEXT fresh = NULL;
   CORE_SAMPLES got, expected;
   alone.particles_version = alone.scalar_version = alone.attributes_version = 0;
-  /* Where what is kept is taken, nobody asks for the array's values. */
+  /* Where kept values are used, the array itself is not read, so it may hold NaN. */
   double* const values = (double*)call->attributes[0].data;
   const double value = values[0];
   values[0] = reused ? NAN : value;
@@ -419,7 +421,7 @@ static void test_kept_attributes(void** state)
   particle_set_free(&call.set);
 }
 
-/* Exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
+/* Probes exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
 static void test_at_particles(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.6, 6, 11);
@@ -445,7 +447,7 @@ static void test_at_particles(void** state)
   }
 }
 
-/* A mean is between the least and the greatest value, rounding or not. */
+/* A mean lies between the least and the greatest value, even with rounding. */
 static void test_means_are_between(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.6, 1.8, 11);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Projections against quadrature of the oracle's kernels: along the line of sight, then over each pixel. */
+/* Projections are compared with quadrature of the oracle's kernels, along the line of sight and then over each pixel. */
 
 #include "core_fixture.h"
 #include "core_ranks.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ALLOWED 1e-6 /* of the largest that a particle adds to a pixel */
+#define ALLOWED 1e-6 /* relative to the most that a particle adds to a pixel */
 #define PROFILE 8192
 #define MOST_RANKS 3
 
@@ -21,7 +21,7 @@ static const double gauss_at[5] = { -0.9061798459386640, -0.5384693101056831, 0,
 static const double gauss_weight[5] = { 0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
   0.2393143352496832, 0.1184634425280945 };
 
-/* The column density of a kernel of h = 1, across a direction. */
+/* The column density of a kernel with h = 1 as a function of the distance from the line of sight. */
 typedef struct column
 {
   oracle_kernel kernel;
@@ -37,7 +37,7 @@ static double line_integral(const column* c, double x, double y, double reach, i
   {
     for (int g = 0; g < 5; ++g)
     {
-      /* Denser in the middle, where w may have a cusp. */
+      /* Points are denser in the middle, where w may have a cusp. */
       const double at_end = (i + 0.5 + 0.5 * gauss_at[g]) / panels;
       const double t = c->kernel == ORACLE_M_PRIME_4 ? cbrt(at_end) : at_end, z = reach * t * t * t;
       for (int sign = -1; sign <= 1; sign += 2)
@@ -82,7 +82,7 @@ static double density_at(const column* c, double x, double y)
 
 static column make_column(mcor_sph_kernel kernel, int is_plane, const mcor_projection* view)
 {
-  static column c = { .kernel = ORACLE_KERNEL_COUNT }; /* with the profile of the last call */
+  static column c = { .kernel = ORACLE_KERNEL_COUNT }; /* keeps the profile of the last call */
   const double support = oracle_support((oracle_kernel)kernel);
   const int is_known = c.kernel == (oracle_kernel)kernel;
   c.kernel = (oracle_kernel)kernel;
@@ -97,7 +97,8 @@ static column make_column(mcor_sph_kernel kernel, int is_plane, const mcor_proje
   return c;
 }
 
-/* Adds what a particle adds to each pixel of the rows from `first` on, every `step`-th one; returns the most. */
+/* Adds what a particle contributes to each pixel of every `step`-th row from `first` on. Returns the largest
+ * contribution. */
 static double add_particle(const column* c, const mcor_projection* view, const double x[3],
   double h, double amount, double cells_per_h, int step, double* image)
 {
@@ -158,7 +159,7 @@ static double error_of(const mcor_projection* view, const double* image, int ste
   return most;
 }
 
-/* Masses in the place of volumes. */
+/* Returns an input that has masses in the place of volumes. */
 static mcor_input input_of(const particle_set* set)
 {
   mcor_input input = core_input(set);
@@ -183,7 +184,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
                reach = (kernel == MCOR_M_PRIME_4 ? 3.5 : oracle_support((oracle_kernel)kernel)) * h;
   CORE_SET set = particle_set_make(is_plane ? 3 : 1);
   const double x[3] = { 3.1, -2.3, 1.7 };
-  for (int64_t i = 0; i < set.count; ++i) /* the others lie beyond the image, and make a plane */
+  for (int64_t i = 0; i < set.count; ++i) /* the other particles lie beyond the image, and make it a plane */
   {
     set.position[3 * i] = x[0] + (i == 1) * 1e4;
     set.position[3 * i + 1] = x[1] + (i == 2) * 1e4;
@@ -194,7 +195,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
   const mcor_input input = input_of(&set);
   mcor_options options = project_options(kernel);
   options.precision = pixels_per_h > 1 ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  /* All of it in the image, whose pixels have no place in common with the particle. */
+  /* The particle lies within the image, at no special place of a pixel. */
   mcor_view view = { .resolution = (int)ceil(2 * reach * pixels_per_h / h) + 2 };
   memcpy(view.direction, direction, sizeof view.direction);
   const double side = view.resolution * h / pixels_per_h;
@@ -228,7 +229,7 @@ static void test_single(void** state)
   {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i)
     {
-      /* A cone in the plane. */
+      /* In a plane the quadratic kernel is a cone. */
       const double fine = k != MCOR_QUADRATIC ? 16 : sizes[i] > 10 ? 256 : 32;
       check_single(*state, k, z, sizes[i], 0, k == MCOR_QUADRATIC ? 32 : 16);
       check_single(*state, k, z, sizes[i], 1, fine);
@@ -243,7 +244,7 @@ static void test_single(void** state)
 
 /* ---- many ---- */
 
-/* Evrard's sphere: density as 1 / r, h with it; in no order. */
+/* Makes Evrard's sphere, whose density falls as 1 / r and whose h follows it, in random order. */
 static particle_set make_evrard(int64_t count)
 {
   particle_set set = particle_set_make(count);
@@ -273,7 +274,7 @@ static void test_brute_force(void** state)
     const mcor_input input = input_of(&set);
     mcor_options options = project_options(MCOR_CUBIC_SPLINE);
     options.h_scale = 0.9;
-    for (int i = 0; i < 6 && is_periodic; ++i) /* the sphere goes beyond it */
+    for (int i = 0; i < 6 && is_periodic; ++i) /* the sphere reaches beyond the period */
     {
       options.periodic[i] = i % 2 ? 0.9 : -0.7;
     }
@@ -292,7 +293,7 @@ static void test_brute_force(void** state)
         x[a] -= is_periodic ? 1.6 * floor((x[a] + 0.7) / 1.6) : 0;
       }
       const double h = 0.9 * set.smoothing_length[i];
-      const int images = is_periodic && d % 3 < 2 ? 1 : 0; /* beside the line of sight */
+      const int images = is_periodic && d % 3 < 2 ? 1 : 0; /* images to the sides of the line of sight */
       for (int u = -images; u <= images; ++u)
       {
         for (int v = -images; v <= images; ++v)
@@ -315,7 +316,8 @@ static void test_brute_force(void** state)
   }
 }
 
-/* A box: its frame is the image, along the line of sight it chooses particles; images are as good as copies. */
+/* A box gives the image's frame, and chooses particles along the line of sight. Images of a period count like copies of
+ * the particles. */
 static void test_box(void** state)
 {
   CORE_SET set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);
@@ -337,7 +339,7 @@ static void test_box(void** state)
   mcor_input input = input_of(&set);
   CORE_PROJECTION expected, found;
   mcor_view whole = view;
-  whole.box[4] = -0.5; /* the infinite side is the period's */
+  whole.box[4] = -0.5; /* the infinite side becomes the period's */
   CORE_OK(*state, mcor_project(*state, &with_copies, &options, &whole, &expected));
   for (int i = 0; i < 6; ++i)
   {
@@ -357,7 +359,7 @@ static void test_box(void** state)
     "images differ by %.2g", error_of(&found, expected.values, 1) / most);
 }
 
-/* Sums and means of a scalar: by volumes, by a weight, by masses; with volumes that are computed. */
+/* Sums and means of a scalar, weighted by volumes, by an array, by masses, and by computed volumes. */
 static void test_weights(void** state)
 {
   CORE_SET set = make_evrard(300);
@@ -380,7 +382,7 @@ static void test_weights(void** state)
   input.scalar = core_array(set.scalar, 1);
   view.weight = core_array(weight, 1);
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &mean));
-  input.mass = core_array(weight, 1); /* of which volumes are not made, as there are others */
+  input.mass = core_array(weight, 1); /* Masses would not replace volumes, since these are given. */
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &by_mass));
   int seen = 0, empty = 0;
   for (int p = 0; p < mean.size[0] * mean.size[1]; ++p)
@@ -431,7 +433,7 @@ static mcor_view view_of_bits(void)
   return (mcor_view){ .direction = { 1, 2, 3 }, .resolution = 100 };
 }
 
-/* Every so-manieth particle. */
+/* Projects the particles that belong to one rank, one of every `count`. */
 static void project_part(core_rank* rank, void* data)
 {
   rank_job* job = data;
@@ -516,7 +518,7 @@ static void test_bad_input(void** state)
   const struct
   {
     mcor_view view;
-    int change; /* of the input */
+    int change; /* what is wrong with the input */
     mcor_status status;
   } cases[] = { { { .direction = { 1, nan, 0 }, .resolution = 8 }, 0, MCOR_INVALID_ARGUMENT },
     { { .direction = { INFINITY, 0, 0 }, .resolution = 8 }, 0, MCOR_INVALID_ARGUMENT },
@@ -527,14 +529,14 @@ static void test_bad_input(void** state)
     { { .box = { 0, 1, 1, 1, 0, 1 }, .resolution = 8 }, 0, MCOR_INVALID_ARGUMENT },
     { { .resolution = 8, .weight = { .data = vectors, .type = MCOR_FLOAT64, .components = 3 } }, 0,
       MCOR_INVALID_ARGUMENT },
-    { { .resolution = 8 }, 1, MCOR_INVALID_ARGUMENT }, /* no mass */
-    { { .resolution = 8 }, 2, MCOR_INVALID_DATA },     /* a scalar that is no number */
-    { { .resolution = 8 }, 3, MCOR_INVALID_DATA },     /* values too large to be added */
-    { { .resolution = 8 }, 4, MCOR_INVALID_ARGUMENT }, /* a period much shorter than h */
+    { { .resolution = 8 }, 1, MCOR_INVALID_ARGUMENT }, /* there is no mass */
+    { { .resolution = 8 }, 2, MCOR_INVALID_DATA },     /* the scalar is not a number */
+    { { .resolution = 8 }, 3, MCOR_INVALID_DATA },     /* the values are too large to be added */
+    { { .resolution = 8 }, 4, MCOR_INVALID_ARGUMENT }, /* the period is much shorter than h */
     { { .direction = { 0, 0, 1 }, .resolution = 8 }, 5,
-      MCOR_INVALID_ARGUMENT }, /* a plane seen from the side */
+      MCOR_INVALID_ARGUMENT }, /* the plane is seen from its side */
     { { .box = { 0, 1, 0, 20, 0, 1 }, .resolution = 8 }, 6, MCOR_INVALID_ARGUMENT },
-    { { .resolution = 8 }, 7, MCOR_INVALID_DATA } }; /* one that is far away */
+    { { .resolution = 8 }, 7, MCOR_INVALID_DATA } }; /* one particle is far away */
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     CORE_SET copy = core_permute(cases[i].change == 5 ? &flat : &set,
@@ -573,14 +575,14 @@ static void test_bad_input(void** state)
       mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
   }
-  /* Nothing, and nothing in a box; solids and particles that do not count. */
+  /* The image is empty: without particles, in an empty box, of solids, and of absent particles. */
   mcor_input input = input_of(&set);
   mcor_options options = project_options(MCOR_CUBIC_SPLINE);
   mcor_view view = { .resolution = 8 };
   mcor_projection found;
   memset(set.solid, 1, 27);
   input.solid = set.solid;
-  for (int side = 1; side < 8; side += 2) /* of a period along x, y and z; none */
+  for (int side = 1; side < 8; side += 2) /* periods along x, y and z, then none */
   {
     memset(options.periodic, 0, sizeof options.periodic);
     options.periodic[side % 7] = side < 7 ? 4 : 0;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widened smoothing lengths: against plain sums in double precision; and the surface is that of an ordinary call
- * with these lengths. */
+/* Widened smoothing lengths are compared with plain sums in double precision, and the surface with that of an ordinary
+ * call with these lengths. */
 
 #include "core_fixture.h"
 
@@ -12,7 +12,7 @@
 
 #define WIDEST 2.0
 
-/* A block of n x n x n, a sheet above it, a thread, and lone drops. */
+/* Makes a block of n x n x n, a sheet above it, a thread, and lone drops. */
 static particle_set make_scene(int n, double jitter, uint64_t seed)
 {
   const int side = 2 * n;
@@ -85,8 +85,9 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, more
- * where few are on one, and less than the iso value where many are. */
+/* Computes the factor: the widest step whose sum is high enough, and a part of the way to the next. The sum must exceed
+ * the iso value by a margin where neighbours are on both sides, by more where there are few on one side, and may stay
+ * below it where there are many on one side. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -173,7 +174,7 @@ static void test_factors(void** state)
   }
 }
 
-/* The surface is that of the widened lengths, in cubes of one size as large. */
+/* Checks that the surface is that of the widened lengths, in uniform cubes of the same size. */
 static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
 {
   mcor_input input = *asked;
@@ -203,8 +204,8 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
   assert_true(core_hash(&plain) == core_hash(&widened));
 }
 
-/* Bits of a way: a scalar, volumes that are computed, periods, lengths that differ, solids. The last ways are in a
- * plane. */
+/* Each bit of the case adds a property: a scalar, computed volumes, periods, lengths that differ, solids. The last
+ * cases are in a plane. */
 static void test_surface(void** state)
 {
   CORE_SET set = make_scene(8, 0.24, 5);
@@ -231,7 +232,7 @@ static void test_surface(void** state)
   }
 }
 
-/* Boxes have the factors of the whole, which do not depend on where a period begins. */
+/* Boxes have the factors of the whole, and the factors do not depend on where a period begins. */
 static void test_parts(void** state)
 {
   mcor_context* context = *state;
@@ -281,7 +282,7 @@ static void test_parts(void** state)
   }
 }
 
-/* Cubes follow the lengths themselves; and a call with the same particles has the same result, whatever is kept. */
+/* Cubes follow the unwidened lengths; and a second call with the same particles has the same result, whatever is kept. */
 static void test_levels_and_reuse(void** state)
 {
   mcor_context* context = *state;
@@ -343,7 +344,7 @@ static void test_refused(void** state)
   options.widen = 1.5;
   mcor_spell_out(&options);
   assert_true(options.widen == 1.5);
-  /* A period too short for the widened lengths, and a widening that fits. */
+  /* A period is too short for the widened lengths; the sentence says which widening fits. */
   options.smooth = 0;
   options.widen = WIDEST;
   options.level_limit = 0;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid: its order, estimates. That queries find all particles, the oracle knows. */
+/* Search grid: its order, and estimated smoothing lengths. The oracle checks that queries find all particles. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -10,8 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Roots of cubes are exact, others within two units of rounding, and all have the bits that
- * IEEE's operations give. */
+/* Roots of cubes are exact, other roots are within two units of rounding, and all have the same bits on every machine. */
 static void test_cube_root(void** state)
 {
   (void)state;
@@ -29,7 +28,7 @@ static void test_cube_root(void** state)
   CORE_CHECK(mcor_cube_root(volume / 2) == 0x1.47894e24991b8p+0, "other bits");
 }
 
-/* 1.3 times the spacing of a lattice, most of whose particles are far from its faces. */
+/* The estimate is 1.3 times the spacing of a lattice, most of whose particles are far from its faces. */
 static void test_estimate(void** state)
 {
   const double spacings[] = { 1, 1e-3, 250 };
@@ -66,12 +65,13 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   return hash;
 }
 
-/* `count` particles, all in few cells, `coincident` of them at one place, in two orders: the same bits. */
+/* Makes `count` particles in few cells, `coincident` of them at one place, and checks that two orders give the same
+ * bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
   CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
   uint64_t seed = 9;
-  double iso = 0; /* between the mean of the crowd and that of those beside it */
+  double iso = 0; /* lies between the mean of the crowd and that of the particles beside it */
   for (int i = 0; i < count + 40; ++i)
   {
     set.scalar[i] = (double)(random_bits(&seed) % 1000);
@@ -92,7 +92,7 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
     "%d particles, %d at one place: other bits", count, coincident);
 }
 
-/* Cells with more particles than one work-item sorts, and more coincident ones. */
+/* Cells hold more particles than one work-item sorts, and more coincident ones. */
 static void test_crowds(void** state)
 {
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },

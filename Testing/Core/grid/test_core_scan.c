@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prefix sums, sort, distinct keys and the key index, each against a naive twin. */
+/* Prefix sums, sort, distinct keys and the key index are each compared with a naive version. */
 
 #include "core_fixture.h"
 
@@ -12,7 +12,7 @@
 static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 40000, 100003 };
 #define SIZE_COUNT (int)(sizeof sizes / sizeof sizes[0])
 
-/* Key sets: dense, with many repeats, sparse over the whole range, all equal, all but one equal. */
+/* Kinds of key sets: dense, with many repeats, sparse over the whole range, all equal, all but one equal. */
 typedef struct key_kind
 {
   const char* name;
@@ -90,7 +90,7 @@ static void test_scan(void** state)
 static void test_scan_overflow(void** state)
 {
   mcor_context* context = *state;
-  /* A count that is rounded up must be an int as well. */
+  /* A count that was rounded up must be an int as well. */
   const int most[] = { INT_MAX, INT_MAX - 1024, INT_MAX - 5000 };
   for (int k = 0; k < 3; ++k)
   {
@@ -107,7 +107,7 @@ static void test_scan_overflow(void** state)
   }
 }
 
-/* Arguments are counted, as those of an earlier launch would be used for missing ones. */
+/* Arguments are counted, because a missing one would keep its value from an earlier launch. */
 static void test_argument_count(void** state)
 {
   mcor_context* context = *state;
@@ -123,7 +123,8 @@ static void test_argument_count(void** state)
   mcor_release(context, &buffer);
 }
 
-/* Keys in order, with where each was; buckets of the sorted ones; and the distinct ones, with runs of each. */
+/* Checks the sorted keys with their old places, the buckets of the sorted keys, and the distinct keys with the runs of
+ * each. */
 static void check_keys(mcor_context* context, int kind, int count)
 {
   const uint64_t limit = kinds[kind].limit;
@@ -203,7 +204,7 @@ static void test_keys(void** state)
   }
 }
 
-/* Each work-item of a launch in parts runs once. */
+/* In a launch that is cut into parts, each work-item runs once. */
 static void test_parts(void** state)
 {
   enum

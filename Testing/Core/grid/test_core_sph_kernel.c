@@ -1,14 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The SPH kernels as the device evaluates them: values and slopes of their twins, whose integrals oracle_self knows. */
+/* The SPH kernels as the device evaluates them: values and slopes are those of the oracle's kernels, whose integrals
+ * oracle_self checks. */
 
 #include "core_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* W h^3 and its gradient at offsets, both as node sums and as the correction compute it. */
+/* Computes W h^3 and its gradient at offsets in both ways: as sums at nodes do, and as the correction does. */
 static const char source[] =
   "__kernel void test_kernel(const int count, const real inv_h, __global const real* offset,\n"
   "  __global real* out)\n"
@@ -51,7 +52,7 @@ static double* evaluate(
   return result;
 }
 
-/* W and its gradient against the twin's. */
+/* Compares W and its gradient with the oracle's. */
 static void check_values(mcor_context* context, mcor_sph_kernel kernel)
 {
   enum
@@ -84,7 +85,7 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
   }
 }
 
-/* Exactly 0 from the support radius on; not 0 just inside; at 0 no slope. */
+/* W is exactly 0 from the support radius on, and not 0 just inside; at 0 its slope is 0. */
 static void check_support(mcor_context* context, mcor_sph_kernel kernel)
 {
   const double support = mcor_support_factor(kernel);
@@ -105,8 +106,8 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   }
 }
 
-/* In single precision, whose formulas are others here and there: within 1.5e-6 of the greatest W, and of
- * its steepest slope, and nearer the support radius within 1e-5 of W itself. */
+/* Checks single precision, where some formulas differ: within 1.5e-6 of the greatest W, and of its steepest slope; near
+ * the support radius within 1e-5 of W itself. */
 static void check_single(mcor_context* context, mcor_sph_kernel kernel)
 {
   enum

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays that somebody else writes to during a call: it returns, with a sentence where it noticed, and
- * the next call is as if nothing had happened. */
+/* Somebody else writes to the arrays during a call. The call returns, with a sentence if it noticed, and the next call
+ * is as if nothing had happened. */
 
 #include "core_fixture.h"
 
@@ -23,7 +23,7 @@ enum
 typedef struct changed_call
 {
   particle_set set;
-  double *before, iso; /* the positions as they were */
+  double *before, iso; /* before: the positions before the change */
   mcor_input input;
   mcor_options options;
 } changed_call;
@@ -54,7 +54,7 @@ static void free_call(changed_call* call)
   free(call->before);
 }
 
-/* ---- By the progress callback, at each launch in turn ---- */
+/* ---- Changed by the progress callback, at each launch in turn ---- */
 
 enum
 {
@@ -134,7 +134,7 @@ static void test_changes_at_each_launch(void** state)
   CORE_CHECK(calls > 200, "%d calls", calls);
 }
 
-/* ---- Between measuring and extracting ---- */
+/* ---- Changed between measuring and extracting ---- */
 
 static void test_other_globals(void** state)
 {
@@ -163,7 +163,7 @@ static void test_other_globals(void** state)
   }
 }
 
-/* ---- By a thread, all the time ---- */
+/* ---- Changed by another thread, all the time ---- */
 
 typedef struct writer
 {

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Inputs at the ends of what is allowed: far apart, at one point, of any magnitude, exactly at a
- * threshold. */
+/* Inputs at the ends of what is allowed: far apart, at one point, of any magnitude, exactly at a threshold. */
 
 #include "core_fixture.h"
 
@@ -10,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Drops far apart are all found: the keys of search cells must not overflow. */
+/* Drops that are far apart are all found: keys of search cells must not overflow. */
 static void test_far_apart(void** state)
 {
   enum
@@ -24,7 +23,7 @@ static void test_far_apart(void** state)
   {
     for (int a = 0; a < 3; ++a)
     {
-      /* On nodes; the first and the last span the whole lattice. */
+      /* Drops lie on nodes; the first and the last span the whole lattice. */
       const double at = i == 0 ? 0 : i == DROPS - 1 ? 1 : random_unit(&seed);
       set.position[3 * i + a] = floor(1000000 * at);
     }
@@ -40,7 +39,7 @@ static void test_far_apart(void** state)
   assert_int_equal(surface.triangle_count, 8 * DROPS);
 }
 
-/* Unscaled smoothing lengths that reach far beyond the lattice: pairs, and computed volumes. */
+/* Smoothing lengths before scaling reach far beyond the lattice; pairs and computed volumes use those. */
 static void test_far_reach(void** state)
 {
   const double iso = 0;
@@ -72,7 +71,7 @@ static void test_far_reach(void** state)
   }
 }
 
-/* The unit of the scalar changes nothing: neither the mesh nor which cut vertices are exact. */
+/* The unit of the scalar changes neither the mesh nor which cut vertices are exact. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
@@ -104,7 +103,7 @@ static void test_magnitude(void** state)
   }
 }
 
-/* A threshold that is some vertex's own weight. */
+/* The threshold equals some vertex's own weight. */
 static void test_exact_threshold(void** state)
 {
   const double iso = 0;
@@ -126,7 +125,7 @@ static void test_exact_threshold(void** state)
   CORE_CHECK(thresholds > 50, "%d thresholds", thresholds);
 }
 
-/* Coincident particles: many are sorted in no time, and an earlier scalar leaves no trace. */
+/* Many coincident particles are sorted in no time, and an earlier scalar leaves no trace. */
 static void test_coincident(void** state)
 {
   enum
@@ -139,7 +138,7 @@ static void test_coincident(void** state)
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* Twins in the block, and a place where a simulation leaves what it does not need. */
+    /* The block's particles are twins; the others are all at a place where a simulation leaves unused particles. */
     const int64_t twin = i < block.count ? i / 2 * 2 : 0;
     for (int a = 0; a < 3; ++a)
     {
@@ -168,8 +167,8 @@ static void test_coincident(void** state)
   assert_int_equal(core_hash(&reused), core_hash(&fresh));
 }
 
-/* A plateau at the iso value, to within rounding: what another iso value evaluated before does not
- * show. */
+/* Values are the iso value over a whole region, to within rounding. What was evaluated before for another iso value
+ * does not change the result. */
 static void test_plateau(void** state)
 {
   const double plateau = (double)0.3f;
@@ -198,7 +197,7 @@ static void test_plateau(void** state)
   }
 }
 
-/* A kernel with negative lobes may leave no density to divide by. */
+/* With a kernel that has negative lobes the sum of weights may be 0 or less, so that there is no mean. */
 static void test_no_density(void** state)
 {
   const double iso = 0.5;
@@ -210,7 +209,7 @@ static void test_no_density(void** state)
     set.scalar[i] = i % 2;
     if (i > 0)
     {
-      /* Where the kernel is -1/16. */
+      /* Here the kernel is -1/16. */
       set.position[3 * i + (i - 1) % 3] = (i - 1) / 3 % 2 ? 1.5 : -1.5;
     }
   }
@@ -225,8 +224,8 @@ static void test_no_density(void** state)
   surface = core_extract(*state, &input, &options);
 }
 
-/* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: of a lattice of 10^12 cells, a closed surface
- * with all vertices on it. */
+/* Smoothing lengths from 1 to 1024 with cubes for the smallest make a lattice of 10^12 cells. The surface is closed and
+ * all vertices are on it. */
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are absent, or ignored, play no part whatever they hold. Those too far away for the virtual grid do
- * not stop a run: with a box, or at points, they do not matter; else a few of them are left out, with a warning. */
+/* Particles that are absent or ignored play no part, whatever they hold. Particles too far away for the virtual grid do
+ * not stop a run: with a box, or at points, they do not matter; otherwise a few of them are left out, with a warning. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -14,7 +14,7 @@
 #define SIDE 10
 #define BLOCK (SIDE * SIDE * SIDE)
 
-/* The block, and `more` particles behind it, in which nothing is as it should be. */
+/* Returns the block, and behind it `more` particles whose arrays hold nothing valid. */
 static particle_set add_particles(const particle_set* block, int more)
 {
   particle_set set = particle_set_make(block->count + more);
@@ -39,7 +39,7 @@ static particle_set add_particles(const particle_set* block, int more)
   return set;
 }
 
-/* The set's surface is the block's, to the last bit. */
+/* Checks that the set's surface is, to the last bit, the block's. */
 static void check_same(mcor_context* context, const particle_set* block, const particle_set* set,
   mcor_input (*input_of)(const particle_set*), const mcor_options* options)
 {
@@ -97,7 +97,7 @@ static void test_absent(void** state)
     block.solid[i] = set.solid[i] = 1;
   }
   check_same(*state, &block, &set, input_with_solids, &options);
-  /* Solids that are ignored may hold anything, too. */
+  /* Ignored solids may hold anything, too. */
   memset(block.solid, 0, (size_t)block.count);
   memset(set.solid, 0, (size_t)set.count);
   memset(set.solid + block.count, 1, (size_t)(set.count - block.count));
@@ -108,7 +108,7 @@ static void test_absent(void** state)
   assert_true(core_told(*state, "ARRAY_VALUE|position of particle 1000"));
   particle_set_free(&set);
   particle_set_free(&block);
-  /* Many, read in several slices, of which those that count stay in order. */
+  /* There are many particles, read in several slices; the ones that count stay in order. */
   set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   block = particle_set_make(set.count);
@@ -118,7 +118,7 @@ static void test_absent(void** state)
     set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
     set.solid[i] ? (void)0 : particle_set_append(&block, &set, i);
   }
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be other numbers */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the numbers of particles would differ */
   check_same(*state, &block, &set, input_without_solids, &options);
 }
 
@@ -128,7 +128,7 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Medians are those of the 32 fluid particles with the least hashes. Those absent are sampled by nothing. */
+/* Medians are those of the 32 fluid particles with the least hashes; absent particles are not sampled. */
 static void test_measures(void** state)
 {
   enum
@@ -200,7 +200,7 @@ static void test_measures(void** state)
   }
 }
 
-/* `far` particles at great distances behind the block, else like its first one. */
+/* Returns the block, and behind it `far` particles at great distances that are otherwise like its first one. */
 static particle_set add_far(const particle_set* block, int far)
 {
   particle_set set = add_particles(block, far);
@@ -216,7 +216,7 @@ static particle_set add_far(const particle_set* block, int far)
   return set;
 }
 
-/* A scalar that is not a number is no matter where the particle is left out; for mcor_check_input it is. */
+/* A scalar that is not a number does not matter at a particle that is left out, but mcor_check_input refuses it. */
 static void test_few(void** state)
 {
   const double iso = 0.5;
@@ -249,7 +249,7 @@ static void test_few(void** state)
   assert_non_null(strstr(mcor_last_error(*state), "far away"));
 }
 
-/* Nine are too many, but not where there is a box, or points. */
+/* Nine far particles are too many, but not with a box or at points. */
 static void test_region(void** state)
 {
   const double iso = 0.5, box[6] = { -3, 20, -2.5, 30, -40, 3 };
@@ -265,7 +265,7 @@ static void test_region(void** state)
     check_same(*state, &block, &set, core_input, &options);
   }
   options.box[0] =
-    3; /* volumes, and sums, at particles that reach it are made of some that do not */
+    3; /* volumes, and sums, at particles that reach the region include particles that do not */
   for (int widest = 0; widest <= 4; ++widest)
   {
     const mcor_input one = widest == 0 ? input_of_masses(&block) : near,
@@ -277,7 +277,7 @@ static void test_region(void** state)
       "widened by %d", widest);
   }
   options.widen = 1;
-  options.periodic[0] = -5; /* images reach the box from there */
+  options.periodic[0] = -5; /* from there images reach the box */
   options.periodic[1] = 5;
   options.box[0] = -5;
   options.box[1] = -4;
@@ -307,7 +307,7 @@ static void test_region(void** state)
   }
 }
 
-/* A zoom: small particles in a lattice of large ones that reach them all. */
+/* In a zoom, small particles lie in a lattice of large ones whose supports reach them all. */
 static void test_zoom(void** state)
 {
   const double iso = 0.5;
@@ -344,7 +344,7 @@ static void test_zoom(void** state)
     mesh_report report = core_check_mesh(&surface);
     mesh_free_report(&report);
     assert_true(surface.statistics.is_closed);
-    /* The sum of densities 1 is the weight sum of the small ones. */
+    /* The sum of densities 1 is the small particles' weight sum. */
     CORE_CHECK(fabs(surface.statistics.volume / expected.statistics.volume - 1) < 0.005,
       "%g for %g", surface.statistics.volume, expected.statistics.volume);
     mcor_free_surface(&surface);

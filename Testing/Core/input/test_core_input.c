@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bad input of every kind: its status, its sentence, an empty surface, a context that goes on. */
+/* Bad input of every kind gives its status, its sentence and an empty surface, and the context goes on working. */
 
 #include "core_fixture.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A good call, for a test to spoil. */
+/* A good call, which a test spoils. */
 typedef struct bad_call
 {
   particle_set set;
@@ -52,7 +52,7 @@ static void expect(
   CORE_CHECK(error[strlen(error) - 1] == '.', "no sentence: %s", error);
 }
 
-/* After all that went wrong a good call works. */
+/* Checks that a good call works after the failures. */
 static void expect_good(mcor_context* context)
 {
   CORE_OWNED(free_call) bad_call call = make_call();
@@ -132,7 +132,7 @@ static int reduce_none(void* user, mcor_reduction reduction, double* values, int
   return 0;
 }
 
-/* They are for comparisons with the paper. */
+/* Pairs are only for comparisons with the paper, so other features refuse them. */
 static void test_pairs(void** state)
 {
   const mcor_ranks ranks = { .reduce_doubles = reduce_none };
@@ -176,7 +176,7 @@ static void test_components(void** state)
   expect_good(*state);
 }
 
-/* One bad element: the sentence names array and particle. */
+/* With one bad element, the sentence names the array and the particle. */
 static void test_bad_elements(void** state)
 {
   const double bad[] = { NAN, INFINITY, -INFINITY, 0, -1 };
@@ -225,8 +225,8 @@ static void test_particles(void** state)
   expect_good(*state);
 }
 
-/* Lattices that do not fit; the sentence says what to do. */
-/* More particles than may be left out, along an axis. */
+/* Lattices that do not fit are refused, and the sentence says what to do. */
+/* Moves more particles than may be left out along an axis. */
 static void move_far(bad_call* call, int axis, double to)
 {
   for (int i = 0; i < 9; ++i)
@@ -271,7 +271,7 @@ static void test_null_arguments(void** state)
   expect_good(context);
 }
 
-/* Not errors: no particles, no iso value, an iso value outside of the range, one particle. */
+/* No particles, no iso value, an iso value outside of the range and one particle are no errors. */
 static void test_empty_results(void** state)
 {
   for (int kind = 0; kind < 5; ++kind)
@@ -289,7 +289,7 @@ static void test_empty_results(void** state)
   expect_good(*state);
 }
 
-/* Scalars that reach farther than the precision does. */
+/* The scalar's range is greater than the precision allows. */
 static void test_endless_range(void** state)
 {
   static const struct
@@ -323,7 +323,7 @@ static void test_endless_range(void** state)
   expect_good(*state);
 }
 
-/* An attribute that is not finite is left out, and said to be; the others are not touched by it. */
+/* An attribute that is not finite is left out with a warning, and the other attributes do not change. */
 static void test_bad_attributes(void** state)
 {
   const double bad[] = { NAN, INFINITY, -INFINITY };
@@ -379,7 +379,7 @@ static void test_values_of_solids(void** state)
   }
 }
 
-/* Each particle's scalar, above 0, as a vector of that magnitude. */
+/* Makes of each particle's scalar, above 0, a vector of that magnitude. */
 static void make_vectors(bad_call* call, double unit)
 {
   for (int64_t i = 0; i < call->set.count; ++i)
@@ -397,7 +397,7 @@ static void make_vectors(bad_call* call, double unit)
   call->options.precision = MCOR_FLOAT64;
 }
 
-/* Magnitudes that exist are found though their squares do not. */
+/* Magnitudes are found even where their squares overflow or vanish. */
 static void test_magnitudes(void** state)
 {
   const double units[] = { 1, 0x1p530, 0x1p-560, 0x1p-900 };
@@ -415,7 +415,7 @@ static void test_magnitudes(void** state)
   }
 }
 
-/* Finite components of which the magnitude, or the dot product, is no number. */
+/* The components are finite, but the magnitude or the dot product is not. */
 static void test_bad_products(void** state)
 {
   const double far = 1.7e308;
@@ -425,7 +425,7 @@ static void test_bad_products(void** state)
        call.input.scalar_dot = call.input.scalar; call.input.scalar_dot.name = "force");
   DATA("DOT_TOO_LARGE|particle 1", make_vectors(&call, 1); call.options.precision = MCOR_FLOAT32;
        call.vector[3] = 1e250; call.vector[4] = 1e249; call.input.scalar_dot = call.input.scalar);
-  /* On the way, inf - inf; in the end, a number. */
+  /* The sum meets inf - inf on the way, but the result is finite. */
   CORE_OWNED(free_call) bad_call call = make_call();
   make_vectors(&call, 1);
   CORE_FREED double* other = core_copy(call.vector, (size_t)call.set.count * 3 * sizeof(double));
@@ -455,7 +455,7 @@ static void test_computed_volumes(void** state)
   expect_good(*state);
 }
 
-/* Lengths of any unit give the same surface, computed smoothing lengths and normals included. */
+/* Lengths in any unit give the same surface, with estimated smoothing lengths and normals, too. */
 static void test_units_of_length(void** state)
 {
   const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };
@@ -489,7 +489,7 @@ static void test_units_of_length(void** state)
   expect_good(*state);
 }
 
-/* Iso values and thresholds that the device's precision has not. */
+/* Iso values and thresholds lie beyond the device's precision. */
 static void test_far_options(void** state)
 {
   const double far[] = { 1e36, 1e39, 1e308 };
@@ -522,7 +522,7 @@ static void repeat(bad_call* call, double length, double from)
   }
 }
 
-/* The sentence names what is to blame. */
+/* The sentence names the particle that is to blame. */
 static void test_outliers(void** state)
 {
   CAPACITY("GRID_TOO_LONG|along x;|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",

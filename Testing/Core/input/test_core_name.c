@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Quantities of arrays by their names; and what values suggest: a period, the fluid, an iso
- * value. */
+/* Arrays are recognised by their names; and values suggest a period, the fluid, an iso value. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -51,7 +50,7 @@ static void test_names(void** state)
   assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
 }
 
-/* The first array in the order of the core gives the period, and none that is no period does. */
+/* The first array in the core's order gives the period; an array that is no period gives none. */
 static void test_period_of_field_data(void** state)
 {
   (void)state;
@@ -131,8 +130,8 @@ static void test_view_ranks(void** state)
   assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
 }
 
-/* The iso value is the one in the middle of the values' order, whatever their distribution;
- * solids and values that are not finite are left out. */
+/* The iso value is the median of the values, however they are distributed. Solids and values that are not finite are
+ * left out. */
 static void test_iso_values(void** state)
 {
   (void)state;
@@ -193,8 +192,8 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
   return 0;
 }
 
-/* A scalar whose form mcor_extract refuses is not read; other ranks hear of it. Arrays end where the heap
- * does, for sanitizers. */
+/* A scalar whose form mcor_extract refuses is not read, and other ranks learn of it. Each array is a heap block of its
+ * exact size, for sanitizers. */
 static void test_iso_value_of_wrong_scalars(void** state)
 {
   (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Smoothing lengths by neighbours, and summed densities: against sums over all pairs, and Plummer's sphere. */
+/* Smoothing lengths by neighbours and summed densities: compared with sums over all pairs, and with Plummer's sphere. */
 
 #include "core_fixture.h"
 #include "mcor_plane.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
+/* Returns sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
 static double sum_of_all(const particle_set* set, const mcor_options* options, int dimension,
   const double* mass, int64_t i, double h)
 {
@@ -42,7 +42,7 @@ static double sum_of_all(const particle_set* set, const mcor_options* options, i
   return sum;
 }
 
-/* In clusters, so that smoothing lengths vary by a factor of 100. */
+/* Makes particles in clusters, so that smoothing lengths vary by a factor of 100. */
 static particle_set make_clusters(int64_t count, int dimension, uint64_t seed)
 {
   particle_set set = particle_set_make(count);
@@ -103,7 +103,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
     CORE_CHECK(fabs(densities[i] / expected - 1) < 1e-12, "particle %d: density %.15g, not %.15g",
       (int)i, densities[i], expected);
   }
-  /* In another order the same bits. */
+  /* The particles in another order give the same bits. */
   CORE_FREED int64_t* order = core_make_order(count, 5);
   CORE_SET other = particle_set_make(count);
   for (int64_t i = 0; i < count; ++i)
@@ -117,8 +117,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* Sums at some particles, with all as neighbours; particles that play no part might as well
-   * not be there. */
+  /* Sums may be asked for at some particles, with all as neighbours; particles that play no part change nothing. */
   input = core_input(&set);
   CORE_FREED uint8_t* marks = oracle_allocate(count, 1);
   CORE_FREED double* some = oracle_allocate(count, sizeof *some);
@@ -167,7 +166,7 @@ static void test_sums(void** state)
   check_sums(MCOR_QUINTIC_SPLINE, 2, 1);
 }
 
-/* With positions and masses alone: where its sphere has its densities at the radii 1 and 3. */
+/* From positions and masses alone, the densities of Plummer's sphere at the radii 1 and 3 are found. */
 static void test_plummer(void** state)
 {
   mcor_message why;
@@ -215,7 +214,7 @@ static void test_plummer(void** state)
   }
 }
 
-/* Where a particle lies does not matter but for whole periods, however many. */
+/* A particle may lie any number of periods away without a change. */
 static void test_far_beyond_period(void** state)
 {
   (void)state;
@@ -240,7 +239,7 @@ static void test_far_beyond_period(void** state)
   assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
 }
 
-/* A particle that has left the others far behind, and has no place along their curve, changes nothing. */
+/* A particle far away from all others, too far for a place on their space-filling curve, changes nothing. */
 static void test_far_away(void** state)
 {
   (void)state;
@@ -275,7 +274,7 @@ static void test_far_away(void** state)
   }
 }
 
-/* A body far beyond a corner of all others is as it is alone, in any order of the input. */
+/* A body far beyond a corner of all others has the same values as it has alone, in any order of the input. */
 static void test_far_body(void** state)
 {
   (void)state;
@@ -327,7 +326,7 @@ static void test_weird(void** state)
   at[0] = 2;
   assert_int_equal(
     mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
-  assert_true(out[0] == 1 && out[1] == 1); /* two do not suffice: the domain's extent */
+  assert_true(out[0] == 1 && out[1] == 1); /* two particles are too few, so the domain's extent is used */
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, input.count, out, &why),
     MCOR_INVALID_ARGUMENT, &why, "ETA_ILLEGAL|0.6;|0.683");
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, NAN, input.count, out, &why),
@@ -344,7 +343,7 @@ static void test_weird(void** state)
   input.count = 0;
   assert_int_equal(
     mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
-  /* More at one place than make a sum: as little as it may be. */
+  /* So many particles lie at one place that the length becomes the least possible. */
   double many[3 * 100] = { 0 }, lengths[100];
   many[0] = 1;
   input = (mcor_input){ .count = 100, .positions = core_array(many, 3) };

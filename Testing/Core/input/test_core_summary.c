@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How long a run may take, worked out by hand, and what it used, in words. */
+/* How long a run may take, worked out by hand; and what a run used, in words. */
 
 #include "core_fixture.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Four particles, of which the last is twice as large. */
+/* Four particles, the last of which is twice as large. */
 static const double place[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
 static const double length[4] = { 0.1, 0.1, 0.1, 0.2 };
 
@@ -30,12 +30,12 @@ static void test_estimate(void** state)
   mcor_input input = make_input();
   mcor_options options;
   mcor_set_default_options(&options);
-  const double one = pow(2.0 / 1.3, 3); /* cubes that a particle of the smallest size takes */
+  const double one = pow(2.0 / 1.3, 3); /* one: cubes that a particle of the smallest size takes */
   const double least = mcor_least_smoothing_length(&input);
   assert_true(least == 0.1);
-  /* The cubes of the large one are twice as large, unless all are of one size. */
+  /* The large particle's cubes are twice as large, unless all cubes have one size. */
   assert_near(mcor_estimate_cells(&input, &options, least), 4 * one);
-  options.capping = MCOR_CAP_PERIOD; /* which makes them so */
+  options.capping = MCOR_CAP_PERIOD; /* caps make all cubes one size */
   assert_near(mcor_estimate_cells(&input, &options, least), 11 * one);
   options.capping = 0;
   options.level_limit = 0;

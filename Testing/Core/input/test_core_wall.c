@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces that end at solids (mcor_options.wall_share): which share is measured, and when it counts. The oracle
- * has what such a surface is. */
+/* Surfaces that end at solids (mcor_options.wall_share): which share is measured, and when it acts. The oracle checks
+ * where such a surface ends. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -18,7 +18,7 @@ typedef struct wall_case
   mcor_sph_kernel kernel;
 } wall_case;
 
-/* A block whose particles below a plane that is oblique to the lattice are solid. */
+/* Makes a block whose particles below a plane, oblique to the lattice, are solid. */
 static particle_set make_tank(void)
 {
   particle_set set = core_make_block(10, 0.2, 3, core_slope);
@@ -46,7 +46,7 @@ static double iso_of(const wall_case* at)
   return at->field == MCOR_WEIGHT_SUM ? 0.5 : at->field == MCOR_SUM ? 0.7 : 0;
 }
 
-/* Where no solid counts, there is nothing to end at: not a bit changes. */
+/* Where no solid counts, the surface has nowhere to end, and not a bit changes. */
 static void test_without_solids(void** state)
 {
   CORE_SET set = make_tank();
@@ -85,7 +85,8 @@ static int compare_shares(const void* a, const void* b)
   return (s > t) - (s < t);
 }
 
-/* The solids' share at the solids, the median by the fluid's weight there; with images a period away along y. */
+/* Returns the solids' share at the solids: the median, weighted by the fluid's weight there. Images lie a period away
+ * along y. */
 static double find_share(const particle_set* set, oracle_kernel kernel, double period)
 {
   wall_weight at[1000];
@@ -121,7 +122,7 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
   return at[i - 1].share;
 }
 
-/* The block with 200 solids: so few that all of them are sampled. */
+/* Makes the block with 200 solids, so few that all of them are sampled. */
 static particle_set make_small_tank(void)
 {
   particle_set set = make_tank();
@@ -139,7 +140,7 @@ static particle_set make_small_tank(void)
   return set;
 }
 
-/* The share that is measured is that at the solids next to the fluid, whatever the kernel; over a period, too. */
+/* The measured share is that at the solids next to the fluid, with any kernel; over a period, too. */
 static void test_share(void** state)
 {
   CORE_SET set = make_small_tank();
@@ -162,8 +163,8 @@ static void test_share(void** state)
   }
 }
 
-/* It gives what it gives by hand, also where the search grid was made for another share, and with global
- * values. */
+/* A measured share gives the same surface as this share set by hand, also where the search grid was made for another
+ * share, and with global values. */
 static void test_measured(void** state)
 {
   CORE_SET set = make_tank();
@@ -195,8 +196,7 @@ static void test_measured(void** state)
   mcor_free_globals(&globals);
 }
 
-/* By default the wall share is measured for a scalar, and 0 for the free surface; with global
- * values, too. */
+/* By default the wall share is measured for a scalar, and is 0 for the free surface; with global values, too. */
 static void test_auto(void** state)
 {
   CORE_SET set = make_tank();
@@ -232,7 +232,7 @@ static void test_auto(void** state)
   }
 }
 
-/* The free surface takes one half; global values must have been measured for it. */
+/* A free surface that ends at walls takes one half; global values must have been measured with that. */
 static void test_measured_elsewhere(void** state)
 {
   CORE_SET set = make_tank();

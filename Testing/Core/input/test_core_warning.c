@@ -26,8 +26,8 @@ static void begin_call(warning_call* call)
   call->options = core_options(call->iso);
 }
 
-/* Each warning of the call: whether it is given, and then its code, and that it holds all of
- * `words`, with | between them. Returns how many are given. */
+/* Checks each warning of the call: whether it is given, its code, and that it holds all of `words`, separated by |.
+ * Returns how many are given. */
 static int check_call(mcor_context* context, warning_call* call, const char* name,
   mcor_warning expected, mcor_says code, const char* words)
 {
@@ -67,7 +67,7 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
     assert_int_equal(check_call(*state, &call, #statement, kind, MCOR_SAYS_##code, words), 1);     \
   } while (0)
 
-/* Slots take words; what is none stays; a value that is cut does no harm. */
+/* Gives words for slots. An unknown slot stays as it is, and a value that is cut off does no harm. */
 static int word_of(void* user, const char* name, const char* value, char* word, size_t size)
 {
   (void)user;
@@ -141,10 +141,10 @@ static void test_neighbours(void** state)
   WARNED(MCOR_WARN_NEIGHBOURS, ALL_AT_ONE_POINT, "1000",
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
-         call.options.vertex_threshold = 0); /* nothing is usual */
+         call.options.vertex_threshold = 0); /* nothing is unusual here */
 }
 
-/* The extent is that of the fluid. */
+/* Flattens the set to this height, measured by the fluid's extent. */
 static void flatten(particle_set* set, double height)
 {
   for (int64_t i = 0; i < set->count; ++i)
@@ -155,7 +155,7 @@ static void flatten(particle_set* set, double height)
   }
 }
 
-/* In a plane through the axis y, the last `off` of them by a smoothing length. */
+/* Tilts the set into a plane through the y axis; the last `off` particles lie a smoothing length beside it. */
 static void tilt(particle_set* set, double height, int off)
 {
   flatten(set, height);
@@ -185,11 +185,11 @@ static void test_plane(void** state)
 {
   WARNED(MCOR_WARN_PLANE, PLANE_IN_SPACE, "along y|0 times", flatten(&call.set, 0);
          call.options.vertex_threshold = 0; call.options.dimension = 3);
-  SILENT(flatten(&call.set, 0)); /* two dimensions */
+  SILENT(flatten(&call.set, 0)); /* the particles are two-dimensional */
   WARNED(MCOR_WARN_PLANE, PLANE_IN_SPACE, "along y|is 0.06", flatten(&call.set, 0.01);
          call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);
-  SILENT(flatten(&call.set, 0.01); /* so few may be anything */
+  SILENT(flatten(&call.set, 0.01); /* so few particles may be anything */
          for (int i = 0; i < 81; ++i) {
            call.set.position[3 * i] = 1.5 * (i % 9);
            call.set.position[3 * i + 2] = 1.5 * (i / 9);
@@ -219,7 +219,7 @@ static void test_precision(void** state)
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 100);
 }
 
-/* A block of particles, and a smaller one beside it, with noise. */
+/* Makes a block of particles with noise, and a smaller one beside it. */
 static particle_set far_apart(double smaller)
 {
   uint64_t seed = 3;
@@ -242,8 +242,8 @@ static particle_set far_apart(double smaller)
   return set;
 }
 
-/* residual_max is what the residual may be, also where positions are rounded much: but for the arithmetic's
- * own rounding, in double precision it is no larger. */
+/* Checks that residual_max is what the residual may be, even where positions are rounded much. In double precision it
+ * is no larger, apart from the arithmetic's own rounding. */
 static void check_told_residual(mcor_context* context, const particle_set* set, mcor_field field)
 {
   const double iso = 0.5;
@@ -287,7 +287,7 @@ static void test_tolerance(void** state)
   WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{precision double}", call.options.tolerance = 1e-9);
   WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{iteration_limit}", call.options.iteration_limit = 1);
   SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
-  warning_call call; /* what rounding leaves is told by the statistics alone */
+  warning_call call; /* what rounding leaves is told only by the statistics */
   begin_call(&call);
   call.options.tolerance = 1e-6;
   CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
@@ -323,7 +323,7 @@ static void test_trimmed(void** state)
     call.input.volume = (mcor_array){ .constant = 0.001 });
 }
 
-/* With globals the input may be any part of the particles. */
+/* With global values the input may be any part of the particles. */
 static void test_without_input(void** state)
 {
   warning_call call;
@@ -364,7 +364,7 @@ static void test_unused_type(void** state)
   assert_null(mcor_describe_unused_type("Type", values, counts, 1).text);
   assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1).text);
   assert_null(mcor_describe_unused_type(NULL, values, counts, 3).text);
-  /* The longest there can be. */
+  /* These are the longest sentences that there can be. */
   char name[500];
   double far[MCOR_PARTICLE_TYPES];
   int64_t many[MCOR_PARTICLE_TYPES];

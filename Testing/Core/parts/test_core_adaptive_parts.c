@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes in boxes: levels are those of the whole set, and the boxes' surfaces make up the whole
- * one's, to the last bit. */
+/* Adaptive cubes in boxes: levels are those of the whole set, and the boxes' surfaces make up the whole surface to the
+ * last bit. */
 
 #include "core_parts.h"
 
@@ -42,7 +42,7 @@ static void smooth_surfaces(void** state)
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
 }
 
-/* Noise of all sizes next to each other: levels change everywhere, edges are pinched. */
+/* Noise of all sizes lies side by side, so that levels change everywhere and edges are pinched. */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
@@ -67,7 +67,7 @@ static void rough_surfaces(void** state)
   core_check_cuts(*state, "M'4, preview", &input, &options);
 }
 
-/* Particles of the set whose supports reach the box, with six cubes of their level around it. */
+/* Returns the particles of the set whose supports reach the box with six cubes of their level around it. */
 static particle_set take_reaching(
   const particle_set* set, const double box[6], const mcor_globals* globals, double cube)
 {
@@ -83,14 +83,14 @@ static particle_set take_reaching(
   return near;
 }
 
-/* The levels are measured once; the boxes get them, and nearby particles alone. */
+/* Levels are measured once. The boxes get them, and only nearby particles. */
 static void given_levels(void** state)
 {
   static const double iso = 0.2;
   CORE_SET set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be numbers of other inputs */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the particles' numbers would be those of another input */
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_true(globals.split_count > 10);
@@ -115,7 +115,7 @@ static void given_levels(void** state)
   core_expect_same("eight boxes", &all, &whole);
   free(whole.bytes);
   free(all.bytes);
-  /* Globals of uniform cubes lack the levels. */
+  /* Global values of uniform cubes lack the levels. */
   mcor_free_globals(&globals);
   input = core_input(&set);
   options.globals = NULL;
@@ -128,17 +128,17 @@ static void given_levels(void** state)
   mcor_free_globals(&globals);
 }
 
-/* Through cubes of high levels: the particles that matter there are many small cubes away. */
+/* The cuts go through cubes of high levels, where particles many small cubes away matter. */
 static void cuts_through_large_cubes(void** state)
 {
   static const double half = 0.5;
-  /* Just beside the centres of cubes 64 times the smallest, of 0.18. */
+  /* The cuts pass just beside the centres of cubes 64 times the smallest, which has an edge of 0.18. */
   static const core_cut cuts[] = { { "3 boxes far out", { 2, 0, 0 }, { { -86.41, -74.89 } } },
     { "6 boxes far out", { 0, 1, 2 }, { { 0 }, { -74.87 }, { -86.39, 74.87 } } } };
   CORE_SET set = core_make_graded(150, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* as that needs all around */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the nearest particle needs all particles around */
   core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
 }
 

@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Boxes: the surfaces of boxes that part the lattice are, taken together, the whole surface, to the
- * last bit of all that it carries. Triangles are compared with their corners' coordinates and arrays,
- * as points have other numbers in each. */
+/* Boxes: the surfaces of boxes that part the lattice are together the whole surface, to the last bit. Triangles are
+ * compared by their corners' coordinates and arrays, because each box numbers its points anew. */
 
 #include "core_parts.h"
 
@@ -11,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A block whose smoothing lengths differ by a factor of 2, with solids. */
+/* Makes a block whose smoothing lengths differ by a factor of 2, with solids. */
 static particle_set make_block(void)
 {
   particle_set set = core_make_block(14, 0.3, 8, core_ball);
@@ -50,7 +49,7 @@ static void trimmed_surfaces(void** state)
   core_check_cuts(*state, "eigenvalue, preview", &input, &options);
 }
 
-/* Noise, so that faces are ambiguous and edges pinched. */
+/* Noise makes ambiguous faces and pinched edges. */
 static void rough_surfaces(void** state)
 {
   const double iso = 0.1;
@@ -95,8 +94,8 @@ static void other_fields(void** state)
   core_check_cuts(*state, "sum with the tensor kernel", &input, &options);
 }
 
-/* Masses alone, so that volumes are computed, and solids; the particles' x is uneven enough for a
- * region where all have one sign. */
+/* Returns an input with masses alone, so that volumes are computed, and with solids. In a region of it all values of x
+ * have one sign. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);
@@ -110,7 +109,7 @@ static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
   return input;
 }
 
-/* Global values are measured once; the boxes get them, and nearby particles alone. */
+/* Global values are measured once. The boxes get them, and only nearby particles. */
 static void given_globals(void** state)
 {
   const double iso = 1;
@@ -125,7 +124,7 @@ static void given_globals(void** state)
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
   core_ask_for_all(&options);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be numbers of other inputs */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the particles' numbers would be those of another input */
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_int_equal(globals.component_count, 5);
@@ -145,7 +144,7 @@ static void given_globals(void** state)
     fewest = near.count < fewest ? near.count : fewest;
     input = input_of(&near, attributes);
     input.particles_version = input.scalar_version = 1000 + (uint64_t)i;
-    globals.scalar_shift = shift + 1; /* what is kept of it does not hold */
+    globals.scalar_shift = shift + 1; /* what was kept for the other shift is not used */
     surface = core_extract(*state, &input, &options);
     mcor_free_surface(&surface);
     globals.scalar_shift = shift;
@@ -165,7 +164,7 @@ static void given_globals(void** state)
   free(all.bytes);
 }
 
-/* Reading costs what reaches the box; one beside all particles takes nothing. */
+/* A small box reads only the particles that reach it; a box beside all particles needs no device memory. */
 static void small_boxes(void** state)
 {
   const double iso = 0;
@@ -197,7 +196,7 @@ static void small_boxes(void** state)
   assert_true(part.statistics.cube_size == whole.statistics.cube_size);
 }
 
-/* Data kept from one box do not show in the next call. */
+/* Data kept from one box do not change the next call. */
 static void kept_particles(void** state)
 {
   const double iso[2] = { 2, 4 };
@@ -244,7 +243,7 @@ static void bad_boxes(void** state)
   }
 }
 
-/* Values that no measure gives are refused, whoever made them up. */
+/* Values that measuring never gives are refused. */
 static void impossible_globals(void** state)
 {
   const double iso = 0;
@@ -283,8 +282,7 @@ static void impossible_globals(void** state)
   mcor_free_globals(&measured);
 }
 
-/* Particles of a period around the origin, some of them so light that the surface is trimmed, and its caps,
- * too. */
+/* Makes particles of a period around the origin. Some are so light that the surface and its caps are trimmed. */
 static particle_set make_period(void)
 {
   particle_set set = particle_set_make(512);
@@ -306,7 +304,8 @@ static particle_set make_period(void)
   return set;
 }
 
-/* Caps: squares of cells, whoever owns these; points on seams, where they are cut, too. */
+/* Checks caps: squares of cells belong to whichever box owns the cell, and points on seams match, where they are cut,
+ * too. */
 static void check_caps(mcor_context* context, const double around[6])
 {
   const double iso[2] = { 0.2, -0.4 }, half = 0.5;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges and fluxes of ranks, in threads: to the last bit what one process reads, whoever owns which part of a line or
- * section. */
+/* Gauges and fluxes of ranks, in threads, read to the last bit what one process reads, whoever owns which part of a
+ * line or section. */
 
 #include "core_fixture.h"
 #include "core_ranks.h"
@@ -15,7 +15,7 @@
 #define LINES 90
 #define SECTIONS 4
 
-/* A block of particles in no order, with holes. */
+/* Makes a block of particles with holes, in random order. */
 static particle_set make_sparse(void)
 {
   particle_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
@@ -39,11 +39,11 @@ typedef struct gauge_job
 {
   const particle_set* set;
   const mcor_gauge_line* lines;
-  const mcor_section* sections; /* NULL: gauges */
+  const mcor_section* sections; /* NULL: gauges are measured */
   int axis, periodic, volumes;  /* volumes: computed */
   mcor_globals globals;
   mcor_status status[CORE_MOST_RANKS];
-  mcor_gauges gauges[CORE_MOST_RANKS + 1]; /* the last: of one process */
+  mcor_gauges gauges[CORE_MOST_RANKS + 1]; /* the last entry is one process alone */
   mcor_fluxes fluxes[CORE_MOST_RANKS + 1];
   char error[CORE_MOST_RANKS][400];
 } gauge_job;
@@ -89,8 +89,8 @@ static mcor_status read_all(mcor_context* context, gauge_job* job, const mcor_in
     : mcor_gauge(context, input, options, job->lines, LINES, &job->gauges[rank]);
 }
 
-/* Takes the particles that the box between two sides needs: nearer than `reach` to it, or to its
- * image a period away. */
+/* Takes the particles that the box between two sides needs: those nearer than `reach` to it or to its image a period
+ * away. */
 static particle_set take_near(const gauge_job* job, double low, double high, double reach)
 {
   particle_set part = particle_set_make(job->set->count);
@@ -112,8 +112,8 @@ static particle_set take_near(const gauge_job* job, double low, double high, dou
   return part;
 }
 
-/* Slabs that are not alike, whose sides are nowhere near the lattice's nodes; the outer ones go on without
- * end. */
+/* Measures one rank's slab. Slabs differ in width, their sides are not at nodes of the lattice, and the outer ones are
+ * infinite. */
 static void gauge_part(core_rank* rank, void* data)
 {
   gauge_job* job = data;
@@ -166,7 +166,7 @@ static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
   return same;
 }
 
-/* Some along the axis that is cut, through all boxes; one that runs through several periods; one outside. */
+/* Makes lines: some along the cut axis, through all boxes; one through several periods; one outside. */
 static void make_lines(mcor_gauge_line* lines, int axis)
 {
   uint64_t seed = 11;
@@ -199,7 +199,7 @@ static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
   return same;
 }
 
-/* Any number of ranks read the same as one process. */
+/* Checks that any number of ranks reads the same as one process. */
 static void check_ranks(mcor_context* context, gauge_job* job, int kind)
 {
   const mcor_gauges* gauges = &job->gauges[CORE_MOST_RANKS];
@@ -250,7 +250,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Through all boxes, beyond a period, in one box alone, and outside. */
+/* The sections go through all boxes, beyond a period, in one box alone, and outside. */
 static void test_same_fluxes(void** state)
 {
   static const double points[SECTIONS][9] = { { -7, -6.5, 1, 7, -6, 2, -7, 7, -1 },
@@ -276,7 +276,7 @@ static void test_same_fluxes(void** state)
   }
 }
 
-/* Cubes so small that a box lacks the particles around it. */
+/* Cubes are so small that a box lacks the particles around it. */
 static void test_small_cubes(void** state)
 {
   CORE_SET set = make_sparse();

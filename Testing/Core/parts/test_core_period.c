@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Periodic boxes, against the same particles with all their images as an input that is not periodic;
- * and the surface at opposite sides, against itself. */
+/* Periodic boxes are compared with the same particles and all their images as an input without a period. Opposite sides
+ * of the surface are compared with each other. */
 
 #include "core_period.h"
 #include "oracle_period.h"
@@ -13,7 +13,7 @@
 
 #define PI 3.14159265358979323846
 
-/* A point of the surface at x to within 1e-4, or -1. */
+/* Returns the point of the surface that is within 1e-4 of x, or -1. */
 static int64_t find_point(const mcor_surface* s, const double x[3])
 {
   for (int64_t i = 0; i < s->point_count; ++i)
@@ -27,7 +27,8 @@ static int64_t find_point(const mcor_surface* s, const double x[3])
   return -1;
 }
 
-/* As many triangles, and all points of one where the other has some, with about the same normals. */
+/* Checks that both surfaces have as many triangles, and that each point has a partner in the other one with about the
+ * same normal. */
 static void check_same(const char* name, const mcor_surface* s, const mcor_surface* expected)
 {
   CORE_CHECK(s->triangle_count == expected->triangle_count &&
@@ -47,7 +48,7 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
   }
 }
 
-/* Opposite sides are alike to the last bit, but for what is trimmed. */
+/* Checks that opposite sides are equal to the last bit, except where they are trimmed. */
 static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
   CORE_REPORT report = core_check_mesh(s);
@@ -69,7 +70,7 @@ static void check_images(mcor_context* context, const char* name, const particle
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
-  plain.seeds = MCOR_COMPLETE; /* what pairs grow to is whole */
+  plain.seeds = MCOR_COMPLETE; /* complete seeds: what pairs grow to is whole */
   plain.cube_size = surface.statistics.cube_size;
   plain.level_limit = surface.statistics.highest_level;
   for (int a = 0; a < 3; ++a)
@@ -106,7 +107,8 @@ static void images_count(void** state)
   options.h_scale = 2;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* Pairs in one place alone, off the sides: what else there is, is grown to around the period. */
+    /* Pairs are found in one place alone, away from the sides. The rest of the surface is reached by growth around the
+     * period. */
     const double x = set.position[3 * i];
     set.smoothing_length[i] = x > 1.5 && x < 3.5 ? 1.05 : 0.6;
     set.scalar[i] = sin(2 * PI * (x / 12 + set.position[3 * i + 1] / 8));
@@ -114,7 +116,7 @@ static void images_count(void** state)
   check_images(*state, "pairs", &set, &options, 0);
 }
 
-/* Smoothing lengths that grow with the distance from a period's edge along z, in the middle of it. */
+/* Sets smoothing lengths that grow with the distance from the edge of the period along z, in its middle. */
 static void grade_lengths(particle_set* set, double side, double middle, double most)
 {
   for (int64_t p = 0; p < set->count; ++p)
@@ -125,8 +127,8 @@ static void grade_lengths(particle_set* set, double side, double middle, double 
   }
 }
 
-/* Adaptive cubes: levels go around the period, too, of which the finest particles are at a side. With
- * sides that are no whole number of large cubes, fewer levels are used. */
+/* Adaptive cubes: levels match around the period, too, though the finest particles are at a side. Where a side is no
+ * whole number of large cubes, fewer levels are used. */
 static void adaptive_cubes(void** state)
 {
   const double iso = 0.2, half = 0.5;
@@ -160,8 +162,8 @@ static void adaptive_cubes(void** state)
   }
 }
 
-/* Particles shifted by whole cubes, and taken out of the period by some: the same surface, shifted.
- * Lengths are powers of 2, so that nothing is rounded. */
+/* Particles are shifted by whole cubes, and some are moved out of the period: the surface is the same, shifted. Lengths
+ * are powers of 2, so that nothing is rounded. */
 static void shifts(void** state)
 {
   const double iso = 0.2;
@@ -189,7 +191,7 @@ static void shifts(void** state)
     }
     for (int image = 0; image < 8 && find_point(&other, x) < 0; ++image)
     {
-      /* On a side it may be at the opposite one, or a little beyond. */
+      /* A point on a side may be at the opposite side, or a little beyond. */
       for (int a = 0; a < 3; ++a)
       {
         const double base = x[a] > 4 ? x[a] - 8 : x[a];
@@ -200,14 +202,14 @@ static void shifts(void** state)
   }
 }
 
-/* Cubes fit periods of different lengths; what cannot be is said. */
+/* Cubes fit periods of different lengths; impossible periods are refused with a sentence. */
 static void lengths(void** state)
 {
   const struct
   {
     double period[6], edge[3];
     mcor_status status;
-    const char* words; /* of its message */
+    const char* words; /* words of the refusal */
   } cases[] = { { { 0, 8, 0, 8, 0, 8 }, { 8.0 / 13, 8.0 / 13, 8.0 / 13 }, MCOR_OK, NULL },
     { { 0, 8, 0, 6, 0, 0 }, { 0.5, 0.5, 0.5 }, MCOR_OK, NULL },
     { { -4, 4, 0, 10, -1, 11 }, { 0.5, 0.5, 0.5 }, MCOR_OK, NULL },
@@ -248,8 +250,8 @@ static void lengths(void** state)
   }
 }
 
-/* Adaptive cubes with an edge for each axis: closed but for the sides, where all points have partners, as exact
- * as ever, and about the surface of uniform cubes. */
+/* Adaptive cubes with a different edge along each axis: the surface is closed but for the sides, where all points have
+ * partners; it is as exact as ever, and about that of uniform cubes. */
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;
@@ -286,7 +288,7 @@ static void adaptive_unequal(void** state)
   }
 }
 
-/* 48 cubes, but for a digit. */
+/* The period is 48 cubes, except for rounding in the last digit. */
 static void rounded_length(void** state)
 {
   static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
@@ -302,7 +304,7 @@ static void rounded_length(void** state)
     fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
 }
 
-/* Sides of very many nodes: caps take memory and time for what particles reach of them. What would take all
+/* Sides have very many nodes. Caps take memory and time only where particles reach a side. A call that would take all
  * memory, or hours, is refused before. */
 static void large_sides(void** state)
 {
@@ -325,7 +327,7 @@ static void large_sides(void** state)
   }
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
   assert_true(core_told(*state, "BLOCKS_TOO_MANY"));
-  /* 40,000 nodes along a side. */
+  /* There are 40,000 nodes along a side. */
   options.capping = 1;
   options.cube_size = 2.5e-5;
   for (int64_t j = 0; j < set.count; ++j)
@@ -343,7 +345,7 @@ static void large_sides(void** state)
   assert_int_equal(report.boundary_edges, 0);
 }
 
-/* A box across a side has the surface that it has in a period that is moved by hand. */
+/* A box across a side has the same surface as in a period that the caller has moved. */
 static void test_box_across(void** state)
 {
   static const double periods[2][6] = { { 0, 12, -3, 7, 0, 11 }, { -6, 6, -5, 5, 0, 11 } };
@@ -359,7 +361,7 @@ static void test_box_across(void** state)
   memcpy(options.periodic, periods[1], sizeof periods[1]);
   CORE_SURFACE moved = core_extract(*state, &input, &options);
   assert_true(across.triangle_count > 1000 && core_hash(&across) == core_hash(&moved));
-  options.box[1] = 9; /* longer than the period, which begins with it */
+  options.box[1] = 9; /* the box is longer than the period, and begins where the period does */
   mcor_move_period(&options);
   assert_true(options.periodic[0] == -4 && options.periodic[1] == 8);
 }

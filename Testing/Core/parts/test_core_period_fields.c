@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Probes and derivatives of periodic particles, against the same particles with all their images. */
+/* Probes and derivatives of periodic particles are compared with the same particles and all their images. */
 
 #include "core_period.h"
 
 #include <math.h>
 #include <string.h>
 
-/* The set's scalar as an attribute, which is all that is evaluated. */
+/* Returns an input with the set's scalar as an attribute, which is all that is evaluated. */
 static mcor_input attribute_input(const particle_set* set, mcor_array* attribute)
 {
   mcor_input input = core_input(set);
@@ -33,7 +33,7 @@ static void check_equal(const double* values, const double* expected, int count,
   }
 }
 
-/* The field at points, and of those that are in the period with all images as particles. */
+/* Compares the field at points with the field at their places in the period, with all images as particles. */
 static void check_points(
   mcor_context* context, const particle_set* set, mcor_options* options, uint64_t version)
 {
@@ -41,7 +41,7 @@ static void check_points(
   uint64_t seed = 9;
   for (int i = 0; i < 3 * POINTS; ++i)
   {
-    /* Some on the sides; numbers that a period leaves exact. */
+    /* Some points lie on the sides; all have coordinates that a shift by the period leaves exact. */
     const double length = options->periodic[2 * (i % 3) + 1];
     const double at = i % 7 == 0 ? 0 : floor(random_unit(&seed) * 1024) / 1024;
     points[0][i] = at * fmax(length, 8);
@@ -71,7 +71,8 @@ static void check_points(
       assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
     }
   }
-  /* Halfway between two places of the device, rounding decides for one: here, in double precision, of some. */
+  /* Where a point lies halfway between two places that the device can store, rounding decides: here, in double
+   * precision, of some points. */
   const int halves = options->cube_size > 0 && options->precision == MCOR_FLOAT64;
   check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
   check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);
@@ -97,8 +98,8 @@ static void points_see_images(void** state)
   }
 }
 
-/* Derivatives of halves of the period: a particle on the period's lower side is on the upper
- * side of the upper half, too. */
+/* Checks the derivatives of the period's halves. A particle on the period's lower side is also on the upper side of the
+ * upper half. */
 static void check_halves(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_derivatives* whole)
 {
@@ -133,8 +134,7 @@ static void check_halves(mcor_context* context, const mcor_input* input,
   mcor_free_globals(&globals);
 }
 
-/* Gradients at particles, of which some are given periods away, with images and with these as
- * particles. */
+/* Compares gradients at particles, some given periods away, with those that have all images as particles. */
 static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };
@@ -171,7 +171,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   assert_memory_equal(
     moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
   mcor_free_derivatives(&moved);
-  /* Wherever in the period: next to its sides, too. */
+  /* The particles are shifted to other places of the period, next to its sides, too. */
   for (int shift = 1; shift < 4; ++shift)
   {
     for (int64_t i = 0; i < 3 * set.count; ++i)

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ranks, in threads: what is measured over all of them is, to the last bit, what is measured over one
- * input, whoever has what. */
+/* Ranks, in threads, measure to the last bit what one process measures, whoever holds which particles. */
 
 #include "core_parts.h"
 #include "core_ranks.h"
@@ -12,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Who has what ---- */
+/* ---- Which rank has which particle ---- */
 
 typedef int (*split_function)(const particle_set* set, int64_t i, int ranks);
 
@@ -36,7 +35,7 @@ static int split_slabs(const particle_set* set, int64_t i, int ranks)
   return at < 0 ? 0 : at < ranks ? (int)at : ranks - 1;
 }
 
-/* All but a few particles on the first one. */
+/* The first rank has all but a few particles. */
 static int split_uneven(const particle_set* set, int64_t i, int ranks)
 {
   (void)set;
@@ -49,7 +48,7 @@ static const char* const split_names[] = { "scattered", "all on one", "slabs", "
 
 #define SPLITS (sizeof splits / sizeof splits[0])
 
-/* The particles of one rank, backwards. */
+/* Returns the particles of one rank, in reverse order. */
 static particle_set take_part(const particle_set* set, split_function split, int ranks, int rank)
 {
   particle_set part = particle_set_make(set->count);
@@ -67,7 +66,7 @@ static particle_set take_part(const particle_set* set, split_function split, int
 
 /* ---- Global values ---- */
 
-/* Parts of an input besides its set. */
+/* An input's parts besides its set of particles. */
 typedef struct measure_case
 {
   const char* name;
@@ -82,7 +81,7 @@ typedef struct measure_job
   mcor_status status[CORE_MOST_RANKS];
   mcor_globals globals[CORE_MOST_RANKS];
   char error[CORE_MOST_RANKS][400];
-  int failing; /* a rank that has a particle that is not a number; -1: none */
+  int failing; /* the rank that has a NaN particle; -1: none */
 } measure_job;
 
 static mcor_input measure_input(
@@ -202,8 +201,8 @@ static void global_values(void** state)
   {
     check_globals(*state, &set, &cases[i]);
   }
-  /* Outliers make the median narrow its bins; an attribute that a rank alone knows to vary, and one that
-   * is not finite there. */
+  /* Outliers make the search for the median narrow its bins. One rank alone knows that an attribute varies, and another
+   * attribute is not finite on one rank. */
   const measure_case rough = { "outliers", 0, 1, MCOR_SHEPARD };
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -219,14 +218,14 @@ static void not_finite_attributes(void** state)
   CORE_SET set = make_set();
   for (int64_t i = 0; i < set.count; ++i)
   {
-    set.scalar[i] = i == 1 ? 1 : 2; /* where uneven, ranks have one value each, but not the same */
+    set.scalar[i] = i == 1 ? 1 : 2; /* with the uneven split each rank has a single value, but not all the same */
   }
   check_globals(*state, &set, &what);
   set.scalar[1234] = INFINITY;
   check_globals(*state, &set, &what);
 }
 
-/* One rank's fault is an error on all, and nobody waits. */
+/* One rank's fault is an error on all ranks, and no rank waits. */
 static void faults(void** state)
 {
   (void)state;
@@ -261,11 +260,11 @@ typedef struct parts_job
 {
   const particle_set* set;
   const mcor_options* options;
-  const double* sides; /* [ranks - 1], along x */
+  const double* sides; /* along x, [ranks - 1] */
   mcor_globals globals;
   mcor_surface surface[CORE_MOST_RANKS];
   mcor_status status[CORE_MOST_RANKS];
-  double margin; /* of particles beside a box */
+  double margin; /* how far beside a box its particles are kept */
 } parts_job;
 
 static void extract_part(core_rank* rank, void* data)
@@ -293,7 +292,7 @@ static void extract_part(core_rank* rank, void* data)
   }
 }
 
-/* A surface that winds. */
+/* Makes a surface that winds. */
 static particle_set make_band(void)
 {
   particle_set set = core_make_block(14, 0.2, 3, core_slope);
@@ -350,7 +349,7 @@ static void parts_of_a_band(void** state)
   check_parts(*state, &set, &options, 8, eight, 14, 1000);
 }
 
-/* Lines in the plane, on squares of one size and of several. */
+/* Compares lines in the plane, on squares of one size and of several. */
 static void lines_of_parts(void** state)
 {
   const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };

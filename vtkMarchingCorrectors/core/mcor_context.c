@@ -63,7 +63,7 @@ mcor_status mcor_create_shared_context(
   (*context)->report_interval = MCOR_REPORT_SECONDS;
   mcor_status status = place >= 0 && place < count
     ? mcor_open_device(*context, device, place, count)
-    : mcor_fail_as(*context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PLACE_ILLEGAL), place, count - 1);
+    : mcor_fail(*context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PLACE_ILLEGAL), place, count - 1);
   MCOR_THEN(status, mcor_upload_case_table(*context));
   (*context)->created = status == MCOR_OK;
   return status;

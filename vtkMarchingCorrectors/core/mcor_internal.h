@@ -22,23 +22,13 @@
     }                                                                                              \
   } while (0)
 
-/* Returns with a status and the sentence that explains it. */
-#define MCOR_RETURN_IF(condition, context, status, ...)                                            \
-  do                                                                                               \
-  {                                                                                                \
-    if (condition)                                                                                 \
-    {                                                                                              \
-      return mcor_fail(context, status, __VA_ARGS__);                                              \
-    }                                                                                              \
-  } while (0)
-
 /* Returns with a status and the sentence that explains it: MCOR_SAY(CODE), and what its formats need. */
 #define MCOR_FAIL_IF(condition, context, status, ...)                                              \
   do                                                                                               \
   {                                                                                                \
     if (condition)                                                                                 \
     {                                                                                              \
-      return mcor_fail_as(context, status, __VA_ARGS__);                                           \
+      return mcor_fail(context, status, __VA_ARGS__);                                              \
     }                                                                                              \
   } while (0)
 
@@ -63,13 +53,9 @@
     (list)->of[(list)->count++] = __VA_ARGS__;                                                     \
   } while (0)
 
-/* Keeps the sentence in the context, which may be NULL if nobody will ask for it. */
-mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
-#if defined(__GNUC__)
-  __attribute__((format(printf, 3, 4)))
-#endif
-  ;
-mcor_status mcor_fail_as(
+/* Keeps the sentence in the context, which may be NULL if nobody will ask for it; use as
+ * mcor_fail(context, status, MCOR_SAY(CODE), ...). */
+mcor_status mcor_fail(
   mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 4, 5)))

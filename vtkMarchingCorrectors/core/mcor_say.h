@@ -3,16 +3,13 @@
 #ifndef mcor_say_h
 #define mcor_say_h
 
-/* Says a sentence of mcor_says.def: for the library and its interfaces in C and C++. */
+/* Says a sentence of mcor_says.def. VTK's filters and the program do so by vtkSPHSay.h. */
 
 #include "mcor.h"
 
 #ifdef __cplusplus
 extern "C"
 {
-#endif
-#ifdef __GNUC__
-#pragma GCC visibility push(default)
 #endif
 
 /* A code and its text, as two arguments. Texts are arrays, not pointers, so that compilers check the
@@ -28,9 +25,6 @@ extern "C"
 #endif
     ;
 
-#ifdef __GNUC__
-#pragma GCC visibility pop
-#endif
 #ifdef __cplusplus
 }
 #endif

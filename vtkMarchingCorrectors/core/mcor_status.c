@@ -63,38 +63,23 @@ const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel)
   return &mcor_kernel_table[kernel];
 }
 
-static void mcor_keep_failure(
-  mcor_context* context, mcor_says code, const char* format, va_list args)
+mcor_status mcor_fail(
+  mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
 {
+  va_list args;
+  va_start(args, format);
   if (context)
   {
     context->code = code;
     vsnprintf(context->error, sizeof context->error, format, args);
   }
-}
-
-mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
-{
-  va_list args;
-  va_start(args, format);
-  mcor_keep_failure(context, MCOR_SAYS_NOTHING, format, args);
-  va_end(args);
-  return status;
-}
-
-mcor_status mcor_fail_as(
-  mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
-{
-  va_list args;
-  va_start(args, format);
-  mcor_keep_failure(context, code, format, args);
   va_end(args);
   return status;
 }
 
 mcor_status mcor_allocated(mcor_context* context, bool complete)
 {
-  return complete ? MCOR_OK : mcor_fail_as(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY));
+  return complete ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY));
 }
 
 mcor_status mcor_make_room(

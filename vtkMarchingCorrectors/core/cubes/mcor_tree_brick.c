@@ -82,8 +82,8 @@ bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
 
 mcor_status mcor_fail_leaves(mcor_context* context)
 {
-  return mcor_fail_as(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEAVES_TOO_MANY),
-    context->lattice.cube, MCOR_LEAF_LIMIT);
+  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEAVES_TOO_MANY), context->lattice.cube,
+    MCOR_LEAF_LIMIT);
 }
 
 /* ---- Sets of bricks ---- */

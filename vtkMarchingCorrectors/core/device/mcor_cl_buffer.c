@@ -136,7 +136,7 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   if (error != CL_SUCCESS)
   {
     buffer->mem = NULL;
-    return mcor_fail_as(context,
+    return mcor_fail(context,
       mcor_is_no_memory(error) || error == CL_INVALID_BUFFER_SIZE ? MCOR_OUT_OF_CAPACITY
                                                                   : MCOR_DEVICE_ERROR,
       MCOR_SAY(DEVICE_ALLOCATION), cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));

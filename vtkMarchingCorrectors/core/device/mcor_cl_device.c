@@ -319,7 +319,7 @@ static mcor_status mcor_fail_without_device(
     MCOR_SAY(NO_KERNELS), missing,
     mcor_choose_device(list, &single) >= 0 ? "Choose {precision single}, install" : "Install",
     MCOR_POCL_HINT, mcor_driver_fault(list));
-  return mcor_fail_as(
+  return mcor_fail(
     context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_DEVICE), MCOR_POCL_HINT, mcor_driver_fault(list));
 }
 
@@ -368,7 +368,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   {
     char devices[300];
     mcor_write_devices(&list, ", ", devices, sizeof devices);
-    return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_SUCH_DEVICE), wanted, devices,
+    return mcor_fail(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_SUCH_DEVICE), wanted, devices,
       mcor_driver_fault(&list));
   }
   const int own = by_number ? chosen : mcor_take_turn(&list, chosen, &place, &count);

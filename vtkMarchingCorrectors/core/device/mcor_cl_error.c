@@ -80,10 +80,9 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
 {
   const char *device = context->cl.device_name, *name = mcor_cl_error_name(error);
   const mcor_status status = mcor_is_no_memory(error)
-    ? mcor_fail_as(
+    ? mcor_fail(
         context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(DEVICE_MEMORY), device, what, name, (int)error)
-    : mcor_fail_as(
-        context, MCOR_DEVICE_ERROR, MCOR_SAY(DEVICE_CALL), device, what, name, (int)error);
+    : mcor_fail(context, MCOR_DEVICE_ERROR, MCOR_SAY(DEVICE_CALL), device, what, name, (int)error);
   if (error == CL_INVALID_KERNEL_NAME) /* all names are right, so it is the driver's fault */
   {
     mcor_blame_files(context);

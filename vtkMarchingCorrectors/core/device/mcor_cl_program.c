@@ -63,7 +63,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
     char missing[MCOR_BUILD_NAME];
     clReleaseProgram(program);
     mcor_name_build(&cl->build, missing, sizeof missing);
-    return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_KERNELS_HERE), missing);
+    return mcor_fail(context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_KERNELS_HERE), missing);
   }
   size_t size = 0;
   clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
@@ -73,7 +73,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
     clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
   }
   clReleaseProgram(program);
-  mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(DEVICE_BUILD), cl->device_name,
+  mcor_fail(context, MCOR_DEVICE_ERROR, MCOR_SAY(DEVICE_BUILD), cl->device_name,
     mcor_cl_error_name(error), options, log ? log : "");
   free(log);
   mcor_blame_files(context);

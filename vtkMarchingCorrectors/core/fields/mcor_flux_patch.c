@@ -124,7 +124,7 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
 
 static mcor_status mcor_leaves_plane(const mcor_flux_job* job, int64_t number)
 {
-  return mcor_fail_as(job->edges.context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_OUT_OF_PLANE),
+  return mcor_fail(job->edges.context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_OUT_OF_PLANE),
     mcor_label_section(job, number).text, 'x' + job->across, job->plane->at);
 }
 

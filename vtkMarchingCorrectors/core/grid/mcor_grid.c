@@ -266,7 +266,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
     : 1;
   MCOR_FAIL_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
     MCOR_SAY(MASS_TOO_SMALL), particle, mass, single ? "single" : "double");
-  return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_OF_KERNEL), particle,
+  return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_OF_KERNEL), particle,
     mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 

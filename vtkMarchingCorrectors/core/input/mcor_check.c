@@ -12,7 +12,7 @@
 
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to)
 {
-  return mcor_fail_as(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(BOX_ILLEGAL),
+  return mcor_fail(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(BOX_ILLEGAL),
     mcor_axis_letter(context, axis), from, to,
     isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
 }
@@ -77,7 +77,7 @@ static mcor_status mcor_check_number(
   char most[40] = "";
   if (legal.is_word)
   {
-    return mcor_fail_as(
+    return mcor_fail(
       context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_NOT_A_WORD), member, value, words);
   }
   if (isfinite(legal.high))
@@ -85,7 +85,7 @@ static mcor_status mcor_check_number(
     snprintf(
       most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
   }
-  return mcor_fail_as(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_ILLEGAL), member, value,
+  return mcor_fail(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_ILLEGAL), member, value,
     legal.excludes_low ? "above" : "at least", legal.low, most,
     *words ? ", or the number, from -1 down, of one of these: " : "", words);
 }
@@ -167,9 +167,9 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_input* inp
   }
   const double v = mcor_array_at(array, i, c);
   const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
-  return array->data ? mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(ARRAY_VALUE), role,
+  return array->data ? mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(ARRAY_VALUE), role,
                          same ? "" : " array ", same ? "" : array->name, (long long)i, problem)
-                     : mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(CONSTANT_VALUE), role,
+                     : mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(CONSTANT_VALUE), role,
                          problem, positive ? " above 0" : "");
 }
 

@@ -138,7 +138,7 @@ static mcor_status mcor_refuse_plane(
       MCOR_SAY(SOLID_BESIDE_PLANE), "xyz"[a], at, (long long)i, mcor_array_at(positions, i, a),
       rule);
   }
-  return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(NOT_IN_PLANE));
+  return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(NOT_IN_PLANE));
 }
 
 /* Particles sampled in the search for twins. */

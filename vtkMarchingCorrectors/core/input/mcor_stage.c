@@ -474,7 +474,7 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
       staging->reach = NULL;
       mcor_read_stage_places(staging, slice->heavy, &chunk);
       mcor_read_stage_sizes(staging, slice->heavy, &chunk);
-      return mcor_fail_as(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
+      return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
         (long long)slice->heavy, mcor_stage_weight(context, &chunk, 0),
         context->cl.real_size == sizeof(float) ? "single" : "double");
     }

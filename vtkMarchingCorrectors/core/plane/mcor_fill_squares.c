@@ -41,7 +41,7 @@ typedef struct mcor_fill_job
 
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
 {
-  return mcor_fail_as(context, MCOR_DEVICE_ERROR, MCOR_SAY(FILLED_FAULT), at->node[0], at->node[1]);
+  return mcor_fail(context, MCOR_DEVICE_ERROR, MCOR_SAY(FILLED_FAULT), at->node[0], at->node[1]);
 }
 
 /* ---- The border ---- */

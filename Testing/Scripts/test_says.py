@@ -45,7 +45,7 @@ class Says(unittest.TestCase):
 
     def test_each_slot_has_words(self):
         """Slots stand in the texts, and in C's strings, which become parts of texts."""
-        parts = {code: re.findall(r"\{[^{}]*\}", text) for code, text in TEXTS.items()}
+        parts = {code: re.findall(r"\{[a-z_%][^{}]*\}", text) for code, text in TEXTS.items()}
         for file in SAID:
             if CORE in file.parents:
                 parts[file.name] = re.findall(r'"[^"\n]*?(\{[a-z_]+(?: [\w.]+)?\})[^"\n]*"', file.read_text(encoding="utf-8"))

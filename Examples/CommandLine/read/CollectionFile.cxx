@@ -6,6 +6,7 @@
 #include "OptionValue.h"
 #include "SafeText.h"
 
+#include "vtkSPHSay.h"
 #include "vtkSmartPointer.h"
 #include "vtkXMLDataElement.h"
 #include "vtkXMLUtilities.h"
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace
 {
@@ -120,8 +122,7 @@ std::vector<CollectionEntry> ReadSeries(const std::string& file)
   }
   if (!isGood || entries.empty())
   {
-    FailToRead(file,
-      "it is no series of files, {\"files\": [{\"name\": ..., \"time\": ...}, ...]}, or damaged");
+    throw std::runtime_error(vtkSPHSay(MCOR_SAY(NO_SERIES), file.c_str()));
   }
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
@@ -187,10 +188,8 @@ std::vector<CollectionEntry> ReadCollection(
   }
   if (again > 0)
   {
-    warnings.push_back(file + " lists " + std::to_string(again) +
-      (again == 1 ? " file" : " files") +
-      " of a time and a part that it had before, the first at time " + DigitsOf(first) +
-      "; the later ones were taken");
+    warnings.push_back(vtkSPHSay(MCOR_SAY(LISTED_TWICE), file.c_str(),
+      static_cast<long long>(again), again == 1 ? "file" : "files", DigitsOf(first).c_str()));
   }
   return kept;
 }

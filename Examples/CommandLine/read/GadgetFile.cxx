@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <vector>
 
 namespace
@@ -175,7 +177,8 @@ private:
     size = this->ReadSize();
     if (!this->Stream || size < 4 || at + 8 + size > this->Size)
     {
-      this->Fail("it ends too early, or is damaged, at byte " + std::to_string(at));
+      throw std::runtime_error(
+        vtkSPHSay(MCOR_SAY(FILE_ENDS), this->Name.c_str(), static_cast<long long>(at)));
     }
     this->Stream.seekg(static_cast<std::streamoff>(at + 4 + size));
     if (this->ReadSize() != size || !this->Stream)

@@ -9,6 +9,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <array>
@@ -218,7 +219,8 @@ bool FindXyzStep(Lines& lines, Step& step)
   step.Count = CountOf(lines.Get());
   if (step.Count < 0)
   {
-    FailToRead(lines.File, lines.Where() + " does not say how many particles a step has");
+    throw std::runtime_error(
+      vtkSPHSay(MCOR_SAY(STEP_WITHOUT_COUNT), lines.File.c_str(), lines.Where().c_str()));
   }
   lines.Need("the second line of a step");
   std::map<std::string, std::string> values = ValuesOf(lines.Get());

@@ -5,11 +5,14 @@
 #include "SafeText.h"
 #include "TextTable.h"
 
+#include "vtkSPHSay.h"
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 namespace
 {
@@ -167,14 +170,13 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
     }
     if (element.HasLists && (isVertex || element.Count > 0))
     {
-      FailToRead(file,
-        "its element " + element.Name + " has lists, which are not read before or in the vertices");
+      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_LISTS), file.c_str(), element.Name.c_str()));
     }
     if (isVertex &&
       std::set<std::string>(element.Names.begin(), element.Names.end()).size() <
         element.Names.size())
     {
-      FailToRead(file, "two properties of its vertices have the same name");
+      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_NAMES), file.c_str()));
     }
     Table table = TableOf(element.Names);
     if (!isText)

@@ -8,6 +8,7 @@ import os
 
 import numpy as np
 
+from .._library import say
 from ._particles import FileError, Particles, by_name
 from ._raw import RawArray, state_of
 
@@ -30,7 +31,7 @@ class Reader:
 
     def check(self, size):
         if size > self.size - self.file.tell():
-            raise FileError(f"{self.name} ends too early, or is damaged, at byte {self.file.tell()}.")
+            raise FileError(say("FILE_ENDS", self.name, self.file.tell()))
 
     def take(self, size):
         self.check(size)

@@ -7,6 +7,7 @@ import struct
 
 import numpy as np
 
+from .._library import say
 from ._particles import FileError, Particles, by_name
 from ._raw import RawArray, state_of
 from .gadget import files_of, numbers_of
@@ -57,7 +58,7 @@ class BinaryFile:
         begin = self.file.tell()
         size = struct.unpack(self.order + "I", before)[0] if len(before) == 4 else self.state[1]
         if begin + size + 4 > self.state[1]:
-            raise FileError(f"{self.path.name} ends too early, or is damaged, at byte {begin}.")
+            raise FileError(say("FILE_ENDS", self.path.name, begin))
         self.file.seek(begin + size)
         if self.file.read(4) != before:
             raise FileError(f"{self.path.name} is damaged: the record at byte {begin} does not end as it begins.")

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 
+from .._library import say
 from ._packed import read_bytes
 from ._particles import FileError
 from .tables import body_of, check_width, columns_of
@@ -38,7 +39,7 @@ def read_ply(path):
         if not count and name != "vertex":
             continue
         if any(kind is None for _, kind in properties):
-            raise FileError(f"{path.name}: its element '{name}' has lists, which are not read before the vertices.")
+            raise FileError(say("PLY_LISTS", path.name, name))
         check_width(path.name, len(properties))
         if form == "ascii":
             end = at
@@ -54,7 +55,7 @@ def read_ply(path):
         raise FileError(f"{path.name} has no vertices.")
     names = [name for name, _ in properties]
     if len(set(names)) < len(names):
-        raise FileError(f"{path.name}: two properties of its vertices have the same name.")
+        raise FileError(say("PLY_NAMES", path.name))
     if form == "ascii":
         rows = [row for row in data[at:].decode(errors="replace").split("\n") if row.strip()][:count]
         columns = columns_of(path.name, rows, names)

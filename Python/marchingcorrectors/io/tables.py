@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from .._library import say
 from ._packed import ending_of, read_bytes
 from ._particles import Body, FileError, choose_step
 
@@ -204,7 +205,7 @@ def read_table(path):
 
 def whole_number(file, lines, i):
     if i >= len(lines) or not re.fullmatch(r"\s*\d{1,18}\s*", lines[i][:40]):
-        raise FileError(f"{file}: line {i + 1} does not say how many particles a step has.")
+        raise FileError(say("STEP_WITHOUT_COUNT", file, f"line {i + 1}"))
     return int(lines[i])
 
 

@@ -15,6 +15,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from .._library import say
 from .._warnings import warn
 from ._cells import VERTICES, take_vertices, tell_mesh
 from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
@@ -246,7 +247,7 @@ def list_series(path):
     except (ValueError, KeyError, TypeError, RecursionError):
         found = []
     if not found or not np.isfinite([time for time, _ in found]).all() or not all(name for _, name in found):
-        raise FileError(f"{path.name} is no series of files, {{\"files\": [{{\"name\": ..., \"time\": ...}}, ...]}}, or damaged.") from None
+        raise FileError(say("NO_SERIES", path.name)) from None
     times = {}
     for time, file in found:
         times.setdefault(time, []).append(path.parent / file)
@@ -270,8 +271,7 @@ def list_times(path):
             again.append(time)
         entries[same or (time, part or entry["file"])] = entry["file"]
     if again:
-        warn(f"{path.name} lists {len(again)} file{'s' * (len(again) > 1)} of a time and a part that it had before, the first at "
-             f"time {min(again):g}; the later ones were taken.")
+        warn(say("LISTED_TWICE", path.name, len(again), "files" if len(again) > 1 else "file", f"{min(again):g}"))
     times = {}
     for (time, _), file in sorted(entries.items(), key=lambda pair: pair[0][0]):
         times.setdefault(time, []).append(path.parent / file)

@@ -25,6 +25,16 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 
+# From a solver's files, which are made, to films and tables; without the plot, which needs matplotlib.
+if (MCOR_VTK_PYTHON STREQUAL "/usr/bin/python3")
+  foreach (script IN ITEMS dualsphysics:0.0266 splishsplash:0.0133 dam_break_2d:)
+    string(REPLACE ":" ";" script "${script}")
+    list(POP_FRONT script name)
+    mcor_add_example_test(${name} vtk env "PATH=$<TARGET_FILE_DIR:marching-correctors>:$ENV{PATH}" PYTHON=true
+      "${CMAKE_CURRENT_SOURCE_DIR}/${name}.sh" "${out}/${name}" ${script})
+  endforeach ()
+endif ()
+
 # The cases with tiny sets. VTK's own Python; splashsurf is compared only where that has the package.
 if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
   mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"

@@ -41,3 +41,13 @@ extract free_surface --free-surface
 echo
 echo "Surfaces, pictures and statistics:"
 du -a --apparent-size -B 1000 "$out"/* | awk '{ printf "%8d kB  %s\n", $1, $2 }'
+cat <<EOF
+
+Next, in this folder, with your own data:
+
+    export PATH="$PWD/build/bin:\$PATH"
+    marching-correctors --list-arrays YOUR_FILE
+    marching-correctors YOUR_FILE surface.vtp --free-surface
+
+Documentation/Guide/i-want.md has more commands, Documentation/Guide/your-data.md those of each solver.
+EOF

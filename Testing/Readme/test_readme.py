@@ -7,7 +7,7 @@ test_readme.py SOURCE BUILD SCRATCH PAGE SECTION [PAGE SECTION]   "-": what stan
 test_readme.py SOURCE --links          all links between pages lead somewhere
 
 SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build",
-the build tree. Fenced blocks with a file name behind the language are written to that file; then the
+the build tree, whose program is found by its name. Fenced blocks with a file name behind the language are written to that file; then the
 blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
 print every "N triangles" that stands in a comment, and git must ignore the files that they write. Of a second
 section the files alone are written.
@@ -54,6 +54,7 @@ def run(blocks, scratch):
     if not commands:
         sys.exit("the section has no shell commands")
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "PYTHONPATH")}
+    environment["PATH"] = os.path.join(scratch, "build", "bin") + os.pathsep + environment["PATH"]
     result = subprocess.run(["bash", "-euxo", "pipefail", "-c", commands], cwd=scratch, env=environment,
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, text=True, check=False)

@@ -28,8 +28,9 @@ def arrays_of(surface):
 
 
 def take(whole, indices):
-    """These points and their arrays, no cells."""
+    """These points and their arrays, and the time of the whole; no cells."""
     part = vtkPolyData()
+    part.SetFieldData(whole.GetFieldData())
     ids = vtkIdList()
     for i in indices:
         ids.InsertNextId(int(i))

@@ -179,14 +179,26 @@ class Program(unittest.TestCase):
             self.check_point_data(alone, ranks)
 
     def test_fields_in_a_plane(self):
-        """Points on a line, what is derived, gauges."""
+        """Points on a line, what is derived, gauges and fluxes, with walls, too."""
         plane = self.write_plane()
+        particles = read(plane)
+        wall = vtkDoubleArray()
+        wall.SetName("Wall")
+        for x, y, _ in vtk_to_numpy(particles.GetPoints().GetData()):
+            wall.InsertNextValue(float(y < 0.1 * math.sin(5 * x)))
+        particles.GetPointData().AddArray(wall)
+        write(particles, plane)
+        fluid = ["--fluid", "Wall=0"]
         size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
         wet = ["--gauge", "a=0,-0.5,0.5:0,1.2,0.5", "--gauge", "b=-2,0.1,0.5:2,0.3,0.5"]
         for name, how in (("line.vtp", ["--line=-1.5,0.1,0.5,1.5,0.4,0.5", "--derive", "Velocity", "--gradients"]),
                           ("derived.vtp", ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "5"]),
-                          ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"])):
+                          ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"]),
+                          ("gauges.csv", [*wet, *fluid]), ("gauges.csv", [*wet, *fluid, "--periodic", "3,0,0"]),
+                          ("fluxes.csv", ["--flux", "a=-0.9,-0.5,0.5:-0.4,1,0.5", *fluid])):
             self.check_same(name, plane, 4, *size, *how)
+        area = float(Path(self.path("fluxes.csv")).read_text(encoding="utf-8").splitlines()[1].split(",")[2])
+        self.assertTrue(0.1 < area < 1.5, area)
         line = read(self.path("line.vtp")).GetPointData()
         self.assertGreater(vtk_to_numpy(line.GetArray("vtkValidPointMask")).sum(), 100)
         self.assertIsNone(line.GetArray("Lambda2"))
@@ -216,10 +228,11 @@ class Program(unittest.TestCase):
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
         fluxes = ["--flux", "a=box:-1,0.1,-0.1,0.2,-1,0.5", "--flux", "b=disc:0,0.1,0:1,0.2,0:1.4", "--periodic", "0,0,3.1"]
         view = ["--resolution", "150", "--project"]
+        tank, fluid = os.path.join(DATA, "dam_break_45k.vtp"), ["--fluid", "ParticleType=0", "--periodic", "0,0,1"]
         for name, file, how in (
                 ("gauges.csv", PARTICLES, gauges), ("fluxes.csv", PARTICLES, fluxes),
-                ("fluxes.csv", os.path.join(DATA, "dam_break_45k.vtp"),
-                 ["--flux", "a=disc:0.8,0.1,0:1,0.2,0.1:0.6", "--fluid", "ParticleType=0", "--periodic", "0,0,1"]),
+                ("fluxes.csv", tank, ["--flux", "a=disc:0.8,0.1,0:1,0.2,0.1:0.6", *fluid]),
+                ("walls.csv", tank, ["--gauge", "a=0.8,0,-0.1:0.8,0,1", "--gauge", "b=-1,0.1,0.05:4,0.1,0.05", *fluid]),
                 ("levels.vti", PARTICLES, ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]),
                 ("view.vti", PARTICLES, [*view, "z"]), ("view.vti", PARTICLES, [*view, "1,2,3", "--periodic", "0,0,3.1"]),
                 ("view.vti", PARTICLES, [*view, "x", "--smoothing-length", "estimate"]),
@@ -228,8 +241,9 @@ class Program(unittest.TestCase):
             alone, done = self.check_same(name, file, 5, *how)
             if name == "gauges.csv":
                 self.assertEqual(done.stdout, alone.stdout)
-        with open(self.path("gauges.csv"), encoding="utf-8") as stream:
-            self.assertIn(",wet,", stream.read())
+        for name, time in ("gauges.csv", "0,"), ("walls.csv", "0.9"):  # the time of the pieces is that of their file
+            rows = Path(self.path(name)).read_text(encoding="utf-8").splitlines()[1:]
+            self.assertTrue(all(row.startswith(time) for row in rows) and any(",wet," in row for row in rows), rows)
         for name, how in (("o.csv", ["--gauge", "a=0,0,0:0,0,1", "--smoothing-length", "Nope"]),
                           ("o.vti", ["--project", "z", "--scalar", "Nope"])):
             self.check_fails(self.run_ranks(PARTICLES, self.path(name), *how), "Nope")

@@ -77,11 +77,18 @@ vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file, std::size_t)
   return LoadExtra().ReadSurface(file);
 }
 
+/// The time of the list itself, or else that of its first piece, as all pieces are of one time.
+std::vector<double> ListTimesOfPieces(const std::string& file)
+{
+  const std::vector<double> times = ListTimesOfVtk(file);
+  return times.empty() ? ListTimesOfVtk(ReadPieces(file).front()) : times;
+}
+
 const Formats ParticleFormats = {
   { ".vtp", { ReadXml, ListTimesOfVtk } },
   { ".vtu", { ReadXml, ListTimesOfVtk } },
-  { ".pvtp", { nullptr, ListTimesOfVtk, ReadPieces } },
-  { ".pvtu", { nullptr, ListTimesOfVtk, ReadPieces } },
+  { ".pvtp", { nullptr, ListTimesOfPieces, ReadPieces } },
+  { ".pvtu", { nullptr, ListTimesOfPieces, ReadPieces } },
   { ".vtkhdf", { ReadHdf, ListTimesOfHdf } },
   { ".vtk", { ReadLegacy, ListTimesOfVtk } },
   { ".csv", { ReadText } },

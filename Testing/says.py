@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's sentences by their codes, so that tests do not repeat the words."""
+"""Has the core's sentences by their codes, so that tests do not repeat the words."""
 import re
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def fill(text, word):
 
 
 def says(code, *found):
-    """A regular expression for the sentence in the words of any interface. found: regular expressions that must
-    occur in it, in this order."""
+    """Returns a regular expression for the sentence in the words of any interface. found: regular expressions that must occur in it, in this
+    order."""
     words = f"(?=.*?{'.*?'.join(found)})" if found else ""
     return f"(?s:{words}" + ".*?".join(re.escape(part) for part in _PART.split(TEXTS[code])) + ")"

@@ -22,7 +22,7 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
   return hash;
 }
 
-/* Several iso values at once are the surfaces of each. */
+/* Several iso values in one call give the surfaces of single calls. */
 static void test_several_iso_values(void** state)
 {
   CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
@@ -67,7 +67,7 @@ typedef struct permuted_case
   mcor_field field;
   mcor_type precision;
   mcor_seed_mode seeds;
-  int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
+  int volumes; /* where volumes come from: 0 an array, 1 mass / density, 2 mass alone, 3 the positions */
   int solids, coincident, estimate, topology, levels;
   mcor_boundary_detection boundary;
   double wall_share;
@@ -138,7 +138,7 @@ static uint64_t permuted_hash(
   return hash_of(context, &input, &options);
 }
 
-/* Whether five other orders of the particles give the same bits. */
+/* Returns whether five other orders of the particles give the same bits. */
 static int order_is_irrelevant(mcor_context* context, const permuted_case* at)
 {
   CORE_SET set = make_permuted_set(at);
@@ -167,8 +167,8 @@ static void test_order_of_input(void** state)
   CORE_CHECK(different == 0, "%d cases", different);
 }
 
-/* A limit below the peak fails with a sentence; one at the peak suffices, also where a context
- * still keeps what it had for other particles. */
+/* A limit below the peak fails with a sentence. One at the peak suffices, even while the context keeps buffers from
+ * other particles. */
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;
@@ -196,8 +196,8 @@ static void test_memory_limit(void** state)
   CORE_CHECK(hash_of(context, &input, &options) == expected, "another surface in limited memory");
 }
 
-/* A large buffer that was released serves the next that is about as large; others are given back where
- * more memory would be held than a call, or the one before, was in need of, and a limit always counts. */
+/* A large buffer that was released serves the next request of about its size. Other kept buffers are freed where more
+ * memory would be held than this call or the one before needs; a limit always holds. */
 static void test_kept_buffers(void** state)
 {
   mcor_context* context = *state;
@@ -231,7 +231,7 @@ static void test_kept_buffers(void** state)
   CORE_CHECK(cl->bytes <= held / 8 * 9, "%lld bytes are held, %lld were needed",
     (long long)cl->bytes, (long long)held);
   mcor_release(context, &a);
-  mcor_begin_buffers(context); /* of a call that needs nothing */
+  mcor_begin_buffers(context); /* a call that needs nothing */
   mcor_begin_buffers(context);
   assert_int_equal(cl->bytes, tables);
   CORE_OK(context, mcor_reserve(context, &a, size));
@@ -262,7 +262,7 @@ static void test_devices(void** state)
     mcor_surface surface = { 0 };
     assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
   }
-  /* Part of the default device's name, in capitals and in small letters. */
+  /* A device may be named by a part of its name, in capitals or small letters. */
   const mcor_context* context_of_default = *state;
   char upper[128], lower[128];
   size_t n = 0;
@@ -293,7 +293,7 @@ static void test_names(void** state)
   assert_string_equal(mcor_phase_name(MCOR_PHASE_TRIMMING), "trimming");
 }
 
-/* Statistics that can be told beforehand, and their relations. */
+/* Checks statistics that are known beforehand, and relations between them. */
 static void test_statistics(void** state)
 {
   CORE_SET set = core_make_block(10, 0, 3, core_ball);
@@ -329,7 +329,8 @@ static void test_statistics(void** state)
   CORE_CHECK(s->device[0] && s->platform[0], "no device");
 }
 
-/* As many lanes as the device's compiler has registers for, whatever width the device claims. */
+/* The number of lanes follows from the registers that the device's compiler uses, not from the width that the device
+ * claims. */
 static void test_lanes(void** state)
 {
   mcor_context* context = *state;
@@ -358,7 +359,7 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* A context's first run with a kernel builds, and says so; a later one does not. */
+/* A context's first run with a kernel compiles, and says so; a later run does not. */
 static void test_build(void** state)
 {
   (void)state;

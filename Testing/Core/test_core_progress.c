@@ -33,7 +33,7 @@ static int on_progress(void* user, double fraction, const char* phase)
   return c->calls++ == c->stop_at;
 }
 
-/* One call of any kind, on whose way there are launches. */
+/* Makes one call of a kind that launches kernels. */
 static mcor_status run_kind(
   mcor_context* context, int kind, const mcor_input* input, const mcor_options* options)
 {
@@ -58,8 +58,7 @@ static mcor_status run_kind(
   }
 }
 
-/* Where each launch is worth a report, there are many, none goes back, and one that asks to stop is
- * the last: nothing is launched after it. */
+/* If each launch reports, there are many reports, none goes back, and after one that asks to stop nothing is launched. */
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;
@@ -108,8 +107,8 @@ static int count_phase(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* Each phase may be cancelled at many places, those too that hardly launch anything: loops of the host and
- * what is filled ask, too. (On the built-in device somewhat oftener than on drivers.) */
+/* Each phase can be cancelled at many places, also where it launches little: loops of the host and copies ask, too.
+ * (The built-in device asks somewhat more often than drivers.) */
 static void test_all_phases_ask(void** state)
 {
   mcor_context* context = *state;
@@ -143,7 +142,7 @@ static void test_all_phases_ask(void** state)
   context->report_interval = interval;
 }
 
-/* Where sums have very many terms, a launch is cut into parts, each worth a report; no bit changes. */
+/* Where sums have very many terms, a launch is cut into parts that each report; no bit changes. */
 static void test_long_launches_are_cut(void** state)
 {
   mcor_context* context = *state;

@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Data that a context keeps between calls never show: every parameter is changed by itself, from
- * a call that has just been made and back to it, and each result is that of a context which
- * never saw another call. */
+/* What a context keeps between calls never changes a result. Every parameter is changed alone, right after a call, and
+ * changed back; each result is that of a new context. */
 
 #include "core_fixture.h"
 
@@ -11,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A call, and what its parameters may be changed to. */
+/* A call, and the values that its parameters may change to. */
 typedef struct reuse_call
 {
-  particle_set set, other; /* as many particles each */
+  particle_set set, other; /* other: has as many particles as set */
   double iso[2];
   float* single; /* smoothing lengths of `set` */
   double* noise;
@@ -23,13 +22,13 @@ typedef struct reuse_call
   mcor_options options;
 } reuse_call;
 
-/* Sources of the particles' sizes. */
+/* Where the particles' sizes come from, and what is contoured. */
 typedef enum reuse_base
 {
   REUSE_ARRAYS, /* smoothing lengths and volumes as arrays */
   REUSE_CONSTANTS,
   REUSE_MASS,      /* mass and density as constants */
-  REUSE_MASS_ONLY, /* as an array, and the solids count; the surface ends at them */
+  REUSE_MASS_ONLY, /* masses as an array; solids count, and the surface ends at them */
   REUSE_VECTOR,    /* a component of the positions is contoured */
   REUSE_ROUGH,     /* ambiguous faces, and components without pairs */
   REUSE_FREE_SURFACE,
@@ -73,7 +72,7 @@ static void set_base(reuse_call* call, reuse_base base)
   mcor_input* in = &call->input;
   *in = core_input(&call->set);
   in->particles_version = in->scalar_version = 100 + (uint64_t)base;
-  in->ignore_solids = 1; /* one program less to compile */
+  in->ignore_solids = 1; /* one device program less to compile */
   if (base == REUSE_CONSTANTS)
   {
     in->smoothing_length = large;
@@ -112,14 +111,14 @@ static void set_base(reuse_call* call, reuse_base base)
   o->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
 }
 
-/* One parameter changes. The versions promise the content of arrays only: what else there is in an
- * input or among the options may change without a word. */
+/* Changes one parameter. Versions only say whether arrays' contents changed; anything else in the input or the options
+ * may change without a new version. */
 typedef struct reuse_step
 {
   const char* name;
   reuse_base base;
   void (*change)(reuse_call* call);
-  int same; /* the surface stays the same */
+  int same; /* the change does not change the surface */
 } reuse_step;
 
 #define STEP(name, statement)                                                                      \
@@ -128,7 +127,7 @@ typedef struct reuse_step
     statement;                                                                                     \
   }
 
-/* ---- of mcor_input, in its order ---- */
+/* ---- steps for mcor_input, in the order of its members ---- */
 STEP(count, c->input.count -= 100)
 STEP(positions, c->input.positions = core_array(c->other.position, 3);
      c->input.particles_version = 8)
@@ -163,7 +162,7 @@ STEP(solids, c->input.solid = c->other.solid; c->input.particles_version = 8)
 STEP(ignore_solids, c->input.ignore_solids = !c->input.ignore_solids)
 STEP(attributes, c->input.attributes = c->attributes + 1)
 STEP(attribute_count, c->input.attribute_count = 2)
-/* ---- of mcor_options, in its order ---- */
+/* ---- steps for mcor_options, in the order of its members ---- */
 STEP(sph_kernel, c->options.sph_kernel = MCOR_WENDLAND_C2)
 STEP(field, c->options.field = MCOR_SUM)
 STEP(weight_field, c->options.field = MCOR_WEIGHT_SUM; c->iso[0] = 0.5)
@@ -231,7 +230,7 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
   AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
 
-/* Hashes the surface and the counts of cells that go with it. */
+/* Hashes the surface and its statistics of cells. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
   CORE_SURFACE surface = core_extract(context, &call->input, &call->options);
@@ -243,7 +242,7 @@ static uint64_t hash_of(mcor_context* context, const reuse_call* call, const cha
   return hash;
 }
 
-/* Returns the hash of a context that never saw anything else. */
+/* Returns the hash from a new context. */
 static uint64_t fresh_hash(const reuse_call* call, const char* step)
 {
   CORE_CONTEXT context = NULL;
@@ -254,7 +253,7 @@ static uint64_t fresh_hash(const reuse_call* call, const char* step)
   return hash;
 }
 
-/* From each step's base to the change, again, and back; returns how many steps went wrong. */
+/* Runs the step's base, the change, the change again, and the base. Returns how many results are wrong. */
 static int check_step(
   mcor_context* context, reuse_call* call, const reuse_step* step, const uint64_t* base)
 {
@@ -301,7 +300,7 @@ static int stop_in(void* user, double fraction, const char* phase)
   return strcmp(phase, (const char*)user) == 0;
 }
 
-/* Makes a call fail: kind 0 while options are checked, then in each phase. */
+/* Makes a call fail: for kind 0 while options are checked, for others in one of the phases. */
 static void fail_call(mcor_context* context, const reuse_call* call, int kind)
 {
   mcor_options options = call->options;
@@ -316,8 +315,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   CORE_CHECK(!surface.points && surface.point_count == 0, "a surface after a failure");
 }
 
-/* Data that a failed call announced by its versions are not there for the next one; nor does it
- * spoil what the call before it left. */
+/* Data that a failed call announced by new versions do not exist for the next call, and a failed call does not spoil
+ * what the call before it left. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;
@@ -331,7 +330,7 @@ static void test_failed_calls(void** state)
     {
       if (kind == MCOR_PHASE_SEARCH_GRID && !(parts & 1))
       {
-        continue; /* not made anew */
+        continue; /* this part has not changed */
       }
       set_base(&call, REUSE_ARRAYS);
       CORE_CHECK(hash_of(context, &call, "before") == before, "before");
@@ -346,7 +345,7 @@ static void test_failed_calls(void** state)
       const uint64_t expected = fresh_hash(&call, "after");
       fail_call(context, &call, kind);
       CORE_CHECK(hash_of(context, &call, "after") == expected, "parts %d, failure %d", parts, kind);
-      if (kind != MCOR_PHASE_SEARCH_GRID) /* which is there now */
+      if (kind != MCOR_PHASE_SEARCH_GRID) /* the search grid exists now */
       {
         fail_call(context, &call, kind);
       }
@@ -358,7 +357,7 @@ static void test_failed_calls(void** state)
   end_call(&call);
 }
 
-/* Calls that use every buffer there is. */
+/* Makes calls that together use every buffer there is. */
 static void extract_all(mcor_context* context, reuse_call* call)
 {
   for (int kind = 0; kind < 16; ++kind)
@@ -376,7 +375,7 @@ static void extract_all(mcor_context* context, reuse_call* call)
   }
 }
 
-/* Nothing is held after a release but the tables, which do not grow with the input. */
+/* After a release only tables are held, whose size does not depend on the input. */
 static void test_release(void** state)
 {
   (void)state;
@@ -403,7 +402,7 @@ static void test_release(void** state)
   end_call(&call);
 }
 
-/* Globals are parameters, too. */
+/* Global values are parameters, too. */
 static void test_globals(void** state)
 {
   reuse_call call;

@@ -18,7 +18,8 @@
 #include <cstdlib>
 #include <string>
 
-/// TestImage ARGUMENTS OF VTK'S TESTS... speed|free
+/// Draws a surface of the speed or the free surface: TestImage ARGUMENTS OF VTK'S TESTS...
+/// speed|free
 int TestImage(int argc, char* argv[])
 {
   const bool isFreeSurface = std::string(argv[argc - 1]) == "free";

@@ -22,7 +22,7 @@
 
 namespace
 {
-/// A ball of its own for each filter.
+/// Returns a ball of particles, a separate one for each filter.
 vtkSmartPointer<vtkPolyData> MakeParticles()
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
@@ -41,7 +41,7 @@ vtkSmartPointer<vtkPolyData> MakeParticles()
   return particles;
 }
 
-/// All numbers of a surface.
+/// Returns all numbers of a surface as text.
 std::string Extract(bool isFree)
 {
   vtkNew<vtkMarchingCorrectors> filter;

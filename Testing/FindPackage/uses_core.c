@@ -1,6 +1,6 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-/* The free surface of one particle, with the installed core. */
+/* Extracts the free surface of one particle with the installed core. */
 #include <mcor.h>
 
 #include <stdio.h>

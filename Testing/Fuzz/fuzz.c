@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Numbers of bytes, contexts, and what is checked everywhere. */
+/* Makes numbers of bytes, keeps contexts, and has the checks that all targets share. */
 
 #include "fuzz.h"
 
@@ -35,7 +35,7 @@ unsigned fuzz_byte(fuzz_bytes* bytes)
   return *bytes->at++;
 }
 
-/* Mostly ordinary, now and then a number that no one should use. */
+/* Returns a factor: usually an ordinary one, now and then one that nobody should use. */
 double fuzz_scale(fuzz_bytes* bytes)
 {
   static const double scales[] = { 1e-30, 1e30, 1e-9, 1e9, 1e-300, 1e300, 1e-20, 1e20 };
@@ -50,7 +50,7 @@ double fuzz_positive(fuzz_bytes* bytes)
   return b < 248 ? 0.25 + 0.25 * (b % 8) : odd[b - 248];
 }
 
-/* A few values only, so that equal ones are frequent. */
+/* Returns one of a few values, so that equal values are frequent. */
 double fuzz_value(fuzz_bytes* bytes)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 0.1, 1e300 };
@@ -72,8 +72,8 @@ double* fuzz_array(fuzz_call* call, int slot, size_t count)
   return call->arrays[slot];
 }
 
-/* Contexts are kept, two for each device program: to make one takes longer than a call. `forgetful`:
- * one that keeps nothing from its last call. */
+/* Returns a context from a table of two for each device program, because creating one takes longer
+ * than a call. forgetful: the one that keeps nothing from its last call. */
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
   static mcor_context* contexts[2][2][3][2];
@@ -104,7 +104,7 @@ int fuzz_finite(const double* values, int64_t count)
   return 1;
 }
 
-/* A device error would mean that a kernel or a launch was wrong. */
+/* A device error would mean that a kernel or a launch is wrong. */
 void fuzz_check_failure(const mcor_context* context, mcor_status status)
 {
   const char* message = mcor_last_error(context);

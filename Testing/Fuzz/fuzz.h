@@ -16,10 +16,10 @@ typedef struct fuzz_bytes
   size_t left;
 } fuzz_bytes;
 
-/* The input under way, to be written to the file FUZZ_FOUND of the environment where a check fails:
- * OpenCL drivers take the signal by which the fuzzer would learn of it. */
+/* The input that is being tested. A failing check writes it to the file that FUZZ_FOUND in the environment names,
+ * because OpenCL drivers take the signal from which the fuzzer would learn of the failure. */
 extern fuzz_bytes fuzz_input;
-/* Writes it, and aborts. */
+/* Writes the input, and aborts. */
 void fuzz_fail(const char* condition, const char* where, int line);
 
 #define FUZZ_CHECK(condition)                                                                      \
@@ -31,7 +31,7 @@ void fuzz_fail(const char* condition, const char* where, int line);
     }                                                                                              \
   } while (0)
 
-/* The next byte, 0 at the end; and numbers made of it, odd ones among them. */
+/* fuzz_byte: the next byte, 0 at the end. The others make numbers of bytes, some of them odd. */
 unsigned fuzz_byte(fuzz_bytes* bytes);
 double fuzz_scale(fuzz_bytes* bytes);
 double fuzz_positive(fuzz_bytes* bytes);
@@ -40,7 +40,7 @@ double fuzz_side(fuzz_bytes* bytes);
 
 #define FUZZ_ARRAYS 8
 
-/* One call; every array is a heap block of exactly its size. */
+/* The parts of one call; every array is a heap block of exactly its size. */
 typedef struct fuzz_call
 {
   mcor_input input;
@@ -58,12 +58,12 @@ void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
-/* fuzz_modules.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
- * call. */
+/* In fuzz_modules.c. The first sets box, period, walls and cubes of the call; the second tests global values, ranks,
+ * probe and derivatives with it. */
 void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
 
-/* fuzz_plane.c. Where lines cross the free surface; and a call whose particles share a coordinate. */
+/* In fuzz_plane.c. The first tests gauges of the call; the second moves its particles into a plane. */
 void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);
 void fuzz_flatten(unsigned how, fuzz_bytes* bytes, fuzz_call* call);
 

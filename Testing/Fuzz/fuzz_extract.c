@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bytes -> calls of mcor_extract -> properties that hold for every call: no crash, a status in
- * range, a sentence with every failure and an empty surface then; otherwise valid indices, finite
- * numbers, no triangle that names a point twice, and the same bits from a context that keeps what it
- * can from call to call as from one that keeps nothing. */
+/* Makes a call of mcor_extract from bytes, and checks what holds for every call: it does not crash;
+ * its status is in range; a failure has a sentence and an empty surface; otherwise indices are
+ * valid, numbers are finite, and no triangle names a point twice; and a context that keeps what it
+ * can gives the same bits as one that keeps nothing. */
 
 #include "fuzz.h"
 
@@ -64,7 +64,7 @@ static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
   in->solid = kind & 0x80 ? solid : NULL;
 }
 
-/* Which of the arrays play which part. */
+/* Chooses which array plays which part. */
 static void fuzz_parts(unsigned rules, fuzz_call* call)
 {
   const mcor_array none = { 0 };
@@ -89,7 +89,7 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   mcor_options* o = &call->options;
   const unsigned what = fuzz_byte(bytes), modes = fuzz_byte(bytes);
   mcor_set_default_options(o);
-  /* Few combinations, as each is a device program of its own. */
+  /* There are few combinations, because each needs its own device program. */
   o->sph_kernel = (mcor_sph_kernel)(modes % 16 == 15 ? MCOR_SPH_KERNEL_COUNT
       : modes % 16 > 11                              ? MCOR_M_PRIME_4
                                                      : 0);
@@ -199,7 +199,7 @@ static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mc
   return status;
 }
 
-/* Other positions, of the same range. */
+/* Moves all particles; their range stays. */
 static void fuzz_move(fuzz_call* call)
 {
   const size_t n = (size_t)call->input.count;
@@ -227,7 +227,7 @@ static void fuzz_other_scalar(fuzz_call* call)
   ++call->input.scalar_version;
 }
 
-/* Changes a call in one thing. A version goes with the arrays' content. */
+/* Changes one thing in a call. Where an array's content changes, its version does, too. */
 static void fuzz_change(unsigned what, fuzz_call* call)
 {
   mcor_input* in = &call->input;
@@ -308,7 +308,8 @@ static void fuzz_change(unsigned what, fuzz_call* call)
   }
 }
 
-/* The call on the context that keeps what it can, against one that keeps nothing. */
+/* Compares the call on the context that keeps what it can with one on the context that keeps
+ * nothing. */
 static void fuzz_compare(const fuzz_call* call)
 {
   fuzz_call alone = *call;
@@ -322,20 +323,20 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Announces the call's versions by one that fails. */
+/* Makes a call with these versions fail. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;
   mcor_surface surface;
   failing.options.iteration_limit = 0;
   const mcor_status status = fuzz_extract(fuzz_context(call, 0), &failing, &surface);
-  /* Particles in no plane, or with their walls in another, are noticed before. */
+  /* Particles that lie in no plane, or whose walls lie in another, are refused earlier. */
   FUZZ_CHECK(status == MCOR_INVALID_ARGUMENT ||
     (status == MCOR_INVALID_DATA && failing.options.dimension != 3));
   mcor_free_surface(&surface);
 }
 
-/* The call, one that differs in one thing, and the call again. */
+/* Makes the call, one that differs in one thing, and the call again. */
 static void fuzz_calls(fuzz_call* call, unsigned change, size_t size)
 {
   static uint64_t version = 0;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Runs the fuzz target without a fuzzer: on the files named, then on `--random N` made-up inputs,
- * the same ones on every machine. */
+/* Runs the fuzz target without a fuzzer: on the named files, then on the `--random N` random
+ * inputs, which are the same on every machine. */
 
 #include <stdint.h>
 #include <stdio.h>
@@ -24,7 +24,7 @@ static int fuzz_run_file(const char* name)
   }
   const size_t size = fread(buffer, 1, sizeof buffer, file);
   fclose(file);
-  uint8_t* data = malloc(size + (size == 0)); /* exactly as large as it is */
+  uint8_t* data = malloc(size + (size == 0)); /* the block is exactly as large as the input */
   if (!data)
   {
     return 0;

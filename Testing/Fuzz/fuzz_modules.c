@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The modules beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives. */
+/* Tests the modules beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives. */
 
 #include "fuzz.h"
 
@@ -35,14 +35,14 @@ void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
     double* h = call->arrays[1];
     for (int64_t i = 0; i < call->input.count; ++i)
     {
-      h[i] = h[i] > 100 ? 100 : h[i]; /* small cubes all over a huge reach take long, as they may */
+      h[i] = h[i] > 100 ? 100 : h[i]; /* small cubes everywhere in a huge reach would take too long */
     }
     o->outputs |= b > 250 ? MCOR_OUT_POINT_KEYS : 0;
     o->outputs |= b > 251 ? MCOR_OUT_TRIANGLE_KEYS : 0;
   }
 }
 
-/* Two ways to one surface, or to one failure. */
+/* Checks that both options give the same surface, or the same failure. */
 static void fuzz_check_alike(
   const fuzz_call* call, const mcor_options* options, const mcor_options* others)
 {
@@ -55,7 +55,7 @@ static void fuzz_check_alike(
   mcor_free_surface(&surfaces[1]);
 }
 
-/* A run with globals measured of its own input is a run without. */
+/* A run with global values measured from its own input is the same as a run without. */
 static void fuzz_globals(const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -74,14 +74,14 @@ static void fuzz_globals(const fuzz_call* call)
   mcor_free_globals(&globals);
 }
 
-/* The cells' centres on either side of a plane: their surfaces make the whole. */
+/* The surfaces of the cells whose centres lie on either side of a plane make the whole. */
 static void fuzz_halves(const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
   mcor_options options = call->options;
   int64_t triangles[3] = { 0 }, cells[3] = { 0 };
-  options.seeds = MCOR_COMPLETE; /* pairs do not go with boxes */
-  options.capping = options.capping && options.field == MCOR_SHEPARD; /* empty space is not above */
+  options.seeds = MCOR_COMPLETE; /* boxes refuse pairs */
+  options.capping = options.capping && options.field == MCOR_SHEPARD; /* of a mean, empty space is never above */
   for (int part = 0; part < 3; ++part)
   {
     mcor_surface surface;
@@ -92,7 +92,7 @@ static void fuzz_halves(const fuzz_call* call)
     options.box[part == 1] = part == 0 ? 0 : call->iso[0];
     if (mcor_extract(context, &call->input, &options, &surface) != MCOR_OK)
     {
-      return; /* one may need more memory than another */
+      return; /* one of the calls may need more memory than the other */
     }
     triangles[part] = surface.triangle_count;
     cells[part] = surface.statistics.cells_used;
@@ -102,7 +102,7 @@ static void fuzz_halves(const fuzz_call* call)
   FUZZ_CHECK(triangles[1] + triangles[2] == triangles[0]);
 }
 
-/* A rank alone; one of its callbacks fails. */
+/* A single rank, one of whose callbacks fails. */
 typedef struct fuzz_rank
 {
   int calls, failing;
@@ -110,7 +110,7 @@ typedef struct fuzz_rank
 
 static int fuzz_exchange(fuzz_rank* rank)
 {
-  FUZZ_CHECK(rank->calls <= rank->failing); /* none after the one that failed */
+  FUZZ_CHECK(rank->calls <= rank->failing); /* none comes after the one that failed */
   return rank->calls++ == rank->failing;
 }
 
@@ -135,8 +135,7 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
-/* A rank alone measures and extracts what no rank does; without particles it can measure
- * nothing. */
+/* A single rank measures and extracts what a run without ranks does. Without particles it can measure nothing. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -188,7 +187,7 @@ static void fuzz_check_samples(const fuzz_call* call, const mcor_samples* s)
   }
 }
 
-/* The field at points of which some are particles', some odd; the same bits of one by itself. */
+/* Probes points, some at particles, some odd; a point by itself has the same bits. */
 static void fuzz_probe(fuzz_bytes* bytes, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);

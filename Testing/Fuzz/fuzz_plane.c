@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges, and particles of two dimensions. */
+/* Tests gauges, and particles of two dimensions. */
 
 #include "fuzz.h"
 

@@ -25,7 +25,7 @@ namespace
 struct Particle
 {
   vtkIdType Index;
-  double At[3]; // of the bounds, 0 to 1
+  double At[3]; // the particle's place within the bounds, 0 to 1
 };
 
 struct Part
@@ -34,7 +34,7 @@ struct Part
   std::function<int(const Particle&, int count)> RankOf;
 };
 
-/// Returns the same number everywhere, one like a random number.
+/// Returns a number that looks random but is the same on every machine.
 std::uint32_t Shuffle(vtkIdType index)
 {
   auto bits = static_cast<std::uint32_t>(index) * 2654435761u;
@@ -42,7 +42,7 @@ std::uint32_t Shuffle(vtkIdType index)
   return bits * 2246822519u >> 8;
 }
 
-/// Points that are nowhere are in the first one.
+/// Returns the slab of a place; NaN counts as the first slab.
 int Slab(double at, int count)
 {
   return std::isfinite(at) ? std::min(static_cast<int>(at * count), count - 1) : 0;
@@ -63,7 +63,7 @@ const Part Parts[PartCount] = {
     [](const Particle& p, int count) { return Slab(p.At[0], count); } },
 };
 
-constexpr int Duplicates = 5; // the part whose ranks have others' particles as well
+constexpr int Duplicates = 5; // in this part several ranks have the same particles
 
 }
 
@@ -118,7 +118,7 @@ vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank
 namespace
 {
 
-/// Tuples of the same type and size, bit for bit the same.
+/// Returns whether both tuples have the same type, size and bits.
 bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
 {
   const auto size = static_cast<std::size_t>(a->GetNumberOfComponents()) *
@@ -129,7 +129,7 @@ bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
       static_cast<char*>(b->GetVoidPointer(0)) + static_cast<std::size_t>(j) * size, size) == 0;
 }
 
-/// Each triangle and line is the one that has its number in the whole surface.
+/// Compares each triangle and line with the cell that has its number in the whole surface.
 std::string CompareCells(vtkPolyData* part, vtkPolyData* whole, std::vector<int>& seen)
 {
   vtkDataArray* cells = part->GetCellData()->GetArray("GlobalCellIds");

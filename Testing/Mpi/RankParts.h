@@ -21,10 +21,10 @@ constexpr int PartCount = 6;
 
 const char* PartName(int part);
 
-/// The particles that a .vtp file holds.
+/// Reads the particles of a .vtp file.
 vtkSmartPointer<vtkPolyData> ReadParticles(const std::string& file);
 
-/// A rank's share of the particles.
+/// Returns a rank's share of the particles.
 vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank, int count);
 
 /// Compares the points of a part, except those that `given` marks as another rank's, with those of the

@@ -38,8 +38,8 @@ struct Case
 {
   const char* Name;
   const char* File;
-  bool IsPlane; // the points lie in a plane; else in space
-  int Constant; // the axis across which the particles are moved into a plane; -1: none
+  bool IsPlane; // the points lie in a plane
+  int Constant; // the particles are moved into a plane across this axis; -1: they are not
   Run Do;
 };
 
@@ -152,7 +152,7 @@ void AddIndex(vtkPolyData* data)
   data->GetPointData()->AddArray(index);
 }
 
-/// constant: as of a case.
+/// Reads particles, and moves them into a plane as Case::Constant says.
 Data Read(const std::string& file, int constant)
 {
   Data data = ReadParticles(file);
@@ -198,7 +198,7 @@ Data MakePoints(vtkPolyData* particles, const Case& tried)
   return data;
 }
 
-/// Something other than zeros.
+/// Returns whether a result has anything but zeros.
 bool SaysSomething(vtkPolyData* whole)
 {
   vtkDataArray* valid = whole->GetPointData()->GetArray("vtkValidPointMask");
@@ -211,7 +211,7 @@ bool SaysSomething(vtkPolyData* whole)
   return others > 50;
 }
 
-/// Returns how many ranks have something else for this partition.
+/// Compares this partition's result with the whole. Returns on how many ranks they differ.
 int CheckPart(const Case& tried, int part, vtkPolyData* particles, vtkPolyData* points,
   vtkPolyData* whole, vtkMPIController* controller)
 {
@@ -261,7 +261,7 @@ int Check(int number, bool some, const std::string& folder, vtkMPIController* co
   return failures;
 }
 
-/// A probe without points on the last rank fails on all: no rank waits for it.
+/// A probe without points on the last rank fails on all ranks, and no rank waits for it.
 int CheckWithoutPoints(vtkMPIController* controller)
 {
   vtkNew<vtkPolyData> nothing;

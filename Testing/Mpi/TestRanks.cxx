@@ -62,7 +62,7 @@ const Setting Speed = Contour("Speed", 2.0), Free = ON(FreeSurface), Fine = SET(
               Coarse = SET(CubeSizeFactor(1.0));
 const Setting Fluid = SET(FluidArrayName("ParticleType"));
 
-/// Velocities of fluid whose smoothing lengths differ.
+/// Contours velocities of fluid whose smoothing lengths differ.
 void ContourVaried(vtkMarchingCorrectors* filter)
 {
   Contour("Velocity", 1.0)(filter);
@@ -72,7 +72,7 @@ void ContourVaried(vtkMarchingCorrectors* filter)
   filter->SetCubeSizeModeToAdaptive();
 }
 
-/// Isolines of particles whose areas, and smoothing lengths, are larger on one side.
+/// Makes isolines of particles whose areas and smoothing lengths are larger on one side.
 void ContourInPlane(vtkMarchingCorrectors* filter)
 {
   Speed(filter);
@@ -169,7 +169,7 @@ vtkSmartPointer<vtkPolyData> MakeTwoSizes()
   return particles;
 }
 
-/// With a period that matters only where it is asked for.
+/// Reads particles, and adds a period that matters only where it is used.
 vtkSmartPointer<vtkPolyData> Read(const std::string& file)
 {
   vtkSmartPointer<vtkPolyData> particles = ReadParticles(file);
@@ -183,7 +183,7 @@ vtkSmartPointer<vtkPolyData> Read(const std::string& file)
   return particles;
 }
 
-/// A rank's share where the last one has a triangle of a mesh, and no vertices.
+/// Returns a rank's share; the last rank has a triangle of a mesh, and no vertices.
 vtkSmartPointer<vtkPolyData> TakeBesideMesh(vtkPolyData* particles, int part, int rank, int count)
 {
   const vtkSmartPointer<vtkPolyData> own = TakePart(particles, part, rank % (count - 1), count - 1);
@@ -216,7 +216,7 @@ void MoveIntoPlane(vtkPolyData* particles)
   particles->GetPointData()->AddArray(areas);
 }
 
-/// Statistics that are of the surface, whoever made what of it.
+/// Names of the statistics that describe the surface, and so do not depend on how ranks shared the work.
 const char* const OfSurface[] = { "Area", "Volume", "Length", "CellsUsed",
   "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
   "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices",
@@ -253,7 +253,8 @@ Extracted Extract(
   return extracted;
 }
 
-/// Whether all ranks say what rank 0 said alone, up to the rounding of sums; area, volume and length to the last bit.
+/// Returns whether all ranks have rank 0's statistics: area, volume and length to the last bit, others to the rounding
+/// of sums.
 bool SayTheSame(vtkMultiProcessController* controller, const Extracted& own, Extracted whole)
 {
   const int count = static_cast<int>(whole.Said.size());

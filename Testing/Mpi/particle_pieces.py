@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles in pieces, and surfaces that come in pieces."""
+"""Writes particles in pieces, and compares surfaces that come in pieces."""
 import os
 
 import numpy as np
@@ -18,7 +18,7 @@ def read(file):
 
 
 def corners(surface):
-    """Triangles as rows of points."""
+    """Returns the triangles as rows of points."""
     return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
@@ -63,7 +63,7 @@ def xml_array(array):
 
 
 def write_pieces(source, folder, count):
-    """The particles of a file in files of their own, in no order; returns the .pvtp file."""
+    """Writes the particles of a file, shuffled, into `count` files. Returns the .pvtp file."""
     whole = read(source)
     owner = np.random.default_rng(7).integers(0, count, whole.GetNumberOfPoints())
     for piece in range(count):
@@ -79,7 +79,7 @@ def write_pieces(source, folder, count):
 
 
 def difference(union, alone):
-    """What is not the same, bit for bit, in the union of the pieces and the surface of one process; or ''."""
+    """Returns what differs, bit for bit, between the union of the pieces and the surface of one process, or ''."""
     numbers = vtk_to_numpy(union.GetPointData().GetArray("GlobalPointIds"))
     if not np.array_equal(np.unique(numbers), np.arange(alone.GetNumberOfPoints())):
         return "the numbers of the points"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Catalyst script beside the stand-in simulation: what several processes write is what one writes.
+"""Runs the Catalyst script beside the stand-in simulation: several processes must write what one process writes.
 
     test_catalyst.py MPIRUN EXAMPLES RANKS      (PYTHONPATH: as the simulation needs it)
 """

@@ -37,14 +37,14 @@ def extract(particles, name):
 
 
 def probe(particles):
-    """The field at the particles' own places, and the velocity's derivatives there."""
+    """Probes the field and derives the velocity at the particles' own places."""
     derived = SPHDerivatives(Input=particles, Array=["POINTS", "Speed"])  # noqa: F821
     found = SPHProbe(Points=derived, Particles=derived)  # noqa: F821
     found.UpdatePipeline()
     return found
 
 
-# Binary: small appended data fail with VTK 9.1 and a recent expat.
+# Files are binary, because small appended data cannot be read with VTK 9.1 and a recent expat.
 def write_alone(folder):
     write_pieces(PARTICLES, folder, 5)
     particles = XMLPolyDataReader(FileName=[PARTICLES])
@@ -54,7 +54,7 @@ def write_alone(folder):
 
 
 def in_order(data):
-    """Arrays by name, the points sorted by their coordinates: pieces have them in another order."""
+    """Returns arrays by name, sorted by the points' coordinates, because pieces have points in another order."""
     points = vtk_to_numpy(data.GetPoints().GetData())
     order = np.lexsort(points.T)
     return {array.GetName(): vtk_to_numpy(array)[order] for array in [data.GetPoints().GetData(), *arrays_of(data)]}
@@ -82,7 +82,7 @@ def check_ranks(folder, ranks):
         assert alone.GetNumberOfPolys() > 1000, name
         problem = difference(union, alone)
         assert not problem, (name, problem)
-        # A color for each process, and points on the seams in two.
+        # Each process has a color, and points on seams appear in two pieces.
         owners = np.unique(vtk_to_numpy(union.GetPointData().GetArray(NUMBER)))
         assert list(owners) == list(range(ranks)), owners
         shared = union.GetNumberOfPoints() - alone.GetNumberOfPoints()

@@ -33,7 +33,7 @@ from says import says  # noqa: E402
 
 PROGRAM, MPIRUN, DATA, RANKS, PRELOAD = sys.argv[1:6]
 PARTICLES = os.path.join(DATA, "double_dam_break_small.vtp")
-BOUND = 240  # seconds in which a job ends, whatever happens
+BOUND = 240  # No job may take longer than this many seconds.
 
 
 class Program(unittest.TestCase):
@@ -56,7 +56,7 @@ class Program(unittest.TestCase):
         return done
 
     def sentences(self, done):
-        """Without that about a driver's first compilation, which any run may cause."""
+        """Returns the program's lines, except the one about a driver's first compilation, which any run may print."""
         return [line for line in done.stderr.splitlines()
                 if line.startswith("marching-correctors:") and "for the first time" not in line]
 
@@ -74,8 +74,7 @@ class Program(unittest.TestCase):
                                           array.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
-        """What processes make of pieces of the particles, written as one file, is what one process makes: points, triangles,
-        and what the points carry."""
+        """Checks that processes with pieces of the particles write, to one file, what one process writes: points, triangles and arrays."""
         done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
@@ -93,14 +92,14 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
     def test_by_neighbours(self):
-        """Smoothing lengths and densities, which are sums over neighbours wherever these are."""
+        """Smoothing lengths and densities are sums over neighbours, on whichever process these are."""
         particles = read(PARTICLES)
         particles.GetPointData().RemoveArray("Density")
         write(particles, self.path("in.vtp"))
         pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
         for how in (["--free-surface"], ["--scalar", "Density", "--iso", "600"], ["--free-surface", "--periodic", "0,0,5"],
                     ["--free-surface", "--quiet"]):
-            if how[-1] == "--quiet":  # with one particle far away, which is left out
+            if how[-1] == "--quiet":  # One particle is so far away that it is left out.
                 particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
                 write(particles, self.path("in.vtp"))
                 pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
@@ -108,7 +107,7 @@ class Program(unittest.TestCase):
             self.assertEqual([len(re.findall(says("PARTICLE_FAR"), run.stderr)) for run in done], [how[-1] == "--quiet"] * 2)
 
     def test_pieces_of_meshes(self):
-        """A piece of polygons among pieces of vertices has no particles, whichever process reads it."""
+        """Among pieces with vertices, a piece of polygons has no particles, whichever process reads it."""
         water = read(PARTICLES)
         vertices, polygon = vtkCellArray(), vtkCellArray()
         for i in range(water.GetNumberOfPoints()):
@@ -127,7 +126,7 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stderr.count("3 of 3 points of"), 1, done.stderr)
 
     def write_plane(self):
-        """The particles, moved into the plane z = 0.5; with smoothing lengths of 1 to 4."""
+        """Writes the particles moved into the plane z = 0.5, with smoothing lengths of 1 to 4."""
         plane = read(PARTICLES)
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = 0.5
@@ -148,8 +147,8 @@ class Program(unittest.TestCase):
                                            "trim_vertices", "lattice_cells", "points")]
 
     def check_same(self, name, particles, pieces, *how, numbers=False):
-        """The file that processes make of as many pieces of the particles (0: of their file) is, byte for byte, that of
-        one process; numbers: of lines, too."""
+        """Checks that processes with `pieces` pieces (0: with the whole file) write byte for byte the file of one process. numbers: compares the
+        statistics, too."""
         source = write_pieces(particles, self.folder.name, pieces) if pieces else particles
         stats = [["--quiet", "--stats", self.path(file)] if numbers else [] for file in ("a.json", "s.json")]
         alone = self.good(self.run_alone(particles, self.path("alone_" + name), *how, *stats[0]))
@@ -160,7 +159,7 @@ class Program(unittest.TestCase):
         return alone, done
 
     def test_in_a_plane(self):
-        """Lines on squares of one size and of several, what is filled between them, along sides of boxes and periods."""
+        """Compares lines on squares of one size and of several, filled regions, and caps along sides of boxes and periods."""
         plane = self.write_plane()
         size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
         speed = ["--scalar", "Speed", "--iso", "1,2"]
@@ -207,8 +206,8 @@ class Program(unittest.TestCase):
             self.assertIn(",wet,", stream.read())
 
     def test_same_file(self):
-        """Trimmed, two iso values, a period in a box: the order of points and triangles, too. Walls in files of their own,
-        which the first process reads: here some of the fluid's places."""
+        """Compares trimmed surfaces, two iso values, and a period in a box, including the order of points and triangles. The first process reads the
+        walls' files, which hold some of the fluid's places here."""
         write_pieces(PARTICLES, self.folder.name, 4)
         walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
         trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]
@@ -221,7 +220,7 @@ class Program(unittest.TestCase):
             self.assertGreater(os.path.getsize(self.path("out.ply")), 50000)
 
     def test_tables_and_images(self):
-        """Gauges and fluxes, an image of levels, projections, also of lengths and volumes that are found from all particles."""
+        """Compares gauges, fluxes, an image of levels and projections, also with lengths and volumes that are found from all particles."""
         bare = read(PARTICLES)
         bare.GetPointData().RemoveArray("Density")
         write(bare, self.path("bare.vtp"))
@@ -250,7 +249,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "no/o.csv")
 
     def test_types_of_pieces(self):
-        """An array that is int8 in one piece and float64 in the others comes out alike, whoever reads that piece."""
+        """An array that is int8 in one piece and float64 in the others has the same values, whichever process reads the int8 piece."""
         whole = read(PARTICLES)
         steps = numpy_to_vtk(np.floor(vtk_to_numpy(whole.GetPointData().GetArray("Speed"))), deep=True)
         steps.SetName("Steps")
@@ -277,7 +276,7 @@ class Program(unittest.TestCase):
                 self.assertEqual(kind and kind.GetDataTypeAsString(), "double")
 
     def test_warnings(self):
-        """What the core finds strange is said once, as by one process."""
+        """A warning of the core appears once, as with one process."""
         tilted = read(PARTICLES)
         at = vtk_to_numpy(tilted.GetPoints().GetData())
         at[:, 2] = 0.75 * at[:, 0]
@@ -291,7 +290,8 @@ class Program(unittest.TestCase):
             self.assertEqual(said[0], said[1])
 
     def test_particle_distance(self):
-        """The dimension is that of all: these pieces lie in a plane, each in another one; then, all but ignored walls in one."""
+        """The dimension is that of all particles: first each piece lies in a plane, but not in the same; then all lie in one, apart from ignored
+        walls."""
         plane = read(self.write_plane())
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)
@@ -311,7 +311,7 @@ class Program(unittest.TestCase):
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_period_of_data(self):
-        """The field data of one piece tell of the period, those of two tell of different ones."""
+        """The period comes from the field data, which one piece may lack. Different periods in two pieces are refused."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
@@ -333,7 +333,7 @@ class Program(unittest.TestCase):
         write(part, self.path(piece))
 
     def test_empty(self):
-        """A surface without points has the arrays that one process gives it, in one file and in pieces."""
+        """A surface without points has the arrays that one process writes, in one file and in pieces."""
         def forms(file):
             surface = read(self.path(file))
             self.assertEqual(surface.GetNumberOfPoints(), 0)
@@ -353,7 +353,7 @@ class Program(unittest.TestCase):
                 self.assertEqual(forms(part), alone)
 
     def test_pieces(self):
-        """Pieces in, pieces out: more of them than processes."""
+        """Pieces are read and written; there are more of them than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
         self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface"))
         self.good(self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface"))
@@ -364,7 +364,7 @@ class Program(unittest.TestCase):
         self.assertEqual(ranks.GetCellData().GetGlobalIds().GetName(), "GlobalCellIds")
 
     def test_probe(self):
-        """Points of one file, particles in pieces: the arrays are, to the last byte, those of one process."""
+        """Points come from one file, particles from pieces; the arrays are, to the last byte, those of one process."""
         image = vtkImageData()
         low, high = np.reshape(read(PARTICLES).GetBounds(), (3, 2)).T
         image.SetOrigin(*low)
@@ -384,12 +384,12 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_factors(self):
-        """--widening: the file of the first process has all particles in the order of the pieces, with the arrays that one process
-        finds; one of them is so far away that it is left out."""
+        """--widening: the first process writes all particles in the order of the pieces, with the arrays that one process finds. One particle is so
+        far away that it is left out."""
         particles = read(PARTICLES)
         particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
         for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3", "--no-attributes"]):
-            for name in ("Mass", "Density", "Volume") if how else ():  # volumes are computed
+            for name in ("Mass", "Density", "Volume") if how else ():  # Without these, volumes are computed.
                 particles.GetPointData().RemoveArray(name)
             write(particles, self.path("in.vtp"))
             pieces = write_pieces(self.path("in.vtp"), self.folder.name, 5)
@@ -407,12 +407,12 @@ class Program(unittest.TestCase):
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
 
     def test_widened(self):
-        """Particles are copied to all processes that their widened lengths reach."""
+        """Processes exchange the particles that their widened lengths reach."""
         self.check_surfaces(PARTICLES, write_pieces(PARTICLES, self.folder.name, 3),
                             "--scalar", "Speed", "--iso", "1.2", "--widen", "2")
 
     def test_names_of_factors(self):
-        """Arrays of the particles with the names of those that widening finds are contoured and interpolated as others are."""
+        """Arrays of the particles may have the names of arrays that widening makes; they are contoured and interpolated as usual."""
         particles = read(PARTICLES)
         for name in "Widening", "WideningVolume":
             array = numpy_to_vtk(vtk_to_numpy(particles.GetPoints().GetData())[:, 0], deep=True)
@@ -427,7 +427,7 @@ class Program(unittest.TestCase):
         self.assertEqual(*([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())] for data in (alone, ranks)))
 
     def test_factors_in_box(self):
-        """With a box, any number of particles may be far away from it."""
+        """With a box, any number of particles may lie far away from it."""
         particles = read(PARTICLES)
         box = "--box=" + ",".join(map(str, particles.GetBounds()))
         for i in range(0, particles.GetNumberOfPoints(), 20):
@@ -436,7 +436,7 @@ class Program(unittest.TestCase):
         self.check_surfaces(self.path("in.vtp"), self.path("in.vtp"), "--free-surface", "--smooth", box)
 
     def write_series(self):
-        """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
+        """Writes three steps with ids and velocities: the first in pieces, the second in one file, the third damaged."""
         particles = read(PARTICLES)
         count = particles.GetNumberOfPoints()
         ids = numpy_to_vtk(np.arange(count, dtype=np.int32), deep=True)
@@ -463,8 +463,8 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """A film with its tables, at stored times and between them, is that of one process, byte for byte; so are gauges. A step
-        that fails is named once, and the others are made."""
+        """A film with its tables, at stored times and between, is byte for byte that of one process, and so are gauges. A step that fails is named
+        once, and the others are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")
@@ -491,7 +491,7 @@ class Program(unittest.TestCase):
         self.check_fails(picture, "--screenshot")
 
     def test_components(self):
-        """The table of pieces, and the surface with their numbers, are those of one process, byte for byte."""
+        """The table of pieces, and the surface with their numbers, are byte for byte those of one process."""
         walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping"]
         for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
                                (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),
@@ -519,7 +519,7 @@ class Program(unittest.TestCase):
         return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
     def test_derive(self):
-        """A surface of what is derived from another array."""
+        """Compares a surface of an array that is derived from another one."""
         how = ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "20", "--no-attributes"]
         self.check_surfaces(PARTICLES, write_pieces(PARTICLES, self.folder.name, 2), *how)
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--derive", "Nope", "--free-surface"), "Nope")
@@ -533,7 +533,7 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("out.pvtp")))
 
     def run_failing(self, *arguments):
-        """The second process cannot write, as on a disk that is full."""
+        """Runs the program so that the second process cannot write, as on a full disk."""
         script = ('test "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" != 1 || export LD_PRELOAD="$0" MCOR_FAILING_CALL=fsync; '
                   'exec "$@"')
         return subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", script, PRELOAD, PROGRAM, *arguments],
@@ -541,7 +541,7 @@ class Program(unittest.TestCase):
                               capture_output=True, text=True, timeout=BOUND, check=False)
 
     def test_full_disk(self):
-        """Where one process cannot write its piece, all files are as they were, and nothing is left behind."""
+        """If one process cannot write its piece, all files stay as they were, and nothing is left behind."""
         how = [PARTICLES, self.path("out.pvtp"), "--free-surface", "--stats", self.path("s.json")]
         names = ["out.pvtp", "s.json", *(f"out_{i}.vtp" for i in range(int(RANKS)))]
         self.good(self.run_ranks(*how))
@@ -560,7 +560,7 @@ class Program(unittest.TestCase):
                     self.assertEqual(stream.read(), "old", name)
 
     def test_files_of_others(self):
-        """No process writes over a piece that is read, nor over one of the surface."""
+        """No process overwrites a piece that is read, nor one of the surface."""
         pieces = write_pieces(PARTICLES, self.folder.name, 2)
         before = {name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}
         self.assertIn("piece_1.vtp", before)
@@ -582,19 +582,19 @@ class Program(unittest.TestCase):
             self.assertEqual({name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}, before)
 
     def test_usage(self):
-        """A mistake on the command line is told once, also where the first process is the last to see it."""
+        """A mistake on the command line is told once, even if the first process is the last to see it."""
         late = "if [ ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 0 ]; then sleep 1; fi; exec \"$@\""
         done = subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", late, "-", PROGRAM, PARTICLES, self.path("o.vtp"), "--nope"],
                               capture_output=True, text=True, timeout=BOUND, check=False)
         self.check_fails(done, "--nope")
 
     def test_slice(self):
-        """Fitted to the particles of all processes."""
+        """A slice without given bounds is fitted to the particles of all processes."""
         self.check_same("slice.vti", PARTICLES, 3, "--slice", "y=0.1", "--resolution", "100")
         self.assertGreater(np.count_nonzero(self.image_arrays(self.path("slice.vti"))["vtkValidPointMask"]), 100)
 
     def test_first_without_particles(self):
-        """What is said of all particles, and which array is active, does not depend on who has them."""
+        """What is told about the particles, and which array is active, do not depend on which process has them."""
         particles = read(PARTICLES)
         kinds = numpy_to_vtk((np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32), deep=1)
         kinds.SetName("Type")
@@ -613,7 +613,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--scalar", "Nope", "--iso", "1"), "Nope")
 
     def test_bad_value(self):
-        """A particle of one piece that is not a number."""
+        """A NaN in one piece fails on all processes, with one sentence."""
         pieces = write_pieces(PARTICLES, self.folder.name, 2)
         part = read(self.path("piece_1.vtp"))
         part.GetPoints().SetPoint(5, float("nan"), 0, 0)
@@ -621,7 +621,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(pieces, self.path("o.vtp"), "--free-surface"), "Rank 1", "particle 5")
 
     def test_killed(self):
-        """A process that is killed ends the job."""
+        """If a process is killed, the job ends."""
         job = subprocess.Popen([MPIRUN, "-n", RANKS, PROGRAM, os.path.join(DATA, "dam_break_45k.vtp"),
                                 self.path("o.vtp"), "--free-surface", "--cube-factor", "0.2"],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)

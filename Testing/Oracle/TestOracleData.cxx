@@ -101,7 +101,7 @@ const DataCase LargeCases[] = {
   { "dam_break_467k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 0, 0, 0, false },
 };
 
-// Float and double arrays are handed over as they are.
+// Lends a VTK array to the core; float and double are used as they are.
 mcor_array BorrowArray(vtkDataArray* array)
 {
   mcor_array result;
@@ -112,7 +112,7 @@ mcor_array BorrowArray(vtkDataArray* array)
   return result;
 }
 
-// Fills the array with the name if the file has it; false if not.
+// Lends the array with this name to the core; returns false if the file lacks it.
 bool FindArray(vtkPolyData* particles, const char* name, mcor_array& array)
 {
   vtkDataArray* found = particles->GetPointData()->GetArray(name);

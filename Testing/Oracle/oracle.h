@@ -44,38 +44,38 @@ extern "C"
     ORACLE_WEIGHT
   } oracle_kind;
 
-  /* Where W is 0, in smoothing lengths; for M'4 along each axis. */
+  /* Returns the support radius in smoothing lengths; for M'4 it holds along each axis. */
   double oracle_support(oracle_kernel kernel);
 
-  /* W(offset, h); gradient with respect to offset if gradient is not NULL. */
+  /* Returns W(offset, h); its gradient with respect to the offset if gradient is not NULL. */
   double oracle_kernel_value(
     oracle_kernel kernel, double h, const double offset[3], double gradient[3]);
 
-  /* The integral of x^2 W over that of W, in h^2, in 2 or 3 dimensions. */
+  /* Returns the integral of x^2 W over that of W, in h^2, in 2 or 3 dimensions. */
   double oracle_kernel_variance(oracle_kernel kernel, int dimensions);
 
-  /* Zeroed; ends the program if memory runs out. */
+  /* Returns zeroed memory; ends the program if there is none. */
   void* oracle_allocate(int64_t count, size_t size);
-  /* The array, with room for one more than `count`. */
+  /* Returns the array with room for one element more than `count`. */
   void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size);
 
-  /* Particles of all tests. All arrays are owned by the struct; particle_set_free frees them. */
+  /* The particles of all tests. The struct owns its arrays; particle_set_free frees them. */
   typedef struct particle_set
   {
     int64_t count, capacity;
     double* position;         /* [count][3] */
     double* smoothing_length; /* [count], unscaled */
     double* volume;           /* [count] */
-    double* scalar;           /* [count]; the oracle's, all 0 for ORACLE_WEIGHT */
+    double* scalar;           /* [count]: what the oracle contours; not used for ORACLE_WEIGHT */
     uint8_t* solid;           /* [count], nonzero: wall */
     int has_solids;           /* 0: the core is given no array of solids */
-    int ignore_solids;        /* by the oracle */
+    int ignore_solids;        /* whether the oracle ignores solids */
   } particle_set;
 
-  /* All zero, arrays of exactly `count` elements. */
+  /* Returns arrays of exactly `count` elements, all 0. */
   particle_set particle_set_make(int64_t count);
   void particle_set_free(particle_set* set);
-  /* One more particle; the arrays grow where they lack room. */
+  /* Adds a particle; the arrays grow where they lack room. */
   void particle_set_add(
     particle_set* set, const double x[3], double h, double volume, double scalar);
   /* Adds particle i of `from`, which may be the set itself. */
@@ -92,51 +92,50 @@ extern "C"
     oracle_kernel kernel;
     oracle_kind kind;
     double h_scale;
-    double center; /* of scalar values, for oracle_sample.gradient_scale; Shepard only */
+    double center; /* a value of the scalar relative to which oracle_sample.gradient_scale is taken; Shepard only */
     oracle_tree* tree;
   } oracle_field;
 
-  /* scale: of all smoothing lengths. The set is borrowed. */
+  /* scale: the factor of all smoothing lengths. The set is borrowed. */
   oracle_field oracle_make_field(
     const particle_set* particles, oracle_kernel kernel, oracle_kind kind, double scale);
   void oracle_free_field(oracle_field* field);
 
-  /* Fills particles->volume: mass / density; with mass alone m_j / (sum_k m_k W(x_j - x_k, h_j) F_j); with neither
-   * 1 / (sum_k W(x_j - x_k, h_j) F_j), W that of three dimensions. F_j = 1 for solids, else
-   * 1 + 5/3 variance h_j^2 |g|^2 / n^2, n = sum_k h_k^d W(x_j - x_k, h_j), g = the sum of the fluid's
-   * h_k^d grad W + t that of the solids', with t from 0 to 1 such that |g| is least. The sums leave out solids that
-   * are ignored. */
+  /* Fills particles->volume. With mass and density: mass / density. With mass alone: m_j / (sum_k m_k W(x_j - x_k, h_j)
+   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is that of three dimensions. F_j = 1 for solids; else F_j
+   * = 1 + 5/3 variance h_j^2 |g|^2 / n^2 with n = sum_k h_k^d W(x_j - x_k, h_j) and g = the sum of h_k^d grad W over
+   * the fluid + t times that over the solids, where t from 0 to 1 makes |g| least. Ignored solids are left out of the
+   * sums. */
   void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int dimensions,
     const double* mass, const double* density);
 
   typedef struct oracle_sample
   {
-    double value;       /* of the field; 0 for Shepard where the fluid weight is 0 */
-    double gradient[3]; /* of the field */
+    double value;       /* the field; 0 for Shepard where the fluid weight is 0 */
+    double gradient[3]; /* the field's gradient */
     double weight;      /* fluid */
     double weight_gradient[3];
-    double trim_weight; /* fluid and solid */
+    double trim_weight; /* the weight of fluid and solids */
     double trim_gradient[3];
-    /* Sum of the magnitudes of the terms of the gradient, A taken relative to field->center: how
-     * much cancels. The direction of a gradient much smaller than this is rounding noise. */
+    /* The sum of the magnitudes of the gradient's terms, with A relative to field->center: it shows how much cancels.
+     * The direction of a much smaller gradient is rounding noise. */
     double gradient_scale;
   } oracle_sample;
 
-  /* scalar: [count], contoured in place of particles->scalar; NULL: particles->scalar. */
+  /* Evaluates the field at a point. scalar: [count], contoured in place of particles->scalar unless NULL. */
   void oracle_evaluate(
     const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample);
-  /* Value less iso; where a mean's weight is below 0, negative: the sum of the terms against iso has this
-   * sign, and passes 0 where the value is iso, not at the mean's poles. */
+  /* Returns value - iso, or a negative number where a mean's weight is below 0. The sum of the terms relative to iso
+   * has this sign, and passes 0 where the value is iso, not at the mean's poles. */
   double oracle_side(const oracle_field* field, const oracle_sample* sample, double iso);
 
-  /* The eigenvalues, ascending, of the symmetric part of sum V (x_j - x) (outer product) grad W,
-   * over the particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et
-   * al. */
+  /* Returns the ascending eigenvalues of the symmetric part of sum V (x_j - x) (outer product) grad W, over the
+   * particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
   void oracle_boundary_eigenvalues(
     const oracle_field* field, const double point[3], double eigenvalues[3]);
 
-  /* A bound on what evaluation in floating point with unit roundoff `unit` may do to the value at a
-   * point: relative errors of a few units in W and in the offset to each particle. */
+  /* Returns a bound on the error of the value at a point in floating point with unit roundoff `unit`: relative errors
+   * of a few units in W and in the offset to each particle. */
   double oracle_rounding(const oracle_field* field, const double point[3], double unit);
 #ifdef __cplusplus
 }

@@ -69,11 +69,11 @@ mcor_options oracle_case_options(const double* iso)
 {
   mcor_options options;
   mcor_set_default_options(&options);
-  options.wall_share = 0;  /* ends nothing, unless a case says so */
-  options.level_limit = 0; /* where a case does not ask for others */
+  options.wall_share = 0;  /* surfaces do not end at solids, unless a case asks for it */
+  options.level_limit = 0; /* cubes have one size, unless a case asks for levels */
   options.iso_values = iso;
   options.iso_count = 1;
-  options.dimension = 3; /* few particles may share a coordinate */
+  options.dimension = 3; /* a few particles may share a coordinate and still be in space */
   options.outputs |=
     MCOR_OUT_NORMALS | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG;
   options.outputs |= MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH;
@@ -133,13 +133,13 @@ static void case_print(const case_run* run)
 static void case_check_mesh(case_run* run)
 {
   const oracle_comparison* c = &run->comparison;
-  /* In double precision triangles at nodes may be 1e-9 edges wide, and trimming cuts such slivers
-   * near their tips, too: still above rounding. */
+  /* In double precision triangles at nodes may be only 1e-9 edges wide. Trimming may cut such slivers near their tips,
+   * which is still above rounding. */
   const int slivers =
     run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 && run->mesh.slimmest > 1e-14;
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
-    /* Two valid cells that touch only in an edge have a vertex each there. */
+    /* Two valid cells that touch only in an edge have a vertex each there, in one place. */
     const int64_t allowed = fault == MESH_COINCIDENT_POINT ? c->split
       : fault == MESH_ZERO_AREA && slivers                 ? run->mesh.faults[fault]
                                                            : 0;
@@ -150,7 +150,7 @@ static void case_check_mesh(case_run* run)
   case_expect(run, c->holes == 0, "%lld holes: %s", (long long)c->holes, c->first);
 }
 
-/* A periodic box: the surface meets itself, and only what ends it elsewhere ends it there. */
+/* Checks a periodic box: the surface meets itself at the sides, and ends there only for reasons that end it elsewhere. */
 static void case_check_seam(case_run* run)
 {
   if (!oracle_is_periodic(&run->options))
@@ -176,7 +176,7 @@ static void case_check_edges(case_run* run, int pairs)
   case_expect(run, c->extra == 0, "%lld extra edges: %s", (long long)c->extra, c->first);
   case_expect(run, c->segments_missing == 0, "%lld faces not connected: %s",
     (long long)c->segments_missing, c->first);
-  /* Rounding is the only excuse, so it has to be rare: a few in ten thousand. */
+  /* Rounding is the only excuse, so excuses must be rare: a few in ten thousand. */
   case_expect(run, run->at->at_iso || pairs || c->excused + c->rounding <= 2 + c->edges / 2000,
     "%lld edges differ where values or weights are close to their thresholds",
     (long long)(c->excused + c->rounding));
@@ -184,7 +184,7 @@ static void case_check_edges(case_run* run, int pairs)
     run, run->at->rough || c->noisy == 0, "%lld vertices with noisy values", (long long)c->noisy);
   if (pairs)
   {
-    /* The paper's seeds may miss components, but what they find must be whole. */
+    /* The paper's seeds may miss components, but must find whole ones. */
     case_expect(run, c->components_partial == 0, "%lld components torn: %s",
       (long long)c->components_partial, c->first);
   }
@@ -211,17 +211,16 @@ static void case_check_accuracy(case_run* run, int trimmed)
     c->eigenvalue_error);
   case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g: %s",
     c->trim_weight_error, c->first);
-  /* Where kernels with lobes leave gaps, trimming may cut through steep flanks at low weight. */
+  /* Kernels with negative lobes leave gaps, so trimming may cut steep parts of the surface at low weight. */
   case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual,
     "trim vertices: residual %.3g", c->trim_residual);
-  /* Without a right gradient of the eigenvalue no cut would be exact. */
+  /* No cut would be exact if the gradient of the eigenvalue were wrong. */
   case_expect(run,
     run->at->rough || run->options.boundary_detection != MCOR_BOUNDARY_EIGENVALUE ||
       c->trim_linear <= 2 + c->trim_vertices / 25,
     "%lld of %lld trim vertices are linear cuts", (long long)c->trim_linear,
     (long long)c->trim_vertices);
-  /* A cut stays linear where the two surfaces do not meet nearby; kernels with lobes have weights
-   * with many extrema. */
+  /* A cut stays linear where the two surfaces do not meet nearby. With negative lobes the weight has many extrema. */
   case_expect(run,
     c->trim_avoidable <=
       4 + c->trim_vertices / (run->options.sph_kernel == MCOR_M_PRIME_4 ? 12 : 50),
@@ -237,7 +236,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
   if (!run->at->rough)
   {
-    /* Snippets that trimming leaves may be too coarse to judge by the gradient. */
+    /* Small pieces that trimming leaves may be too coarse to judge their orientation by the gradient. */
     case_expect(run, trimmed || c->inverted_components == 0, "%lld components inside out",
       (long long)c->inverted_components);
     case_expect(
@@ -248,11 +247,11 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
 }
 
-/* Extracts, checks, prints; the surface and its report stay in *run. */
+/* Extracts, checks and prints. The surface and its report stay in *run. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
-  /* Threshold 0 trims nothing, unless a mean lacks fluid, or the kernel has negative lobes and h is far
-   * too small; the weight could then be 0 or less at vertices. */
+  /* A threshold of 0 trims nothing, with two exceptions: a mean lacks fluid, or the kernel has negative lobes and h is
+   * far too small, so that the weight may be 0 or less at vertices. */
   const int lobes =
     run->at->options.sph_kernel == MCOR_M_PRIME_4 && run->at->options.field == MCOR_SUM;
   const int cut = trimmed || lobes || run->at->options.field == MCOR_SHEPARD;
@@ -262,9 +261,9 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
   if (!trimmed)
   {
-    /* A singular matrix may have an eigenvalue below 0, by rounding. */
+    /* Rounding may give a singular matrix an eigenvalue below 0. */
     run->options.boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM;
-    /* A share that ends nothing keeps the solids in the free surface's weight. */
+    /* This share ends nothing, but keeps the solids in the free surface's weight. */
     run->options.wall_share =
       run->options.wall_share > 0.0 && run->options.field == MCOR_WEIGHT_SUM ? 1.0 - 1e-9 : 0.0;
   }
@@ -314,7 +313,7 @@ static void case_release(case_run* run)
 static const char* const results_names[RESULTS_COUNTS] = { "edges", "components", "vertices",
   "triangles", "trimmed_vertices", "trimmed_triangles", "trim_vertices", "pairs_vertices" };
 
-/* Lines of the table: names of columns, then cases in the order of their names. */
+/* The table's lines: names of columns, then cases in the order of their names. */
 typedef struct results_table
 {
   char line[4096][256];
@@ -326,7 +325,7 @@ static int results_compare(const void* a, const void* b)
   return strcmp(a, b);
 }
 
-/* Reads the table. Returns the place of the case's line, the number of lines if it has none. */
+/* Reads the table. Returns the place of the case's line, or the number of lines if it has none. */
 static int results_read(results_table* table, const char* path, const char* name)
 {
   const size_t length = strlen(name);
@@ -367,7 +366,8 @@ static int results_write(results_table* table, const char* path, int place, cons
 
 /* ---- one case ---- */
 
-/* Counts may differ from the table only where rounding decides, so that another device passes. */
+/* Compares a case with its row of the table. Counts may differ only where rounding decides, so that another device
+ * passes. */
 static int case_check_row(oracle_suite* suite, const char* name,
   const int64_t counts[RESULTS_COUNTS], double residual, int64_t slack, int64_t trim_slack)
 {
@@ -397,7 +397,7 @@ static int case_check_row(oracle_suite* suite, const char* name,
   return good;
 }
 
-/* Vertices that rounding may keep or cut away. */
+/* Counts vertices that rounding may keep or cut away. */
 static int64_t case_count_near(const case_run* run)
 {
   const mcor_surface* surface = &run->surface;

@@ -3,8 +3,8 @@
 #ifndef oracle_case_h
 #define oracle_case_h
 
-/* Runs the library and the oracle on the same particles, prints one line per extraction, compares,
- * and keeps the table of results. Shared by the test programs. */
+/* Runs the library and the oracle on the same particles, prints a line for each extraction, compares them, and keeps
+ * the table of results. All test programs of the oracle use it. */
 
 #include "mcor.h"
 #include "oracle_compare.h"
@@ -24,14 +24,14 @@ extern "C"
     int cases, failures;
   } oracle_suite;
 
-  /* Command line: --results FILE [--update] [--case SUBSTRING] [--device NAME]. 0 after a message
+  /* Reads the command line: --results FILE [--update] [--case SUBSTRING] [--device NAME]. Returns 0, after a message,
    * if the suite cannot run. */
   int oracle_begin_suite(oracle_suite* suite, int argc, char** argv);
   /* Prints the summary; returns the exit status of the program. */
   int oracle_end_suite(oracle_suite* suite);
   int oracle_wants_case(const oracle_suite* suite, const char* name);
 
-  /* The defaults of mcor.h with every optional array on and one iso value, borrowed. */
+  /* Returns the defaults of mcor.h with every optional array, and with one iso value, which is borrowed. */
   mcor_options oracle_case_options(const double* iso);
 
   typedef struct oracle_case
@@ -50,8 +50,8 @@ extern "C"
     int64_t node_limit;   /* 0: 60 million */
   } oracle_case;
 
-  /* Runs complete without trimming, complete with trimming (not for the weight), and pairs; 1 if
-   * all is as it must be. */
+  /* Runs the case with complete seeds untrimmed, with complete seeds trimmed (not for the weight), and with pairs.
+   * Returns 1 if all is right. */
   int oracle_run_case(oracle_suite* suite, const oracle_case* at);
 
 #ifdef __cplusplus

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* A failed check prints where and what, and counts; the program goes on. */
+/* A failed check prints its place and condition and is counted; the program goes on. */
 #define ORACLE_CHECK(condition, ...)                                                               \
   do                                                                                               \
   {                                                                                                \

@@ -81,7 +81,8 @@ double oracle_smallest_h(const particle_set* particles)
   return smallest;
 }
 
-/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few ---- */
+/* ---- kd-tree: a node has particles [begin,end) of `order`, split in the middle; a leaf has a few
+ * ---- */
 
 enum
 {
@@ -90,14 +91,14 @@ enum
 
 typedef struct oracle_tree_node
 {
-  double low[3], high[3]; /* bounds of the particle centres */
+  double low[3], high[3]; /* bounds of the particles' centres */
   double reach;           /* largest support radius below this node */
 } oracle_tree_node;
 
 struct oracle_tree
 {
   int64_t* order;
-  oracle_tree_node* node; /* as a heap: children of n at 2n+1, 2n+2 */
+  oracle_tree_node* node; /* children of n at 2n+1 and 2n+2 */
 };
 
 typedef struct oracle_sort_item
@@ -213,7 +214,8 @@ void oracle_free_field(oracle_field* field)
 
 typedef void (*oracle_visitor)(const oracle_field* field, int64_t particle, void* user);
 
-/* Visits all particles that may reach `point`, or (radius > 0) may lie within radius of it. */
+/* Calls the visitor for all particles that may reach `point` or, if radius > 0, may lie within
+ * radius of it. */
 static void oracle_visit(const oracle_field* field, const double point[3], double radius,
   oracle_visitor visitor, void* user, int64_t n, int64_t begin, int64_t end)
 {
@@ -221,7 +223,7 @@ static void oracle_visit(const oracle_field* field, const double point[3], doubl
   const double distance = radius > 0.0 ? radius : node->reach;
   for (int axis = 0; axis < 3; ++axis)
   {
-    /* Written so that rounding can only visit too much: the kernel is 0 out there anyway. */
+    /* With this margin rounding can only visit too many particles, for which the kernel is 0. */
     if (point[axis] - node->high[axis] > distance * (1.0 + 1e-12) ||
       node->low[axis] - point[axis] > distance * (1.0 + 1e-12))
     {
@@ -249,7 +251,7 @@ typedef struct oracle_sums
   const double* scalar;
   double fw, w, solid_w; /* sum V A W, sum V W of fluid, of solids */
   double grad_fw[3], grad_w[3], grad_solid[3];
-  double magnitude;           /* of the terms of the gradient */
+  double magnitude;           /* the sum of the magnitudes of the gradient's terms */
   double center, unit, error; /* for oracle_rounding */
 } oracle_sums;
 
@@ -360,8 +362,9 @@ static void oracle_add_matrix(const oracle_field* field, int64_t j, void* user)
   }
 }
 
-/* Roots of the characteristic polynomial: with m = q + s b, b of trace 0 and of square 6, they are
- * q + 2 s cos(angle), at three angles a third of a turn apart, cos(3 angle) = det(b) / 2. */
+/* Finds the roots of the characteristic polynomial. With m = q + s b, where b has the trace 0 and
+ * the sum of squares 6, they are q + 2 s cos(angle) at three angles a third of a turn apart, where
+ * cos(3 angle) = det(b) / 2. */
 static void oracle_eigenvalues(double m[3][3], double eigenvalues[3])
 {
   const double q = (m[0][0] + m[1][1] + m[2][2]) / 3.0;
@@ -439,7 +442,7 @@ typedef struct oracle_volume_sum
   double variance; /* of the kernel */
   const double* mass;
   double density, number;     /* number: sum h_k^d W */
-  double fluid[3], solids[3]; /* its gradients */
+  double fluid[3], solids[3]; /* the gradients of `number` */
 } oracle_volume_sum;
 
 static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
@@ -470,7 +473,7 @@ static double oracle_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* 1 + 5/3 D^2. */
+/* Returns 1 + 5/3 D^2. */
 static double oracle_one_sided(const oracle_field* field, const oracle_volume_sum* at)
 {
   const double h = field->particles->smoothing_length[at->j];
@@ -503,7 +506,7 @@ void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int d
     oracle_volume_sum at = { .j = j, .dimensions = dimensions, .variance = variance, .mass = mass };
     oracle_visit(&field, &particles->position[3 * j], oracle_reach(&field, j), oracle_add_density,
       &at, 0, 0, particles->count);
-    /* The sum of an ignored solid may be 0; its volume is of no use to anyone. */
+    /* The sum at an ignored solid may be 0; nobody uses its volume. */
     particles->volume[j] = at.density == 0.0 ? 0.0
                                              : (mass ? mass[j] : 1.0) / at.density /
         (particles->solid[j] ? 1.0 : oracle_one_sided(&field, &at));

@@ -12,12 +12,13 @@ double oracle_support(oracle_kernel kernel)
   return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : kernel == ORACLE_QUARTIC_SPLINE ? 2.5 : 2.0;
 }
 
-/* Simpson's rule, over a half axis; r^(d - 1) is what a sphere or circle adds. M'4 is a product of axes. */
+/* Integrates by Simpson's rule over a half axis, with r^(d - 1) for a sphere or circle. M'4 is a product of axes, so
+ * one axis is enough. */
 double oracle_kernel_variance(oracle_kernel kernel, int dimensions)
 {
   enum
   {
-    STEPS = 6000 /* so that pieces of kernels end between steps */
+    STEPS = 6000 /* pieces of kernels end between steps */
   };
   const int d = kernel == ORACLE_M_PRIME_4 ? 1 : dimensions;
   const double step = oracle_support(kernel) / STEPS;
@@ -33,7 +34,7 @@ double oracle_kernel_variance(oracle_kernel kernel, int dimensions)
   return spread / (d * sum);
 }
 
-/* Monaghan's M4 without the factor 1/h^3, and its derivative in q. */
+/* Returns Monaghan's M4 without the factor 1/h^3, and its derivative in q. */
 static double oracle_cubic(double q, double* slope)
 {
   if (q < 1.0)
@@ -51,7 +52,7 @@ static double oracle_quadratic(double q, double* slope)
   return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
 }
 
-/* Sums of (R - q)^n, (R - 1 - q)^n and (R - 2 - q)^n, as far as these are above 0: R is the support. */
+/* Returns a sum of (R - q)^n, (R - 1 - q)^n and (R - 2 - q)^n, of those that are above 0; R is the support radius. */
 static double oracle_spline(
   double reach, int power, const double factor[3], double norm, double q, double* slope)
 {
@@ -70,7 +71,7 @@ static double oracle_spline(
   return value / (norm * ORACLE_PI);
 }
 
-/* (1 - u)^n times a polynomial, as Dehnen and Aly (2012) write them, of u = r / support radius. */
+/* Returns (1 - u)^n times a polynomial, as Dehnen and Aly (2012) write it, with u = r / support radius. */
 static double oracle_wendland(
   int power, const double factor[4], double norm, double q, double* slope)
 {
@@ -82,7 +83,7 @@ static double oracle_wendland(
   return norm / ORACLE_PI * pow(1.0 - u, power) * poly;
 }
 
-/* With the norm of an integral that was computed to 25 digits. */
+/* The norm comes from an integral that was computed to 25 digits. */
 static double oracle_sinc_6(double q, double* slope)
 {
   const double norm = 0.790449589432302897356679, x = 0.5 * ORACLE_PI * q;
@@ -96,7 +97,7 @@ static double oracle_sinc_6(double q, double* slope)
   return norm * pow(s, 6.0);
 }
 
-/* One axis of M'4: m(u) and the derivative in u, u = |dx| / h < 2. */
+/* Returns one axis of M'4: m(u) and its derivative in u, with u = |dx| / h < 2. */
 static double oracle_m_prime_4(double u, double* slope)
 {
   if (u < 1.0)

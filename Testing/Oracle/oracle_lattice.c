@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Levels, bricks and nodes. */
+/* Makes levels, bricks and nodes. */
 
 #include "oracle_lattice.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells of the smallest cubes along an edge of a brick. */
+/* Returns how many cells of the smallest size lie along an edge of a brick. */
 static int64_t lattice_brick_size(int level)
 {
   return (int64_t)LATTICE_BRICK << level;
@@ -17,12 +17,12 @@ static int64_t lattice_brick_size(int level)
 
 /* ---- levels from particles ---- */
 
-/* One descent from a box around everything: with all particles that reach the brick. */
+/* State of the descent from a box around everything, which carries all particles that reach the brick. */
 typedef struct lattice_descent
 {
   oracle_lattice* lattice;
   const oracle_field* field;
-  int* level; /* [particle count], -1: of no account */
+  int* level; /* [particle count]; -1: the particle does not count */
   int listing;
   int64_t node_limit;
 } lattice_descent;
@@ -32,7 +32,7 @@ static int lattice_counts(const particle_set* p, int64_t j)
   return !p->solid[j] || !p->ignore_solids;
 }
 
-/* The highest level at which cubes are fine enough for each particle. */
+/* Sets each particle's level: the highest at which cubes are fine enough for it. */
 static void lattice_set_levels(lattice_descent* descent, int level_limit)
 {
   const particle_set* p = descent->field->particles;
@@ -97,8 +97,8 @@ static int64_t lattice_node_at(oracle_lattice* lattice, const int64_t at[3], int
   return index ? *index : -1;
 }
 
-/* Whether bricks of half the size touch the point of the brick's border: sides[axis] says on which
- * side of the brick it lies, 0: on neither. */
+/* Returns whether bricks of half the size touch a point of the brick's border. sides[axis]: on which side of the brick
+ * the point lies; 0: between. */
 static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, const int sides[3])
 {
   for (int some = 1; some < 8; ++some)
@@ -119,7 +119,8 @@ static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, co
   return 0;
 }
 
-/* On which sides of the brick a place of one of its cells lies, of 3 x 3 x 3 half a cell apart, and where that is. */
+/* Takes one of the 3 x 3 x 3 places of a cell, half a cell apart. Returns where it is, and on which sides of the brick
+ * it lies. */
 static void lattice_sides(
   const lattice_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
 {
@@ -189,7 +190,7 @@ void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double poi
   }
 }
 
-/* The sums at a new node, over the particles that reach its brick. */
+/* Sums at a new node over the particles that reach its brick. */
 static void lattice_evaluate(oracle_lattice* lattice, const oracle_field* field, lattice_node* node,
   const int64_t* list, int64_t count)
 {
@@ -208,7 +209,7 @@ static void lattice_evaluate(oracle_lattice* lattice, const oracle_field* field,
     const double h = field->h_scale * p->smoothing_length[j];
     if (fmax(fabs(offset[0]), fmax(fabs(offset[1]), fabs(offset[2]))) > support * h)
     {
-      continue; /* most of a brick's particles reach few of its nodes */
+      continue; /* most particles that reach a brick do not reach this node */
     }
     const double w = p->volume[j] * oracle_kernel_value(field->kernel, h, offset, NULL);
     *(p->solid[j] ? &solid : &fluid) += w;
@@ -299,7 +300,7 @@ static void lattice_descend(
   free(list);
 }
 
-/* From the eight bricks around the origin of a level at which they hold all supports. */
+/* Begins with the eight bricks around the origin, of a level at which they hold all supports. */
 static void lattice_descend_all(lattice_descent* descent)
 {
   const particle_set* p = descent->field->particles;
@@ -332,8 +333,8 @@ static void lattice_descend_all(lattice_descent* descent)
   free(all);
 }
 
-/* Where a brick is split, its halves have level - 1 at most, so all that touch it must be smaller
- * than twice its size: the bricks twice as large, of which one holds it, are split. */
+/* A split brick has parts of level - 1 or less, so all bricks that touch it must be smaller than twice its size.
+ * Touching bricks that are larger are split. */
 static void lattice_balance(oracle_lattice* lattice)
 {
   for (int level = 1; level < lattice->top; ++level)

@@ -3,9 +3,9 @@
 #ifndef oracle_lattice_h
 #define oracle_lattice_h
 
-/* Marching Cubes on cubes as fine as the particles are, or on equal ones, by brute force: levels from the
- * particles one by one, all nodes of all bricks that a particle reaches, all cells. Finds which edges are
- * crossed and how they are joined on faces; makes no triangles. */
+/* Marching Cubes by brute force, on cubes as fine as the particles are or on equal ones: levels from the particles one
+ * by one, all nodes of all bricks that a particle reaches, all cells. It finds which edges are crossed and how they are
+ * joined on faces, and makes no triangles. */
 
 #include "oracle.h"
 
@@ -20,26 +20,26 @@ extern "C"
     LATTICE_BRICK = 4, /* cells of a brick along an axis */
     LATTICE_CORNERS = 125,
 
-    /* of nodes */
+    /* Flags of nodes. */
     LATTICE_ABOVE = 1, /* value >= iso */
     LATTICE_VALID = 2, /* may be a corner of a cell that is used */
     LATTICE_CLOSE = 4, /* value within rounding of iso */
     LATTICE_MARGIN = 8 /* weight within rounding of the threshold */
   };
 
-  /* From three whole numbers and a tag to one that is not negative. */
+  /* A map from three whole numbers and a tag to a number that is not negative. */
   typedef struct oracle_map
   {
     int64_t* slots; /* [capacity][5]: key, value; value -1: free */
     int64_t capacity, count;
   } oracle_map;
 
-  /* The value's place; new ones hold -1 until the caller sets them, which it must before the next
-   * call. NULL: no such key and not `add`. Ends the program if memory runs out. */
+  /* Returns the place of the value. A new entry holds -1 until the caller sets it, which must happen before the next
+   * call. Returns NULL if there is no such key and `add` is 0. Ends the program if memory runs out. */
   int64_t* oracle_map_find(oracle_map* map, const int64_t at[3], int64_t tag, int add);
   void oracle_map_free(oracle_map* map);
 
-  /* Places (at) are in the smallest cubes, which have their corners at whole multiples of their edges. */
+  /* Places (at) are in units of the smallest cubes, whose corners are at whole multiples of their edges. */
   typedef struct lattice_node
   {
     int64_t at[3];
@@ -53,30 +53,30 @@ extern "C"
     int level;
   } lattice_brick;
 
-  /* A cell with nodes on both sides, of which none is certainly invalid. */
+  /* A cell with nodes on both sides, none of them certainly invalid. */
   typedef struct lattice_cell
   {
     int64_t at[3];
     int level;
     int64_t node[27]; /* x + 3 y + 9 z, half a cell apart; -1: none there */
     int valid, certain, loops, triangles;
-    int64_t component; /* valid cells: united over the segments they share */
+    int64_t component; /* valid cells: the component that shared segments unite */
   } lattice_cell;
 
-  /* Between two neighbouring nodes on different sides. */
+  /* An edge between two neighbouring nodes on different sides. */
   typedef struct lattice_edge
   {
     int64_t at[3], length; /* lower end */
     int axis;
     int64_t node[2];
-    int quadrants; /* bits: valid cells around it, u >= 0: 1, v >= 0: 2, the axes after its own */
-    int used;      /* by a loop of three or more */
-    int sure;      /* by one of a certain cell */
-    int certain;   /* all cells around it are */
-    int64_t component; /* of one of its cells; -1: not used */
+    int quadrants; /* bits of the valid cells around it; u >= 0: 1, v >= 0: 2, where u and v are the axes after its own */
+    int used;      /* a loop of three or more uses it */
+    int sure;      /* a loop of a certain cell uses it */
+    int certain;   /* all cells around it are certain */
+    int64_t component; /* the component of one of its cells; -1: not used */
   } lattice_edge;
 
-  /* From edge to edge on a face, in the direction of a cell's triangles. */
+  /* A segment from edge to edge on a face, in the direction of a cell's triangles. */
   typedef struct lattice_segment
   {
     int64_t from, to, cell;
@@ -84,24 +84,24 @@ extern "C"
 
   typedef struct oracle_lattice
   {
-    double edge[3];           /* of the smallest cubes */
-    double cube;              /* the shortest of these */
-    int64_t first[3], end[3]; /* cells outside of these do not exist */
+    double edge[3];           /* edges of the smallest cubes */
+    double cube;              /* the shortest of the three */
+    int64_t first[3], end[3]; /* cells outside of these bounds do not exist */
     int top;                  /* highest level */
     oracle_map split;
     oracle_map node_map, edge_map;
     lattice_node* nodes;
     lattice_brick* bricks; /* all leaves that a particle reaches */
-    int64_t* corners;      /* [brick_count][5][5][5], their cells' corners */
+    int64_t* corners;      /* [brick_count][5][5][5]: nodes at the corners of the bricks' cells */
     lattice_cell* cells;
     lattice_edge* edges;
-    lattice_segment* segments; /* of valid cells, but of loops of two */
-    /* Pairs of edges, the lower first, on faces: of cells of which rounding decides whether they are valid; and
-     * which rounding may join or part. Values: how many valid cells have the face. */
+    lattice_segment* segments; /* of valid cells, without loops of two */
+    /* Pairs of edges on faces, the lower one first. doubts: of cells that rounding may make valid or not. either: pairs
+     * that rounding may join or part. The value is the number of valid cells that have the face. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
-    int64_t component_count, triangle_count; /* triangles but for tunnels */
+    int64_t component_count, triangle_count; /* triangle_count: without tunnels */
     const struct oracle_decider* decider;    /* during oracle_march */
   } oracle_lattice;
 
@@ -110,13 +110,13 @@ extern "C"
     double iso;
     double node_threshold;    /* not applied to ORACLE_WEIGHT */
     double least_weight;      /* fluid weight below which a Shepard mean has no meaning, > 0 */
-    double least_at_vertices; /* the same of vertices */
+    double least_at_vertices; /* the same limit for vertices */
     double close;  /* |value - iso| up to which a node is excused, in the scalar's unit */
     double margin; /* |weight - threshold| up to which a node is excused */
   } oracle_limits;
 
-  /* Topology by the field: how an ambiguous face between two plain cells is joined is asked of the field at
-   * the saddle of its values. */
+  /* Topology by the field: how an ambiguous face between two plain cells is joined depends on the field at the saddle
+   * of its values. */
   typedef struct oracle_decider
   {
     const oracle_field* field;
@@ -124,22 +124,22 @@ extern "C"
     double unit; /* roundoff of the working precision */
   } oracle_decider;
 
-  /* level_limit: the highest level at most. Lists the leaves that particles reach, and evaluates all their nodes;
-   * none after the first leaf with more than node_limit in all, and returns 0 then. */
+  /* Lists the leaves that particles reach, and evaluates all their nodes. level_limit: no level is higher. If there
+   * would be more than node_limit nodes, stops and returns 0. */
   int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field,
     const double edge[3], int level_limit, int64_t node_limit);
-  /* Classifies the nodes, finds cells, edges and segments for an iso value. by_field: topology is. */
+  /* Classifies the nodes, and finds cells, edges and segments for an iso value. by_field: topology is by the field. */
   void oracle_march(oracle_lattice* lattice, const oracle_field* field, const oracle_limits* limits,
     int by_field, double unit);
   void oracle_free_lattice(oracle_lattice* lattice);
 
-  /* Whether the brick of a level with this lowest corner is split. */
+  /* Returns whether the brick of this level with this lowest corner is split. */
   int oracle_is_split(oracle_lattice* lattice, int level, const int64_t at[3]);
   void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double point[3]);
-  /* Cell c of brick b and its nodes. Middles are nodes where finer bricks around the brick make them; these
-   * are made if `add`. */
+  /* Returns cell c of brick b and its nodes. Middles are nodes where finer bricks lie beside the brick; they are
+   * created if `add`. */
   void oracle_cell_at(oracle_lattice* lattice, int64_t b, int c, int add, lattice_cell* cell);
-  /* Whether a cell of the level is there, and no finer brick touches it, not even its corner. */
+  /* Returns whether a cell of this level exists and no finer brick touches it, not even at a corner. */
   int oracle_is_plain(oracle_lattice* lattice, int level, const int64_t at[3]);
 
 #ifdef __cplusplus

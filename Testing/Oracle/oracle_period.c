@@ -68,7 +68,7 @@ int64_t* oracle_add_images(
   const int64_t own = particles->count;
   int64_t capacity = own;
   int64_t* source = oracle_allocate(own, sizeof(int64_t));
-  for (int64_t i = 0; i < 3 * own; ++i) /* each is within the period */
+  for (int64_t i = 0; i < 3 * own; ++i) /* moves each coordinate into the period */
   {
     const double length = period_length(options, (int)(i % 3));
     double* x = &particles->position[i];
@@ -81,7 +81,7 @@ int64_t* oracle_add_images(
     for (int n = 0; n < 343; ++n)
     {
       const int image[3] = { n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3 };
-      int matters = n != 171; /* the particle itself */
+      int matters = n != 171; /* the particle itself always matters */
       double x[3];
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -119,8 +119,8 @@ void oracle_own_period(
 
 /* ---- the surface against itself ---- */
 
-/* A point of the border within the first period, in fractions of a cube too small to matter and
- * large enough for rounding. */
+/* A point of the border, moved into the first period. Its place is in units that are too small to
+ * matter and larger than rounding. */
 typedef struct seam_point
 {
   int64_t at[3];
@@ -129,7 +129,7 @@ typedef struct seam_point
 
 typedef struct seam_edge
 {
-  int32_t a, b; /* representatives, a < b */
+  int32_t a, b; /* the points that stand for the ends, a < b */
   int forward, flagged;
 } seam_edge;
 
@@ -175,7 +175,7 @@ static int seam_differ(const float* values, int32_t a, int32_t b, size_t compone
       components * sizeof(float)) != 0;
 }
 
-/* Whether two points that are one are not equal in all they carry. */
+/* Returns whether two points that are one differ in anything they carry. */
 static int seam_points_differ(
   const mcor_options* options, const mcor_surface* s, int32_t a, int32_t b)
 {
@@ -193,7 +193,7 @@ static int seam_points_differ(
   return differ;
 }
 
-/* one[p]: the point that stands for p and all that are one with it. */
+/* Sets one[p]: the point that stands for p and for all points that are one with it. */
 static void seam_glue(const mcor_options* options, const mcor_surface* surface, seam_point* places,
   int64_t count, int32_t* one, oracle_seam* seam)
 {

@@ -3,8 +3,8 @@
 #ifndef oracle_period_h
 #define oracle_period_h
 
-/* Periodic boxes, for oracle_reference.c and oracle_case.c: the particles and images of them as plain
- * particles, one period's cells of the lattice, and the surface glued to itself. */
+/* Periodic boxes, for oracle_reference.c and oracle_case.c: images as plain particles, the cells of one period, and the
+ * surface joined to itself at opposite sides. */
 
 #include "mcor.h"
 #include "mesh_check.h"
@@ -18,30 +18,29 @@ extern "C"
   /* Whether the particles repeat along any axis. */
   int oracle_is_periodic(const mcor_options* options);
 
-  /* The largest cube, not larger than this one, that all periods are whole numbers of; where there is none of
-   * more than half of it, of each period the largest edge that it is a whole number of. */
+  /* Finds the edges of cubes: the largest that is not larger than `cube` and divides all periods. If that is less than
+   * half of `cube`, each axis gets the largest edge that divides its own period. */
   void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
-  /* Takes the particles into the period, and adds all images whose support (h times `support`), or
-   * `margin` if that is more, reaches it or what lies within two cubes of it. Returns what
-   * particle i is an image of; to be freed. */
+  /* Moves the particles into the period, and adds all images whose support (h times `support`), or `margin` if that is
+   * larger, reaches the period or two cubes around it. Returns, for each particle, the one of which it is an image;
+   * free the result. */
   int64_t* oracle_add_images(particle_set* particles, const mcor_options* options, double support,
     double margin, double cube);
 
-  /* One period's cells: those with their centres in it. Axes without a period stay as they are. */
+  /* Returns the cells that have their centres in the period. Axes without a period stay unchanged. */
   void oracle_own_period(
     const mcor_options* options, const double edge[3], int64_t first[3], int64_t end[3]);
 
   typedef struct oracle_seam
   {
-    int64_t joined;    /* edges of the border that are one with another, a period away */
-    int64_t open;      /* other ones that nothing explains */
-    int64_t torn;      /* that have more than two triangles, or two of unlike orientation */
-    int64_t different; /* points that are not, bit for bit, what they are a period away */
+    int64_t joined;    /* edges of the border that match an edge a period away */
+    int64_t open;      /* other border edges, without an explanation */
+    int64_t torn;      /* edges with more than two triangles, or with two of unlike orientation */
+    int64_t different; /* points that are not, bit for bit, equal to their partner a period away */
   } oracle_seam;
 
-  /* Glues opposite sides of the surface together: points that are a period apart become one. edge: of the
-   * cubes. */
+  /* Joins points of the surface that are a period apart, at opposite sides. edge: of the cubes. */
   oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
     const mcor_surface* surface, const mesh_report* mesh);
 

@@ -56,7 +56,7 @@ _Static_assert(
 _Static_assert((int)ORACLE_SUM == (int)MCOR_SUM && (int)ORACLE_WEIGHT == (int)MCOR_WEIGHT_SUM,
   "fields in the core's order");
 
-/* source: what each is an image of; NULL: of itself. */
+/* source: the particle of which each is an image; NULL: there are no images. */
 static void reference_volumes(
   particle_set* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {
@@ -88,7 +88,7 @@ static void reference_edges(
   oracle_fit_edges(options, cube, edge);
 }
 
-/* All images of a periodic box as particles. */
+/* Adds all images of a periodic box as particles. */
 static int64_t* reference_images(
   particle_set* particles, const mcor_options* options, oracle_kernel kernel, int own_volumes)
 {
@@ -99,7 +99,7 @@ static int64_t* reference_images(
     largest = fmax(largest, particles->smoothing_length[j]);
   }
   reference_edges(particles, options, edge);
-  /* A computed volume is a sum over the whole support, not scaled. */
+  /* A computed volume is a sum over the whole support, before scaling. */
   return oracle_add_images(particles, options, support * options->h_scale,
     own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])));
 }
@@ -110,8 +110,8 @@ static void reference_particles(
   const oracle_kernel kernel = (oracle_kernel)options->sph_kernel;
   const int has_volume = reference_is_given(&input->volume);
   *particles = particle_set_make(input->count);
-  /* Solids count in the weight that trims; nothing but solids trims when the weight itself is
-   * contoured. */
+  /* Solids count in the weight that trims. When the weight itself is contoured, only solids may end
+   * the surface. */
   particles->ignore_solids =
     input->ignore_solids || (options->field == MCOR_WEIGHT_SUM && !(options->wall_share > 0.0));
   for (int64_t j = 0; j < input->count; ++j)
@@ -188,7 +188,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  /* In single precision rounding may change the side of a node whose value is this close. */
+  /* In single precision rounding may change the side of a node whose value is this close to iso. */
   const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
   reference->limits.iso = options->iso_count > 0 ? options->iso_values[0] : 0.5;
   reference->field.center = reference->limits.iso;

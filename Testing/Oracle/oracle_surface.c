@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cells, their crossed edges, and how these are joined. */
+/* Finds cells, their crossed edges, and how these are joined. */
 
 #include "oracle_lattice.h"
 
@@ -16,8 +16,8 @@ static int lattice_above(const oracle_lattice* lattice, int64_t node)
 
 /* ---- edges ---- */
 
-/* Which of the four quarters around an edge a cell takes: its middle, but a cell whose face the
- * edge runs across takes two. */
+/* Returns which of the four quarters around an edge a cell fills: the one with the cell's middle, or two if the edge
+ * runs across the cell's face. */
 static int lattice_quadrants(const lattice_cell* cell, const int64_t at[3], int axis)
 {
   const int64_t size = (int64_t)1 << cell->level;
@@ -37,7 +37,7 @@ static int lattice_quadrants(const lattice_cell* cell, const int64_t at[3], int 
   return quadrants;
 }
 
-/* The edge between two nodes of a cell, made where it is new. */
+/* Returns the edge between two nodes of a cell, and creates it if it is new. */
 static int64_t lattice_edge_between(
   oracle_lattice* lattice, const lattice_cell* cell, int64_t node_a, int64_t node_b)
 {
@@ -71,8 +71,8 @@ static int64_t lattice_edge_between(
 
 /* ---- faces ---- */
 
-/* Nodes of a cell around a square of its face: towards -axis or +axis, with the lowest corner at (u,
- * v) and 1 or 2 half-edges wide; counter-clockwise seen from outside. Returns how many. */
+/* Lists the nodes of a cell around a square of its face, counter-clockwise seen from outside. The face is towards -axis
+ * or +axis; the square has its lowest corner at (u, v) and is 1 or 2 half-edges wide. Returns how many nodes there are. */
 static int lattice_ring(
   const lattice_cell* cell, int axis, int side, const int lowest[2], int width, int64_t ring[8])
 {
@@ -99,8 +99,8 @@ static int lattice_ring(
   return count;
 }
 
-/* Whether the nodes above iso are joined on a face: 0 or 1, or -1 where that is within rounding. value: at
- * the corners (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: where the first one is. */
+/* Returns whether the nodes above iso are joined on a face: 0 or 1, or -1 where rounding decides. value: at the corners
+ * (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: the place of the first. */
 static int lattice_decide_face(const oracle_decider* decider, const double value[4],
   const double corner[3], const double edge[3], int u, int v)
 {
@@ -110,7 +110,7 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   point[u] += edge[u] * (value[0] - value[2]) / sum;
   point[v] += edge[v] * (value[0] - value[1]) / sum;
   oracle_evaluate(decider->field, NULL, point, &sample);
-  /* Rounding of the value, and of the node values, which moves the point. */
+  /* The rounding of the value, and of the values at nodes, which moves the saddle. */
   const double moved = fmax(edge[u], edge[v]) * decider->limits->close / fabs(sum);
   const double rounding = decider->limits->close +
     oracle_rounding(decider->field, point, decider->unit) +
@@ -123,8 +123,7 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   return sample.value > decider->limits->iso;
 }
 
-/* Decides likewise for a face of a cell; as in the case table, 0, where the field does not
- * decide. */
+/* Decides for a face of a cell; 0, as in the case table, where the field does not decide. */
 static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int face)
 {
   static const int stride[3] = { 1, 3, 9 };
@@ -153,15 +152,15 @@ static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int
   return lattice_decide_face(lattice->decider, value, corner, edge, u, v);
 }
 
-/* A cell's segments: next[n] follows edge[n] on its loop. */
+/* The segments of a cell: next[n] follows edge[n] on its loop. */
 typedef struct lattice_links
 {
   int count;
   int64_t edge[48], next[48];
 } lattice_links;
 
-/* A segment leads from where the walk around a square enters "above" to where it leaves it. Where nodes above are
- * joined, each of the two below is cut off. */
+/* Links the crossings around a square. A segment leads from where the walk enters "above" to where it leaves. If nodes
+ * above are joined, each of the two below is cut off. */
 static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
   int count, int joined, lattice_links* links)
 {
@@ -191,7 +190,7 @@ static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring,
     !lattice_above(lattice, ring[0]) != !lattice_above(lattice, ring[1]);
 }
 
-/* Adds the pairs of a square's edges. */
+/* Adds the pairs of a square's edges to `pairs`. */
 static void lattice_doubt(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
   const int64_t* ring, int count)
 {
@@ -215,7 +214,7 @@ static void lattice_doubt(oracle_lattice* lattice, oracle_map* pairs, const latt
   }
 }
 
-/* On a face, or a quarter of one that is split. */
+/* Links the crossings on a face, or on a quarter of one that is split. */
 static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cell, int face,
   int split, const int64_t* ring, int count, lattice_links* links)
 {
@@ -251,7 +250,7 @@ static void lattice_link_cell(
   }
 }
 
-/* The segment is one of the cell that comes next. */
+/* Adds a segment of the cell that is added next. */
 static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t to, int certain)
 {
   lattice->segments = oracle_grow(
@@ -262,7 +261,7 @@ static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t t
   lattice->edges[from].sure |= certain;
 }
 
-/* Joins a valid cell's segments to loops; one of two is nothing. */
+/* Joins a valid cell's segments to loops; a loop of two is dropped. */
 static void lattice_close_loops(
   oracle_lattice* lattice, lattice_cell* cell, const lattice_links* links)
 {
@@ -297,7 +296,7 @@ static void lattice_close_loops(
 
 /* ---- cells ---- */
 
-/* Fills in what the nodes say; 0 where the surface does not cross the cell, or cannot. */
+/* Fills in the cell's flags from its nodes. Returns 0 where the surface does not, or cannot, cross the cell. */
 static int lattice_judge(const oracle_lattice* lattice, lattice_cell* cell)
 {
   int above = 0;
@@ -320,7 +319,7 @@ static int lattice_judge(const oracle_lattice* lattice, lattice_cell* cell)
       possible = possible && (valid || margin);
     }
   }
-  /* Among more than 8 nodes, one on the other side may turn a loop into one of two edges. */
+  /* With more than 8 nodes, one node on the other side may reduce a loop to two edges, so the cell is not certain. */
   cell->certain = cell->certain && (count == 8 || close == 0);
   return above > 0 && above < count && possible;
 }
@@ -366,7 +365,7 @@ static void lattice_march_cell(oracle_lattice* lattice, lattice_cell* cell)
   lattice->cells[lattice->cell_count++] = *cell;
 }
 
-/* Where a cell might be another, or not be, its edges are not certain, crossed or not as it is. */
+/* Marks as uncertain the edges of a cell that rounding may change or remove. */
 static void lattice_doubt_cell(oracle_lattice* lattice, lattice_cell* cell)
 {
   lattice_judge(lattice, cell);
@@ -395,7 +394,7 @@ static int64_t lattice_root(lattice_cell* cells, int64_t n)
   return n;
 }
 
-/* Components of cells that share segments; each edge gets that of one of its cells. */
+/* Finds components of cells that share segments, and gives each edge the component of one of its cells. */
 static void lattice_unite(oracle_lattice* lattice)
 {
   oracle_map seen = { NULL, 0, 0 };
@@ -416,7 +415,7 @@ static void lattice_unite(oracle_lattice* lattice)
     const int64_t b = lattice_root(cells, *other);
     cells[a > b ? a : b].component = a > b ? b : a;
   }
-  /* Roots are the lowest cell of their component, so one ascending pass can number them. */
+  /* A root is the lowest cell of its component, so one ascending pass numbers the components. */
   for (int64_t c = 0; c < lattice->cell_count; ++c)
   {
     const int64_t root = cells[c].component;

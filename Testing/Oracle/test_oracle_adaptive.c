@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cubes as fine as the particles are: the library against the oracle. Its levels are those of core_tree, too, which has
- * them from their definition. */
+/* Compares surfaces of cubes as fine as the particles are with the oracle's. core_tree checks the levels themselves by
+ * their definition. */
 
 #include "oracle_case.h"
 #include "particle_sets.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Parts that solids play, as the program's --solids. */
+/* What solids do, as in the program's --solids. */
 typedef enum adaptive_solids
 {
   SOLIDS_NONE,

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The library against the oracle on analytic particle sets: every kernel, field, cube factor and h
- * scale on one set, every set with its fields, ways of giving volumes and smoothing lengths, scaled
- * and shifted data, single and double precision. */
+/* Compares the library with the oracle on particle sets from formulas: every kernel, field, cube
+ * factor and h scale on one set; every set with its fields; ways to give volumes and smoothing
+ * lengths; scaled and shifted data; single and double precision. */
 
 #include "oracle_case.h"
 #include "particle_sets.h"
@@ -14,7 +14,7 @@
 
 static const char* const field_names[3] = { "shepard", "sum", "weight" };
 
-/* Differences from the defaults; zero: as the set and the library have it. */
+/* Differences from the defaults. Zero means: as in the set, or the library's default. */
 typedef struct variant
 {
   const char* set;
@@ -23,15 +23,15 @@ typedef struct variant
   mcor_field field;
   double cube_factor, cube_size, h_scale;
   int in_double;
-  double iso; /* used if has_iso */
+  double iso; /* used only if has_iso */
   int has_iso, rough, at_iso, skip_pairs;
   int has_euler, euler;
   mcor_topology topology;
   double eigenvalue; /* above 0: trimmed where the boundary eigenvalue is lower */
   int ignore_solids, no_volume;
   double wall_share, threshold; /* of vertices */
-  double shift;                 /* of the scalar and iso */
-  double scale, offset[3];      /* of positions and lengths */
+  double shift;                 /* added to the scalar and iso */
+  double scale, offset[3];      /* applied to positions and lengths */
 } variant;
 
 static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
@@ -60,7 +60,7 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   at->at_iso = v->at_iso;
   at->has_euler = v->has_euler;
   at->euler = v->euler;
-  at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* w has no pairs to straddle */
+  at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* a weight has no pairs */
   snprintf(at->name, sizeof(at->name), "%s/%s/%s/c%g/h%g%s%s%s", v->set,
     mcor_sph_kernel_name(v->kernel), field_names[v->field],
     v->cube_size > 0.0 ? v->cube_size : at->options.cube_size_factor, at->options.h_scale,
@@ -68,7 +68,7 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
     v->in_double ? "/double" : "");
 }
 
-/* Loads the set of the variant, lets `change` (or nothing) alter the case, runs it. */
+/* Loads the variant's set, lets `change` (if not NULL) alter the case, and runs it. */
 static void run_variant(
   oracle_suite* suite, const variant* v, void (*change)(particle_set* set, oracle_case* at))
 {
@@ -122,7 +122,8 @@ static void run_matrix(oracle_suite* suite)
     v.field = (mcor_field)(n % 18 / 6);
     v.cube_factor = cube_factors[n % 6 / 3];
     v.h_scale = h_scales[n % 3];
-    v.rough = v.kernel == MCOR_M_PRIME_4 && v.h_scale < 1.0; /* gaps between the particles */
+    /* there are gaps between the particles */
+    v.rough = v.kernel == MCOR_M_PRIME_4 && v.h_scale < 1.0;
     run_variant(suite, &v, NULL);
   }
 }
@@ -183,12 +184,12 @@ static const variant set_variants[] = {
   { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
   { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
   { .set = "single", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
-  /* f and w are the same here, so iso and vertex threshold coincide everywhere. */
+  /* f and w are the same here, so the iso value and the vertex threshold meet everywhere. */
   { .set = "single", .field = MCOR_SUM, .rough = 1, .at_iso = 1, .suffix = "/tangent" },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },
-  /* Node values equal to iso up to rounding: which edges are crossed is open, but the mesh must be
-   * whole and every vertex on the surface. */
+  /* Values at nodes equal iso to within rounding. Any of these edges may be crossed, but the mesh
+   * must be whole and every vertex on the surface. */
   { .set = "on_nodes", .rough = 1, .at_iso = 1 },
   { .set = "on_nodes", .field = MCOR_SUM, .rough = 1, .at_iso = 1 },
   { .set = "on_nodes", .rough = 1, .at_iso = 1, .in_double = 1 },
@@ -226,7 +227,7 @@ static void run_eigenvalues(oracle_suite* suite)
 
 /* ---- how data are given ---- */
 
-/* The volume array is read as mass: each particle then has its own. */
+/* The volume array is used as mass, so that each particle has its own mass. */
 static void mass_alone(particle_set* set, oracle_case* at)
 {
   at->input.volume = (mcor_array){ 0 };
@@ -272,7 +273,8 @@ static void vector_dot(particle_set* set, oracle_case* at)
   at->input.scalar_dot = at->input.scalar;
 }
 
-/* All arrays in single precision, in place: the first half of each array then holds the floats. */
+/* Stores all arrays in single precision, in place: the first half of each array then holds the
+ * floats. */
 static void single_arrays(particle_set* set, oracle_case* at)
 {
   double* const arrays[4] = { set->position, set->smoothing_length, set->volume, set->scalar };
@@ -306,7 +308,7 @@ static void run_inputs(oracle_suite* suite)
         .skip_pairs = 1,
         .wall_share = 0.5 },
       NULL },
-    /* The surface reaches farther into the wall, and a low threshold lets the wall alone end it. */
+    /* The surface reaches farther into the wall, and with a low threshold only the wall ends it. */
     { { .set = "puddle", .suffix = "/in_wall", .wall_share = 0.85, .threshold = 0.2 }, NULL },
     { { .set = "puddle", .suffix = "/no_volume", .no_volume = 1 }, NULL },
     { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM, .no_volume = 1 }, NULL },
@@ -321,7 +323,7 @@ static void run_inputs(oracle_suite* suite)
     { { .set = "sphere", .suffix = "/component", .has_iso = 1, .iso = 0.123 }, vector_component },
     { { .set = "sphere", .suffix = "/dot", .has_iso = 1, .iso = 0.25 }, vector_dot },
     { { .set = "gyroid", .suffix = "/float32" }, single_arrays },
-    /* Pressure above an ambient of 101325, the variation of interest being of size 1. */
+    /* A pressure around an ambient 101325, of which only variations of size 1 matter. */
     { { .set = "gyroid", .suffix = "/large_scalar", .shift = 101325.0 }, NULL },
     { { .set = "gyroid", .suffix = "/large_scalar", .in_double = 1, .shift = 101325.0 }, NULL },
     { { .set = "gyroid", .suffix = "/far_away", .offset = { 2e6, -1e6, 3e5 } }, NULL },

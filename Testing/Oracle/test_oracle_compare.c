@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The comparison finds planted faults: each kind of damage to a right surface shows up in the figure that is meant for
- * it. That right surfaces pass, oracle_analytic knows. */
+/* The comparison finds planted faults: each kind of damage to a right surface shows in the figure that is meant for it.
+ * oracle_analytic checks that right surfaces pass. */
 
 #include "oracle_case.h"
 #include "oracle_check.h"
@@ -21,13 +21,13 @@ typedef struct fixture
   mcor_surface surface; /* arrays with room for a few more points and triangles */
 } fixture;
 
-/* A copy with room for a few more. */
+/* Returns a copy with room for a few more elements. */
 static void* copy_array(const void* data, int64_t count, size_t width)
 {
   return memcpy(oracle_allocate(count + 8, width), data, (size_t)count * width);
 }
 
-/* The sphere as the library extracts it, in double precision, before trimming. */
+/* Makes the surface of the sphere as the library extracts it, in double precision, before trimming. */
 static int create_fixture(fixture* f)
 {
   const particle_set_entry* entry = particle_set_find("sphere");
@@ -82,7 +82,7 @@ static oracle_comparison compare(const fixture* f, int trimmed)
 
 static void remove_point(fixture* f, int64_t point)
 {
-  /* The last point takes its number; triangles that used the point go. */
+  /* The last point gets the removed point's number, and triangles that used the removed point are dropped. */
   const int64_t last = --f->surface.point_count;
   int64_t kept = 0;
   for (int64_t t = 0; t < f->surface.triangle_count; ++t)
@@ -108,7 +108,7 @@ static void remove_point(fixture* f, int64_t point)
   s->weight_sum[point] = s->weight_sum[last];
 }
 
-/* The axis of the edge that a vertex lies on. */
+/* Returns the axis of the edge that a vertex lies on. */
 static int edge_axis(const fixture* f, int64_t v)
 {
   int axis = 0;
@@ -120,7 +120,7 @@ static int edge_axis(const fixture* f, int64_t v)
   return axis;
 }
 
-/* Damages a surface that is to be trimmed; returns as damage() does. */
+/* Damages a surface that is compared as a trimmed one; returns the same as damage(). */
 static double damage_trimmed(fixture* f, int kind)
 {
   double* point = &f->surface.points[30];
@@ -128,22 +128,22 @@ static double damage_trimmed(fixture* f, int kind)
   oracle_comparison c;
   switch (kind)
   {
-    case 0: /* trimmed surface in which a vertex is cut away for no reason */
+    case 0: /* a vertex is cut away without a reason */
       f->options.vertex_threshold = -1.0;
       remove_point(f, 10);
       return (double)compare(f, 1).missing;
-    case 1: /* a vertex that should have been trimmed */
+    case 1: /* a vertex stays that should have been trimmed */
       f->options.vertex_threshold = 2.0;
       c = compare(f, 1);
       return (double)(c.below_threshold == c.edges);
-    default: /* flagged as trim vertex on no edge, but its weight is not the threshold */
+    default: /* a vertex is flagged as a trim vertex and lies on no edge, but its weight is not the threshold */
       f->surface.boundary_flag[10] = 1;
       point[(axis + 1) % 3] += 0.1 * f->reference.lattice.cube;
       return compare(f, 1).trim_weight_error > 0.1;
   }
 }
 
-/* Damages a right surface in one way and returns the figure that must show it, 0 if it does not. */
+/* Damages a right surface in one way. Returns the figure that must show it, or 0 if it does not. */
 static double damage(fixture* f, int kind)
 {
   double* point = &f->surface.points[30];
@@ -159,7 +159,7 @@ static double damage(fixture* f, int kind)
     case 1:
       point[(axis + 1) % 3] += 1e-6 * cube;
       return (double)compare(f, 0).off_lattice;
-    case 2: /* along the edge, by a thousandth of a cube */
+    case 2: /* a vertex moves along its edge by a thousandth of a cube */
       point[axis] += (point[axis] / cube - floor(point[axis] / cube) < 0.5 ? 1e-3 : -1e-3) * cube;
       c = compare(f, 0);
       return c.residual > 1e-6 && fabs(c.distance - 1e-3) < 9e-4 ? 1.0 : 0.0;
@@ -195,7 +195,7 @@ static double damage(fixture* f, int kind)
     case 8:
       f->surface.weight_sum[7] += 1e-3F;
       return compare(f, 0).weight_error > 5e-4;
-    default: /* nothing found at all */
+    default: /* nothing is found at all */
       f->surface.point_count = f->surface.triangle_count = 0;
       c = compare(f, 0);
       return c.missing == c.edges && c.components_missing == c.components;
@@ -214,7 +214,7 @@ static void test_damage(void)
   }
 }
 
-/* A vertex on a lattice node fits several edges; it must be given the one that is open. */
+/* A vertex on a lattice node fits several edges; it must be matched with the one that lacks a vertex. */
 static void test_vertex_on_node(void)
 {
   fixture f;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Periodic boxes: the library against the oracle, which has all images as particles. */
+/* Compares periodic boxes with the oracle, which has all images as particles. */
 
 #include "oracle_case.h"
 #include "particle_sets.h"
@@ -12,8 +12,8 @@
 
 #define PI 3.14159265358979323846
 
-/* One of a unit volume at X, on average, is taken to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along
- * each axis: so the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)). */
+/* Moves particles that lie evenly at X to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along each
+ * axis. So the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)). */
 #define AMOUNT 0.35
 
 static const double lengths[3] = { 12.0, 10.0, 10.0 };
@@ -31,7 +31,8 @@ static particle_set make_period(uint64_t seed)
       const double jitter = 0.25 * (2.0 * random_unit(&seed) - 1.0);
       const double from = (double)at[axis] + 0.5 + jitter, turn = 2.0 * PI * from / lengths[axis];
       const double x = from + AMOUNT * lengths[axis] / (2.0 * PI) * sin(turn);
-      p.position[3 * i + axis] = floor(x * 0x1p16) * 0x1p-16; /* shifts by 1/2 leave it exact */
+      /* with these digits, shifts by 1/2 are exact */
+      p.position[3 * i + axis] = floor(x * 0x1p16) * 0x1p-16;
       p.volume[i] *= 1.0 + AMOUNT * cos(turn);
     }
     p.scalar[i] = 1.0 / p.volume[i];
@@ -66,7 +67,7 @@ static const period_case cases[] = {
   { "mprime4", MCOR_M_PRIME_4, MCOR_SHEPARD, 1.2, 0.9, 1.0, "y", 1, 1 },
 };
 
-/* unequal: the edges. */
+/* unequal: cubes have a different edge along each axis. */
 static void run_case(oracle_suite* suite, const period_case* one, int unequal)
 {
   static const double factors[3] = { 1.0, 1.0331, 1.0713 };

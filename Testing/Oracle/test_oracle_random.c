@@ -19,7 +19,7 @@ static double pick(uint64_t* state, const double* values, int count)
   return values[random_bits(state) % (uint64_t)count];
 }
 
-/* Seeds of which some found faults, with the kernels that there were. */
+/* Seeds that found faults before, with the kernels that existed then. */
 #define SEEDS_OF_FIVE_KERNELS 1000
 
 static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, double* iso)
@@ -38,7 +38,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
   *iso = at->options.field == MCOR_WEIGHT_SUM ? 0.2 + random_unit(state) : pick(state, isos, 5);
   if (at->options.field == MCOR_SUM && *iso == 0.0)
   {
-    *iso = 0.02; /* f is exactly 0 in all empty space: no question of interest */
+    *iso = 0.02; /* at 0, all empty space would equal the iso value */
   }
   at->input.ignore_solids = random_bits(state) % 2 == 0;
   if (random_bits(state) % 4 == 0)
@@ -55,7 +55,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
     at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
-  /* Computed volumes of the free surface would differ with and without solids. */
+  /* Computed volumes of the free surface differ with and without solids, so this case is left out. */
   if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };
@@ -63,7 +63,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
   }
 }
 
-/* Without any there is no surface, but a sentence. */
+/* Without fluid there is a sentence instead of a surface. */
 static int has_fluid(const mcor_input* input)
 {
   int64_t solids = 0;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checks by hand the formulas that the oracle uses, and its mesh checker with planted faults.
- * Its lattice and sums share no code with the library's, so these test each other. */
+/* Checks the oracle's formulas by hand, and its mesh checker with planted faults. Its lattice and sums share no code
+ * with the library's, so these test each other. */
 
 #include "oracle_check.h"
 #include "oracle_compare.h"
@@ -17,7 +17,7 @@ static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadrat
 
 /* ---- kernels ---- */
 
-/* Midpoint rule on a grid; h other than 1 so that its powers are tested. */
+/* Integrates by the midpoint rule on a grid; h is not 1, so that its powers are tested. */
 static void test_kernel_integrals(void)
 {
   const double h = 0.7;
@@ -69,7 +69,7 @@ static void test_kernel_gradients(void)
   }
 }
 
-/* Values that can be worked out by hand. */
+/* Compares with values that can be worked out by hand. */
 static void test_kernel_values(void)
 {
   const double pi = 3.14159265358979323846;
@@ -91,8 +91,8 @@ static void test_kernel_values(void)
   }
 }
 
-/* Worked out by hand: pi W of the cubic spline is 1 at q = 0, 1/4 at 1 with the slope -3/4; its variance is 3/10 in
- * space and 31/98 in the plane. Solids fill the side without fluid, as far as needed. */
+/* The volumes are worked out by hand: pi W of the cubic spline is 1 at q = 0, and 1/4 at 1, where its slope is -3/4;
+ * its variance is 3/10 in space and 31/98 in the plane. Solids replace missing fluid on a side, as far as needed. */
 static void test_one_sided_volumes(void)
 {
   static const struct
@@ -100,7 +100,7 @@ static void test_one_sided_volumes(void)
     int dimensions, count;
     double x[3], h[3];
     int solid[3];
-    double volume; /* of the first, over pi */
+    double volume; /* the first particle's volume over pi */
   } cases[] = { { 3, 1, { 0 }, { 1 }, { 0 }, 1.0 },
     { 3, 2, { 0, 1 }, { 1, 1 }, { 0, 0 }, 0.8 / (1.0 + 0.5 * 0.6 * 0.6) },
     { 2, 2, { 0, 1 }, { 1, 1 }, { 0, 0 }, 0.8 / (1.0 + 155.0 / 294.0 * 0.6 * 0.6) },
@@ -148,7 +148,7 @@ typedef struct planted
   int64_t point_count, triangle_count;
 } planted;
 
-/* An octahedron, with room for more. */
+/* Makes an octahedron, with room for more. */
 static void plant_octahedron(planted* mesh, double points[36], int32_t triangles[36])
 {
   static const double corner[6][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 },
@@ -165,7 +165,7 @@ static void plant_octahedron(planted* mesh, double points[36], int32_t triangles
   mesh->triangle_count = 8;
 }
 
-/* Applies one fault; returns the kind that must be found, MESH_FAULT_COUNT for an open boundary. */
+/* Plants one fault. Returns the kind that must be found, or MESH_FAULT_COUNT for an open boundary. */
 static mesh_fault plant_fault(planted* mesh, int fault)
 {
   const double apex[3] = { 0.0, 0.0, 3.0 };
@@ -173,7 +173,7 @@ static mesh_fault plant_fault(planted* mesh, int fault)
   switch (fault)
   {
     case 0:
-      mesh->triangles[0] = 2; /* flipped: (2, 0, 4) */
+      mesh->triangles[0] = 2; /* a flipped triangle: (2, 0, 4) */
       mesh->triangles[1] = 0;
       return MESH_ORIENTATION_CLASH;
     case 1:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures against baselines, drawn here.
+"""Draws pictures and compares them with baselines.
 
 mode_images.py [MODE...]           each way in which the filters draw, by the Python package
-pvpython mode_images.py            one by the plugin, made and drawn by ParaView
+pvpython mode_images.py            one picture that ParaView makes with the plugin
 """
 import math
 import os
@@ -22,18 +22,18 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRendere
 DATA = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
 BASELINES, OUTPUT = os.environ["MCOR_TEST_BASELINES"], os.environ["MCOR_TEST_OUTPUT"]
 THRESHOLD = 10.0  # VTK's own for its image tests
-PLUGIN_THRESHOLD = 30.0  # of what ParaView draws; about the number of pixels that differ, shifts of one being tolerated
+PLUGIN_THRESHOLD = 30.0  # This is for ParaView's pictures; it is about the number of pixels that differ, where shifts of one pixel are tolerated.
 MODES = ("Iso", "Speed", "FreeSurface", "Preview", "Untrimmed", "Wall", "Weight", "Slice", "Filled")
 WEIGHT = ("WeightSum", 0.0, 1.0)
 COLORS = {"Weight": WEIGHT, "Untrimmed": WEIGHT, "Speed": ("Velocity_Magnitude", 0.0, 3.0)}
-PLANE = {"Origin": [0.0, 0.0, 0.1], "Point1": [3.22, 0.0, 0.1], "Point2": [0.0, 1.0, 0.1]}  # upright, along the tank
+PLANE = {"Origin": [0.0, 0.0, 0.1], "Point1": [3.22, 0.0, 0.1], "Point2": [0.0, 1.0, 0.1]}  # The plane is upright, along the tank.
 RESOLUTION = 322, 100
 SPEEDS = [0.5, 1.0, 1.5, 2.0, 2.5]
-RADII = [0.6, -1.0, 0.3, 0.9]  # the least value below all
+RADII = [0.6, -1.0, 0.3, 0.9]  # The least value is below all of the scalar's values.
 
 
 def write_square():
-    """A square in the plane y = 0.5."""
+    """Makes a square in the plane y = 0.5."""
     square, points = vtkPolyData(), vtkPoints()
     points.SetDataTypeToDouble()
     arrays = {name: vtkDoubleArray() for name in ("SmoothingLength", "Volume", "Radius")}
@@ -77,7 +77,7 @@ def extract(mode):
         made.SetPreview(mode == "Preview")
         made.SetCubeSizeFactor(2.0 if mode == "Preview" else 0.5)
         made.SetTrim(mode != "Untrimmed")
-        made.SetNodeThreshold(0.001 if mode == "Untrimmed" else 0.1)  # where kernels end, so that the picture shows it
+        made.SetNodeThreshold(0.001 if mode == "Untrimmed" else 0.1)  # The low threshold shows where kernels end.
         made.SetFreeSurface(mode in ("Wall", "FreeSurface"))
         made.SetSolids(vtkMarchingCorrectors.SOLIDS_WALL if mode == "Wall" else vtkMarchingCorrectors.SOLIDS_AUTO)
         made.SetHScaleFactor(0.75 if mode == "Weight" else 1.0)
@@ -89,7 +89,7 @@ def extract(mode):
 
 def draw_by_plugin(path):
     from paraview import simple
-    simple.LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())  # its filters come here
+    simple.LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())  # The plugin's filters become global names here.
     extract = globals()["MarchingCorrectors"](Input=simple.XMLPolyDataReader(FileName=[DATA]), FluidArray="ParticleType",
                                               FreeSurface=1)
     view = simple.CreateRenderView(ViewSize=[500, 300], UseColorPaletteForBackground=0, Background=[0.2, 0.2, 0.25],
@@ -105,7 +105,7 @@ def draw_by_plugin(path):
         simple.Render(view)
         return display.SMProxy.GetRepresentedDataInformation().GetNumberOfCells()
 
-    # An update that fails draws nothing; what follows it is drawn.
+    # An update that fails draws nothing, and later updates draw again.
     before = drawn()
     extract.OnlyInABox, extract.BoxLength = 1, [0.0, 0.0, 0.0]
     assert drawn() == 0
@@ -146,7 +146,7 @@ def draw(surface, color_by, low, high, path):
 
 
 def draw_filled(surface, path):
-    """Lines over bands."""
+    """Draws lines over bands."""
     bands = make_actor(surface, "BandValue", 0.0, 1.0, cells=True)
     lines = vtkPolyData()
     lines.SetPoints(surface.GetPoints())

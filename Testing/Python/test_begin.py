@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filters choose where nobody has: places, resolutions, arrays and colours; what becomes of a forgotten input."""
+"""Filters choose what nobody has set: places, resolutions, arrays and colours. They also say if an input is missing."""
 import unittest
 
 import numpy
@@ -12,7 +12,7 @@ from vtk_test import SPACING, blocks_of, lattice, particles_of, points_of, run, 
 
 
 def block(points=None, **arrays):
-    """With smoothing lengths, and a velocity whose curl is (0, 0, 2)."""
+    """Returns particles with smoothing lengths, and a velocity whose curl is (0, 0, 2)."""
     x = lattice(20, 12, 8) if points is None else points
     h = numpy.full(len(x), 1.3 * SPACING)
     return particles_of(x, h=h, Velocity=numpy.stack((-x[:, 1], x[:, 0], 0 * x[:, 0]), 1), Height=x[:, 2] + 2, **arrays)
@@ -25,7 +25,7 @@ def active(data):
 
 class TestPlaces(unittest.TestCase):
     def test_far_particles(self):
-        """Few particles far away do not stretch what spans the fluid."""
+        """A few particles far away do not stretch the bounds that span the fluid."""
         near = lattice(20, 12, 8)
         for far in ([], [[1e5, 0, 0]], [[0, 0, -3e4], [50, 60, 70]]):
             particles = block(numpy.concatenate([near, numpy.array(far).reshape(-1, 3)]))
@@ -34,12 +34,12 @@ class TestPlaces(unittest.TestCase):
             self.assertTrue(numpy.allclose(gauge.GetNextBounds(), [0, 1.9, 0, 1.1, 0, 0.7]), gauge.GetNextBounds())
             cut, _ = run(vtkSPHResample(), particles, Resolution=100)
             self.assertLess(max(abs(b) for b in cut.GetBounds()), 2.1)
-        # A splash is no longer than the fluid: all of it counts.
+        # A splash is close to the fluid, so all of it counts.
         gauge.SetInputData(block(numpy.concatenate([near, [[0, 0, 2.5]]])))
         self.assertAlmostEqual(gauge.GetNextBounds()[5], 2.5)
 
     def test_plane(self):
-        """Particles in a plane have but one slice, and a volume of one layer."""
+        """Particles in a plane have only one slice, and a volume of one layer."""
         for axis in range(3):
             points = numpy.insert(lattice(20, 12, 1)[:, :2], axis, 0.25, axis=1)
             for fit in (0, 1):
@@ -62,7 +62,7 @@ class TestPlaces(unittest.TestCase):
 
 class TestColours(unittest.TestCase):
     def test_not_what_is_contoured(self):
-        """On an isosurface of the speed the speed is noise, as an array of its own, too."""
+        """On an isosurface of the speed, the speed is noise, even as an array of its own, so another array gives the colours."""
         particles = block()
         speed = numpy.linalg.norm(values_of(particles, "Velocity"), axis=1)
         particles = block(Speed=speed)
@@ -82,7 +82,7 @@ class TestColours(unittest.TestCase):
     def test_pieces(self):
         surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
         particles = block()
-        for inputs in ((surface, particles), (particles, surface)):  # the other way round, too
+        for inputs in ((surface, particles), (particles, surface)):  # The inputs are given in both orders.
             pieces = vtkSPHComponents()
             pieces.SetInputData(1, inputs[1])
             found, told = run(pieces, inputs[0])
@@ -92,7 +92,7 @@ class TestColours(unittest.TestCase):
 
 class TestForgotten(unittest.TestCase):
     def test_pieces(self):
-        """Without particles there is nothing to tell of them; without a surface a sentence says so."""
+        """Without particles nothing is said about them; without a surface one sentence says so."""
         surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
         pieces = vtkSPHComponents()
         _, told = run(pieces, surface)
@@ -111,7 +111,7 @@ class TestForgotten(unittest.TestCase):
         self.assertRegex(told[0], "Choose the particles")
 
     def test_smoothing_length(self):
-        """The remedy comes first, in the words of the panel."""
+        """The sentence begins with the remedy, in the words of the panel."""
         bare = particles_of(lattice(10, 10, 10))
         surface = vtkMarchingCorrectors()
         _, told = run(surface, bare, FreeSurface=1)
@@ -123,7 +123,7 @@ class TestForgotten(unittest.TestCase):
 
 class TestChoices(unittest.TestCase):
     def test_blocks_are_fluid(self):
-        """A block of any name is the fluid where it is chosen."""
+        """A block that is chosen as fluid is the fluid, whatever its name."""
         x = lattice(20, 12, 8)
         wall = x[:, 2] < 0.25
         blocks = blocks_of(water=block(x[~wall]), tank=block(x[wall]))

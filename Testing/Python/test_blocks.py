@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Composite data: blocks that are one set of particles; and each block by itself, in its place, where messages name the
-block, and none is lost."""
+"""Composite data: blocks that are one set of particles; and each block by itself, where the output keeps its place, sentences name it, and none is
+lost."""
 import unittest
 
 import numpy
@@ -33,7 +33,7 @@ class TestApart(unittest.TestCase):
         cls.alone = surface_of(run(sphere())[0])
 
     def test_messages(self):
-        """Broken, good, an image, empty, none, broken without a name within a block, good."""
+        """Makes blocks that are broken, good, an image, empty, missing, broken and nameless within a block, and good."""
         blocks = blocks_of(broken(), timed(cube()), vtkImageData(), vtkPolyData(), None, blocks_of(broken()), cube())
         for i, name in ((0, "first"), (2, "picture")):
             blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
@@ -50,7 +50,7 @@ class TestApart(unittest.TestCase):
             self.assertTrue(surface_of(output.GetBlock(i)) == self.alone)
         data = output.GetBlock(1).GetFieldData()
         self.assertTrue(data.HasArray("TimeValue") and data.HasArray("IsoValues"))
-        # Good data again, and other kinds of output: nothing of the errors stays.
+        # With good data again, and with other kinds of output, no error is left.
         blocks.SetBlock(0, cube())
         blocks.SetBlock(5, None)
         run(extract)
@@ -58,7 +58,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, cube())[0]) == self.alone)
 
     def test_partitions(self):
-        """Are called by the name of what they are parts of."""
+        """A part without a name is called by the name of what it belongs to."""
         walls, water, collection = vtkPartitionedDataSet(), vtkPartitionedDataSet(), vtkPartitionedDataSetCollection()
         walls.SetPartition(0, cube())
         water.SetPartition(0, cube())
@@ -76,7 +76,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, water)[0].GetPartition(0)) == self.alone)
 
     def test_sums(self):
-        """The cost is that of all blocks; the fraction of the progress never falls."""
+        """Costs are those of all blocks, and the fraction of the progress never falls."""
         extract, seen = sphere(), [0]
         run(extract, **APART, KeepDeviceData=0)
         bricks, peak = statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")
@@ -88,14 +88,14 @@ class TestApart(unittest.TestCase):
         self.assertEqual((extract.GetProgressScale(), extract.GetProgressShift()), (1, 0))
 
     def test_abort(self):
-        """In the second block: no surface of the first one alone."""
+        """A run that is stopped in the second block has no surface, not even the first block's."""
         extract = sphere(blocks_of(cube(), cube()))
         on_progress(extract, lambda made: made.SetAbortExecute(made.GetProgress() > 0.6))
         output, told = run(extract, **APART)
         self.assertEqual((output.GetNumberOfPoints(), told, extract.GetErrorMessage()), (0, [], ""))
 
     def test_no_point_sets(self):
-        """Blocks of cells without points of their own: refused, not crashed on."""
+        """Blocks of cells without points of their own are refused; they do not crash."""
         amr, extract = vtkOverlappingAMR(), sphere()
         amr.Initialize(1, [1])
         messages = []
@@ -111,8 +111,8 @@ class TestApart(unittest.TestCase):
 
 class TestTogether(unittest.TestCase):
     def test_one_set(self):
-        """In any order, beside empty blocks: the surface of one set, to the last bit. An array that one block lacks is left
-        out. What is put together is kept while the blocks are the same."""
+        """Blocks that are one set, in any order and beside empty ones, give the surface of this set to the last bit. An array that one block lacks is
+        left out. The joined set is kept while the blocks stay the same."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         first, second = take(data, ~left), timed(take(data, left))
@@ -131,7 +131,7 @@ class TestTogether(unittest.TestCase):
         self.assertTrue(run(extract, **APART)[0].IsA("vtkMultiBlockDataSet"))
 
     def test_widths_that_differ(self):
-        """An array has one width in a block, two in another one: left out."""
+        """An array that has one component in a block and two in another is left out."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         halves = take(data, left), take(data, ~left)
@@ -142,7 +142,7 @@ class TestTogether(unittest.TestCase):
         self.assertFalse(surface.GetPointData().HasArray("Pair"))
 
     def test_walls(self):
-        """In a block of their own, as its name says, without the scalar: solid, where that is asked for."""
+        """Walls are in a block of their own, which its name tells, and lack the scalar. They are solid where the filter is asked for that."""
         data = cube()
         wall = points_of(data)[:, 2] < -0.45
         walls = take(data, wall)
@@ -157,12 +157,12 @@ class TestTogether(unittest.TestCase):
         surface, told = run(extract)
         self.assertEqual((told, extract.GetUsedFluid()), ([], "WallBlock = 0"))
         self.assertFalse(surface.GetPointData().HasArray("WallBlock"))
-        one = sphere(add(data, Kind=numpy.where(wall, 7, 4)))  # as one set in which an array tells
+        one = sphere(add(data, Kind=numpy.where(wall, 7, 4)))  # In one set an array tells walls.
         one.AddExcludedArray("Kind")
         self.assertTrue(surface_of(surface) == surface_of(run(one, FluidArrayName="Kind", FluidValue=4)[0]))
         self.assertGreater(surface.GetNumberOfCells(), 100)
         self.assertNotEqual(surface.GetNumberOfCells(), everywhere)
-        self.assertGreater(len(run(extract, **APART)[1]), 0)  # walls that are not seen
+        self.assertGreater(len(run(extract, **APART)[1]), 0)  # Block by block, the walls are not seen.
 
 
 if __name__ == "__main__":

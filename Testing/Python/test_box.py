@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The real data sets: a box's part of a surface; how large surfaces are, and where they end at walls. The oracle has their
-points (oracle_data), core_box what boxes have in common."""
+"""Real data sets: the part of a surface that is in a box, how large surfaces are, and where they end at walls. oracle_data checks their points,
+core_box how boxes fit together."""
 import math
 import pathlib
 import unittest
@@ -24,7 +24,7 @@ def read(name):
 
 class TestBox(unittest.TestCase):
     def test_two_boxes(self):
-        """Have the whole surface together, and read what reaches them alone; walls, lengths that differ, two iso values."""
+        """Boxes together make the whole surface, and each reads only particles that reach it: with walls, different lengths and two iso values."""
         extract, cells, shares = vtkMarchingCorrectors(), [], []
         run(extract, read("dam_break_45k.vtp"), FluidArrayName="ParticleType", SmoothingLengthArrayName="SmoothingLengthAdaptive",
             InputArrayToProcess=(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Velocity"), Value=(1, 1.7))
@@ -35,7 +35,7 @@ class TestBox(unittest.TestCase):
         self.assertLess(shares[2], 0.6 * shares[0])
 
     def test_nothing_there(self):
-        """Far away there is no surface, and nothing to complain about."""
+        """A box far away has no surface, and that is no error."""
         extract, particles = vtkMarchingCorrectors(), read("bunny_splash_small.vtp")
         surface, told = run(extract, particles, FreeSurface=1, UseBox=1, Box=(50, 51, 0, 1, 0, 1))
         self.assertEqual((surface.GetNumberOfCells(), told), (0, []))
@@ -53,7 +53,7 @@ class TestWalls(unittest.TestCase):
         self.assertEqual((extract.GetUsedMassArrayName(), extract.GetUsedDensityArrayName()), ("Mass", "Density"))
         self.assertEqual(statistic(extract, "SolidParticles"), 55348)
         self.assertTrue(8000 < behind < 20000)
-        # By default a scalar's surface ends at the walls, and only there is less of it.
+        # By default a scalar's surface ends at the walls, so a part of it is missing.
         ending = run(extract, Solids=extract.SOLIDS_AUTO)[0]
         self.assertTrue(behind / 2 < ending.GetNumberOfCells() < behind)
         self.assertTrue(surface_of(ending) == surface_of(run(by_hand, data, **arrays, Solids=extract.SOLIDS_WALL)[0]))
@@ -65,7 +65,7 @@ class TestWalls(unittest.TestCase):
         x0, x1, _, _, z0, z1 = closed.GetBounds()
         self.assertTrue(closed.GetNumberOfCells() > 100000 and x0 > -0.05 and x1 < 3.27 and z0 > -0.55 and z1 < 0.55)
         before = surface_of(closed)
-        self.assertTrue(surface_of(run(extract, Solids=extract.SOLIDS_AUTO)[0]) == before)  # the free surface goes on as it did
+        self.assertTrue(surface_of(run(extract, Solids=extract.SOLIDS_AUTO)[0]) == before)  # The free surface stays as it was.
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The surface in filters that users put behind it: a closed one, and one with a trimmed border."""
+"""Users' filters behind the surface: a closed surface, and one with a trimmed border."""
 import unittest
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
@@ -22,7 +22,7 @@ def extract(free_surface):
     source = vtkMarchingCorrectors()
     source.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Height")
     return run(source, particles_of(places, Height=places[:, 2]), SmoothingLength=1.3 * SPACING, FreeSurface=free_surface,
-               Value=(0, 0.05))[0]  # elsewhere vtkFillHolesFilter gives up where the border is nearly straight
+               Value=(0, 0.05))[0]  # With other values vtkFillHolesFilter gives up where the border is nearly straight.
 
 
 class TestDownstream(unittest.TestCase):
@@ -31,7 +31,7 @@ class TestDownstream(unittest.TestCase):
         cls.closed, cls.open = extract(True), extract(False)
 
     def apply(self, surface, kind, *calls):
-        """The output of a filter, which must not complain. calls: (method, argument), ..."""
+        """Returns the output of a filter that must not complain. calls: (method, argument), ..."""
         step = kind()
         for name, *arguments in calls:
             getattr(step, name)(*arguments)
@@ -106,7 +106,7 @@ class TestDownstream(unittest.TestCase):
         self.assertAlmostEqual(half.GetBounds()[1], self.closed.GetBounds()[1])
 
     def test_rewriting(self):
-        """Cells are rewritten, and none is lost: no triangle is a line or a point."""
+        """vtkCleanPolyData rewrites cells but loses none: no triangle becomes a line or a point."""
         for surface in (self.closed, self.open):
             cells = surface.GetNumberOfCells()
             clean = self.apply(surface, vtkCleanPolyData, ("SetTolerance", 0.0))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkSPHDerivatives, vtkSPHProbe and vtkSPHResample: weird input first, then against brute force and known fields."""
+"""Tests vtkSPHDerivatives, vtkSPHProbe and vtkSPHResample: first with odd input, then against brute force and known fields."""
 import math
 import pathlib
 import unittest
@@ -19,13 +19,13 @@ DATA = pathlib.Path(__file__).resolve().parents[2] / "Examples" / "Data"
 
 
 def off_lattice(n, jitter):
-    """n^3 places in [0, 1]^3, each so far off those of a lattice, in its spacings."""
+    """Returns n^3 places in [0, 1]^3, moved from a lattice by up to `jitter` spacings."""
     at = numpy.stack(numpy.meshgrid(*[numpy.arange(n)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5
     return (at + jitter * numpy.random.default_rng(n).uniform(-1, 1, at.shape)) / n
 
 
 def make_vortex(n):
-    """A Taylor-Green vortex in [0, 1]^3."""
+    """Makes a Taylor-Green vortex in [0, 1]^3."""
     places = off_lattice(n, 0.1).astype(numpy.float32)
     x, y = 2 * numpy.pi * places[:, :2].T
     velocity = numpy.stack([numpy.cos(x) * numpy.sin(y), -numpy.sin(x) * numpy.cos(y), 0 * x], axis=1)
@@ -39,7 +39,7 @@ def derive(particles, name="Velocity"):
 
 
 def gradient_error(n, jitter):
-    """The largest error of the corrected gradient of sin(3x) cos(2y) + z^2 inside [0, 1]^3, of n^3 particles."""
+    """Returns the largest error, inside [0, 1]^3, of the corrected gradient of sin(3x) cos(2y) + z^2 with n^3 particles."""
     at = off_lattice(n, jitter)
     x, y, z = at.T
     found = values_of(derive(particles_of(at, F=numpy.sin(3 * x) * numpy.cos(2 * y) + z ** 2, h=numpy.full(n ** 3, 1.3 / n),
@@ -51,13 +51,13 @@ def gradient_error(n, jitter):
 
 class TestOrder(unittest.TestCase):
     def test_of_gradients(self):
-        """Errors are of second order where particles lie on a lattice, else of first order, as those of corrected SPH gradients are."""
+        """Errors are of second order for particles on a lattice, otherwise of first order, as is usual for corrected SPH gradients."""
         self.assertGreater(math.log2(gradient_error(10, 0) / gradient_error(20, 0)), 1.8)
         self.assertGreater(math.log2(gradient_error(10, 0.1) / gradient_error(20, 0.1)), 0.9)
 
 
 class TestPeriod(unittest.TestCase):
-    """The Taylor-Green vortex repeats: its period is given, or found in the field data."""
+    """The Taylor-Green vortex repeats, with a period that is given or found in the field data."""
 
     def make_filters(self, particles):
         plane = vtkImageData()
@@ -75,7 +75,7 @@ class TestPeriod(unittest.TestCase):
 
     def test_derivatives_at_sides(self):
         derivatives = self.make_filters(make_vortex(16))[2]
-        derivatives.CorrectGradientsOff()  # which are far off where neighbors are missing
+        derivatives.CorrectGradientsOff()  # Without correction gradients are far off where neighbors are missing.
         worst = []
         for sides in ((0,) * 6, (0, 1) * 3):
             data, _ = run(derivatives, PeriodicBounds=sides)
@@ -113,13 +113,13 @@ class TestPeriod(unittest.TestCase):
 
 class TestDerivatives(unittest.TestCase):
     def test_refused(self):
-        """A sentence and an empty output; nothing at all is no fault."""
+        """Each fault gives a sentence and an empty output; an empty input is no fault."""
         data, told = run(vtkSPHDerivatives(), vtkPolyData())
         self.assertEqual((data.GetNumberOfPoints(), told), (0, []))
         broken, bare = cube(), cube()
         values_of(broken, "Radius")[5] = math.nan
         bare.GetPointData().RemoveArray("SmoothingLength")
-        alone = particles_of(points_of(cube()), SmoothingLength=numpy.full(COUNT, H))  # nothing varies
+        alone = particles_of(points_of(cube()), SmoothingLength=numpy.full(COUNT, H))  # No array varies.
         for particles, name, words in ((cube(), "Nonsense", "'Nonsense'.*SmoothingLength, Volume, Radius"),
                                        (alone, None, "No array was chosen"), (broken, "Radius", "particle 5"),
                                        (bare, "Radius", "smoothing length")):
@@ -129,10 +129,10 @@ class TestDerivatives(unittest.TestCase):
             self.assertRegex(made.GetErrorMessage(), words)
 
     def test_linear(self):
-        """Exact, of a rotation and of a shear."""
+        """Derivatives of a rotation and of a shear are exact."""
         rotation = numpy.array([[0, -0.5, -0.2], [0.5, 0, -0.3], [0.2, 0.3, 0]])  # w = (0.3, -0.2, 0.5)
         shear = numpy.array([[0.0, 2, 0], [0, 0, 0], [0, 0, 0]])
-        for j, lambda2 in ((rotation, -0.38), (shear, 0)):  # a rotation has -|w|^2; a shear's S S + O O is 0
+        for j, lambda2 in ((rotation, -0.38), (shear, 0)):  # A rotation has lambda2 = -|w|^2; a shear has 0, since S S + O O is 0.
             for precision, kind, tolerance in ((1, "f8", 1e-12), (0, "f4", 1e-5)):
                 data, _ = run(vtkSPHDerivatives(), cube(Velocity=(points_of(cube()) @ j.T + 7).astype(kind)), Precision=precision,
                               ComputeStrainRate=1, InputArrayToProcess=(0, 0, 0, POINTS, "Velocity"))
@@ -145,12 +145,12 @@ class TestDerivatives(unittest.TestCase):
                     self.assertLess(abs(values_of(data, name) - expected).max(), 4 * tolerance, name)
 
     def test_solids(self):
-        """Have zeros and do not count; arrays of the file stay, unless they are to be replaced."""
+        """Walls have zeros and do not count. Arrays of the file stay, unless they are to be replaced."""
         x = points_of(cube())
         solid = x[:, 2] < -0.5
         velocity = numpy.stack([numpy.where(solid, math.nan, 2 * x[:, 1]), *0 * x[:, 1:].T], axis=1)
         particles = cube(Velocity=velocity, Type=numpy.where(solid, 4, 1).astype(numpy.uint8), Lambda2=numpy.full(COUNT, 17.0))
-        made = vtkSPHDerivatives()  # whose array is Velocity
+        made = vtkSPHDerivatives()  # Its array is Velocity.
         data, _ = run(made, particles, FluidArrayName="Type", FluidValue=1, ResultArrayName="Slope", ComputeQCriterion=0)
         self.assertLess(abs(values_of(data, "Slope")[:, 1] - numpy.where(solid, 0, 2)).max(), 1e-5)
         self.assertEqual(values_of(data, "SlopeCorrected").tolist(), (~solid).astype(int).tolist())
@@ -166,7 +166,7 @@ class TestDerivatives(unittest.TestCase):
         self.assertEqual((len(told), made.GetErrorMessage(), data.GetNumberOfPoints()), (1, "", COUNT))
 
     def test_found_fluid(self):
-        """By every filter, as by SPH Contour."""
+        """Every filter finds the fluid as SPH Contour does."""
         particles, probe = cube(ParticleType=(points_of(cube())[:, 2] < -0.45).astype(numpy.int32)), vtkSPHProbe()
         probe.SetSourceData(particles)
         for made, data in ((vtkSPHDerivatives(), particles), (probe, cube())):
@@ -174,7 +174,7 @@ class TestDerivatives(unittest.TestCase):
             self.assertEqual((run(made, DetectFluid=1)[1], made.GetUsedFluid()), ([], "ParticleType = 0"))
 
     def test_outputs(self):
-        """A run that is stopped, another class, the standard form."""
+        """A run that is stopped, input of another class, and the standard form of the gradient."""
         grid, made = vtkUnstructuredGrid(), vtkSPHDerivatives()
         grid.SetPoints(cube().GetPoints())
         grid.GetPointData().ShallowCopy(cube().GetPointData())
@@ -184,7 +184,7 @@ class TestDerivatives(unittest.TestCase):
         self.assertEqual(aborted(made).GetNumberOfPoints(), 0)
 
     def test_derivatives(self):
-        """Stay in their blocks, and see the others."""
+        """Particles in blocks stay in their blocks, and are neighbours of those in other blocks."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         outputs = []
@@ -207,8 +207,8 @@ class TestDerivatives(unittest.TestCase):
         self.assertTrue(surface.GetPointData().HasArray("Vorticity"))
 
     def test_stored_arrays(self):
-        """The file's own Vorticity and Lambda2, made by another program from the same velocities with
-        1.3 times the smoothing length; zeros where it found too few neighbors."""
+        """The file has its own Vorticity and Lambda2, which another program made from the same velocities with 1.3 times the smoothing length. They
+        are 0 where it found too few neighbors."""
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(str(DATA / "dam_break_45k.vtp"))
         reader.Update()
@@ -247,7 +247,7 @@ class TestProbe(unittest.TestCase):
         self.assertEqual(probe.GetUsedSmoothingLengthArrayName(), "h")
 
     def test_points_of_an_image(self):
-        """They are computed row by row, in chunks: the same bits as at points that are stored."""
+        """Points of an image are computed row by row, in chunks; the bits are those of stored points."""
         image = vtkImageData()
         image.SetExtent(3, 1033, -5, 511, 7, 8)  # more than one chunk of points
         image.SetSpacing(0.0011, 0.0009, 0.3)
@@ -265,7 +265,7 @@ class TestProbe(unittest.TestCase):
         self.assertTrue(results[0] == results[1])
 
     def test_point_sets(self):
-        """What VTK 9.1 cannot make by its name: points without a class of cells, alone and as a block."""
+        """VTK 9.1 cannot make this class by its name: points without cells, alone and as a block."""
         points = vtkPointSet()
         points.ShallowCopy(self.make().GetSource())
         for filter_ in (self.make(), vtkSPHDerivatives()):
@@ -277,7 +277,7 @@ class TestProbe(unittest.TestCase):
                 self.assertTrue(bytes_of(found) == expected)
 
     def test_changed_arrays(self):
-        """Arrays that a probe keeps are not taken for others."""
+        """Arrays that a probe keeps are not mistaken for others."""
         probe = self.make()
         before = values_of(run(probe)[0], "Velocity").copy()
         velocity = probe.GetSource().GetPointData().GetArray("Velocity")
@@ -296,13 +296,13 @@ class TestProbe(unittest.TestCase):
         return run(self.made, points, **settings)[0]
 
     def places(self, count):
-        """In and around the cube; every fiftieth is far away."""
+        """Returns places in and around the cube; every fiftieth is far away."""
         places = numpy.random.default_rng(7).uniform(-1.3, 1.3, (count, 3))
         places[::50] *= 4e5
         return places
 
     def test_values(self):
-        """Against brute force: means, and sums."""
+        """Means and sums agree with brute force."""
         places, particles = self.places(800), cube()
         weight, total = sums_at(particles, values_of(particles, "Radius"), places)
         valid = weight >= 0.3
@@ -324,7 +324,7 @@ class TestProbe(unittest.TestCase):
         return image
 
     def test_gradients(self):
-        """Gradients of a linear array inside of the cube: the particles' gradient to some digits; that of the weight, 0."""
+        """Inside of the cube the gradient of a linear array is the particles' gradient to some digits, and that of the weight is 0."""
         y = points_of(cube())[:, 1:2]
         particles = cube(Pair=(100 + y * [1, 2]).astype(numpy.float32))
         data = self.probe(self.image(0, 8, 0, 8, 0, 2, spacing=0.1, origin=(-0.4, -0.4, -0.1)), particles, ComputeGradients=1)
@@ -334,7 +334,7 @@ class TestProbe(unittest.TestCase):
         self.assertLess(abs(values_of(data, "WeightSum_Gradient").mean(axis=0)).max(), 0.1)
 
     def test_bits(self):
-        """Bits are the same in any order, of points in any class, with device data kept or not, of particles in blocks."""
+        """Bits are the same in any order, for points of any class, with device data kept or not, and for particles in blocks."""
         particles, places = cube(), self.places(5000)
         expected = self.probe(particles_of(places), particles)
         back = self.probe(particles_of(places[::-1]), particles, KeepDeviceData=0)
@@ -349,7 +349,7 @@ class TestProbe(unittest.TestCase):
         self.assertEqual((both.GetBlock(0).GetExtent(), values_of(both.GetBlock(0), "WeightSum")[20] > 0.5),
                          (image.GetExtent(), True))
         halves = [take(particles, slice(half, None, 2)) for half in range(2)]
-        halves[1].GetPointData().RemoveArray("Radius")  # only arrays that all have
+        halves[1].GetPointData().RemoveArray("Radius")  # An array is used only if all blocks have it.
         joined = self.probe(particles_of(places), blocks_of(*halves))
         self.assertEqual(values_of(joined, "WeightSum").tobytes(), values_of(expected, "WeightSum").tobytes())
         self.assertFalse(joined.GetPointData().HasArray("Radius"))
@@ -363,7 +363,7 @@ class TestProbe(unittest.TestCase):
         self.assertFalse(data.GetPointData().HasArray("Type"))
 
     def test_refused(self):
-        """Nothing to probe, nothing to probe with, what cannot be used, and a run that is stopped."""
+        """Without points, without particles, with input that cannot be used, and when stopped, the filter behaves."""
         data = self.probe(particles_of(self.places(100)), vtkPolyData())
         self.assertEqual((values_of(data, "vtkValidPointMask").tolist(), self.made.GetErrorMessage()), ([0] * 100, ""))
         data = self.probe(vtkPolyData(), cube())
@@ -385,7 +385,7 @@ class TestProbe(unittest.TestCase):
         self.assertIsNone(vtkSPHProbe().GetSource())
 
     def test_particles_among_meshes(self):
-        """Vertices beside other cells are the particles; derivatives come with these, in the class of the input."""
+        """Vertices beside other cells are the particles. Derivatives are those particles', in the class of the input."""
         particles, mesh = make_vortex(8), vtkUnstructuredGrid()
         count = particles.GetNumberOfPoints()
         mesh.SetPoints(particles.GetPoints())
@@ -402,11 +402,11 @@ class TestProbe(unittest.TestCase):
 
 
 class TestResample(unittest.TestCase):
-    """Slices, lines and volumes: where their points are, their values as the probe has them, NaN outside."""
+    """Tests slices, lines and volumes: where their points are, the probe's values at them, and NaN outside."""
 
     def setUp(self):
         self.particles, self.made = cube(Velocity=points_of(cube()) + 3), vtkSPHResample()
-        run(self.made, self.particles, Resolution=41, WeightThreshold=0.4)  # so that the fluid ends before the points do
+        run(self.made, self.particles, Resolution=41, WeightThreshold=0.4)  # With this threshold the fluid ends before the points do.
 
     def check_values(self, **settings):
         made, _ = run(self.made, **settings)
@@ -428,13 +428,13 @@ class TestResample(unittest.TestCase):
         low, high = points_of(made).min(axis=0), points_of(made).max(axis=0)
         self.assertTrue(41 * 40 <= made.GetNumberOfPoints() <= 41 * 41)
         self.assertTrue(abs(low[1]) < 0.02 and low[1] == high[1] and -1.2 < low[0] < -1 and 1 < high[2] < 1.2)
-        self.assertTrue(900 < made.GetNumberOfCells() < 40 * 39)  # quads end where the fluid does
+        self.assertTrue(900 < made.GetNumberOfCells() < 40 * 39)  # Quads end where the fluid ends.
         self.assertGreaterEqual(run(self.made, OnlyFluid=0)[0].GetNumberOfCells(), 40 * 39)
         # An inclined plane: its points are on it, and the cube's corner is cut off.
         x = points_of(self.check_values(FitBounds=0, Origin=(0.5, 0.5, 0.5), Normal=(1, 1, 1)))
         self.assertLess(abs(x.sum(axis=1) - 1.5).max(), 1e-12)
         self.assertTrue(x[:, 0].min() < 0 and x[:, 0].max() > 1)
-        made, told = run(self.made, Origin=(5, 0, 0), Normal=(1, 0, 0))  # beside the fluid
+        made, told = run(self.made, Origin=(5, 0, 0), Normal=(1, 0, 0))  # The plane lies beside the fluid.
         self.assertEqual((made.GetNumberOfPoints(), told), (0, []))
 
     def test_line(self):
@@ -450,10 +450,10 @@ class TestResample(unittest.TestCase):
         made, _ = run(self.made, FitBounds=0, Bounds=(0, 3, 0, 0.5, -0.5, 0.5), NaNOutside=0, NullValue=-9)
         self.assertRegex(str(self.made), r"\n +NaN Outside: 0\n *Null Value: -9\n")
         self.assertEqual((made.GetBounds()[1], values_of(made, "Radius").min()), (3, -9))
-        self.assertTrue(run(self.made, Shape=vtkSPHResample.SLICE)[0].IsA("vtkPolyData"))  # another class of output
+        self.assertTrue(run(self.made, Shape=vtkSPHResample.SLICE)[0].IsA("vtkPolyData"))  # The output has another class.
 
     def test_inputs(self):
-        """Walls do not count, in the bounds neither; blocks are one set; nothing is no error."""
+        """Walls do not count, nor are they in the bounds; blocks are one set; without particles there is no error."""
         add(self.particles, ParticleType=(points_of(self.particles)[:, 0] > 0.05).astype(int))
         made, _ = run(self.made, blocks_of(self.particles), DetectFluid=1)
         self.assertEqual(self.made.GetUsedFluid(), "ParticleType = 0")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkMarchingCorrectors: points against brute force; arrays, their names and types, field data, statistics; what it tells
-before a run. What comes in: test_input.py."""
+"""Tests vtkMarchingCorrectors: points against brute force; arrays, their names and types, field data, statistics; what it tells before a run.
+test_input.py tests its input."""
 import math
 import unittest
 
@@ -17,12 +17,12 @@ from vtk_test import (
 
 X = lattice(11, 11, 11, around_origin=True)
 RADIUS = numpy.linalg.norm(X, axis=1)
-CELLS = 1331 * (SPACING / 0.065) ** 3  # a particle on this lattice takes 0.1^3
+CELLS = 1331 * (SPACING / 0.065) ** 3  # On this lattice a particle takes 0.1^3.
 DOUBLE = vtkMarchingCorrectors.DOUBLE_PRECISION
 
 
 def make_particles(chosen=slice(None), **arrays):
-    """Radius is the distance from the origin."""
+    """Returns some of the particles; Radius is the distance from the origin."""
     return particles_of(X[chosen], Radius=RADIUS[chosen], hsml=numpy.full(len(X[chosen]), 1.3 * SPACING), **arrays)
 
 
@@ -31,7 +31,7 @@ def make_filter(particles=None, scalar="Radius", iso=0.3):
 
 
 def normals_of(surface):
-    """The triangles' normals, by their corners."""
+    """Returns the triangles' normals, computed from their corners."""
     corners = points_of(surface).astype(float)[corners_of(surface)]
     return numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
@@ -42,7 +42,7 @@ def corners_of(surface):
 
 class FilterTest(unittest.TestCase):
     def good(self, extract, data=None, **settings):
-        """The surface of a run that says nothing."""
+        """Returns the surface of a run that prints nothing."""
         surface, told = run(extract, data, **settings)
         self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
         return surface
@@ -55,7 +55,7 @@ class FilterTest(unittest.TestCase):
 
 class TestPoints(FilterTest):
     def residual(self, extract, step, mean=True):
-        """The largest difference from the iso value, by brute force."""
+        """Returns the largest difference from the iso value, by brute force."""
         surface = self.surface = run(extract)[0]
         self.assertGreater(surface.GetNumberOfPoints(), 1000)
         particles = extract.GetInput()
@@ -63,7 +63,7 @@ class TestPoints(FilterTest):
         return abs((total / weight if mean else total) - 0.6).max()
 
     def test_sphere(self):
-        """Radius grows outward; normals point to lower values, as those of vtkContourFilter do, and triangles as they do."""
+        """Radius grows outward. Normals point to lower values, as vtkContourFilter's do, and triangles face as normals do."""
         extract = sphere()
         self.assertLess(self.residual(extract, 13), 1e-5 * math.sqrt(3))
         normals = values_of(self.surface, "Normals")[corners_of(self.surface)[:, 0]]
@@ -73,7 +73,7 @@ class TestPoints(FilterTest):
         self.assertLess(self.residual(extract, 13, mean=False), 1e-5 * math.sqrt(3))
 
     def test_tolerance(self):
-        """A lower one takes more iterations; where these are too few, vertices stay above it."""
+        """A lower tolerance takes more iterations; if there are too few, vertices stay above it."""
         extract, bound = sphere(), 1e-12 * math.sqrt(3)
         extract.SetPrecision(DOUBLE)
         self.assertGreater(self.residual(extract, 7), 10 * bound)
@@ -97,8 +97,8 @@ class TestPoints(FilterTest):
         self.assertEqual(set(values_of(self.good(extract, FreeSurface=1), "IsoValue")), {0.3, 0.6})
 
     def test_value_that_is_not_given(self):
-        """The median of the fluid, not moved by single extreme particles; of values that range over decades the middle in
-        logarithms. Whole numbers stay whole."""
+        """The default iso value is the median of the fluid, which single extreme particles do not move. For values that range over decades it is the
+        middle of their logarithms; for whole numbers it is whole."""
         data = cube()
         x, radius = points_of(data)[:, 0], values_of(data, "Radius")
         add(data, Decades=10.0 ** (2 * x - 3), Whole=numpy.floor(9 * x).astype(numpy.int32))
@@ -116,7 +116,7 @@ class TestPoints(FilterTest):
         radius[:10] = 1e6
         data.GetPointData().GetArray("Radius").Modified()
         self.assertAlmostEqual(used(), middle, delta=0.02)
-        self.assertAlmostEqual(used(NumberOfContours=1, Value=(0, math.nan)), middle, delta=0.02)  # an empty row
+        self.assertAlmostEqual(used(NumberOfContours=1, Value=(0, math.nan)), middle, delta=0.02)  # A NaN stands for an empty row of the panel.
         extract.SetNumberOfContours(0)
         self.assertAlmostEqual(math.log10(used(InputArrayToProcess=(0, 0, 0, POINTS, "Decades"))), -3, delta=0.1)
         whole = used(InputArrayToProcess=(0, 0, 0, POINTS, "Whole"))
@@ -130,7 +130,7 @@ class TestPoints(FilterTest):
         self.assertAlmostEqual(statistic(extract, "SmoothingLengthRange"), H, delta=0.03)
 
     def test_by_neighbours(self):
-        """Sums over neighbours that are kept for the next run are made anew for other particles."""
+        """Sums over neighbours are kept for the next run, and computed anew for other particles."""
         particles = particles_of(lattice(7, 7, 7))
         extract = make_filter(particles, "Density", 0.5)
         found = []
@@ -145,7 +145,7 @@ class TestPoints(FilterTest):
         self.assertNotEqual(run(extract)[0].GetNumberOfPoints(), found[0][0])
 
     def test_trim(self):
-        """Off, the surface goes on beyond the weight sum 0.5, up to the node threshold."""
+        """With Trim off the surface goes on beyond the weight sum 0.5, down to the node threshold."""
         extract = make_filter(iso=0.52)
         least = [values_of(self.good(extract, Trim=trim, ComputeWeightSum=1), "WeightSum").min() for trim in (1, 0)]
         self.assertAlmostEqual(least[0], 0.5, 3)
@@ -158,7 +158,7 @@ class TestPoints(FilterTest):
         self.assertIn("Compact: 1", str(extract))
 
     def make_plane(self):
-        """21^2 particles in the plane y = 0.5; two isolines, and the least value below all."""
+        """Makes 21^2 particles in the plane y = 0.5, for two isolines and a least value below all."""
         places = lattice(21, 1, 21, around_origin=True) + [0, 0.5, 0]
         extract = sphere(particles_of(places, SmoothingLength=numpy.full(441, H), Volume=numpy.full(441, SPACING ** 2),
                                       Radius=numpy.hypot(*places[:, ::2].T)))
@@ -167,12 +167,12 @@ class TestPoints(FilterTest):
         return extract
 
     def test_bands(self):
-        """Triangles and lines carry the value with which their band begins."""
+        """Triangles and lines carry the value at which their band begins."""
         extract = self.make_plane()
         surface = run(extract)[0]
         self.assertEqual((surface.GetNumberOfPolys(), surface.GetCellData().HasArray("BandValue")), (0, False))
         self.has(surface, "Normals")
-        self.assertIsNone(surface.GetPointData().GetNormals())  # lines would be lit by them
+        self.assertIsNone(surface.GetPointData().GetNormals())  # With normals, lines would be lit.
         surface = run(extract, Filled=1)[0]
         bands = numpy.array(surface.GetCellData().GetArray("BandValue"))
         self.assertEqual((surface.GetNumberOfLines(), len(bands)), (2, surface.GetNumberOfCells()))
@@ -217,7 +217,8 @@ class TestArrays(FilterTest):
         self.has(self.good(extract, InterpolateAttributes=0), "Radius", "Position Id")
 
     def test_left_out(self):
-        """Arrays that the user excludes, and with a warning those that are not finite where there is fluid."""
+        """Two kinds of arrays are missing on the surface: those that the user excludes and, with a warning, those that are not finite where there is
+        fluid."""
         wall = points_of(cube())[:, 0] < -0.9
         broken = numpy.where(wall, math.inf, 1)
         particles = self.make_particles(Broken=numpy.ones((COUNT, 3)), BrokenWall=broken, Wall=wall.astype(float))
@@ -238,13 +239,13 @@ class TestArrays(FilterTest):
         self.has(run(extract)[0], "Id")
 
     def test_names(self):
-        """A computed array has its place whatever the input's arrays are called, the contoured one too."""
+        """A computed array keeps its name whatever the input's arrays are called, the contoured one included."""
         radius = values_of(cube(), "Radius").astype(numpy.float32)
         particles = cube(Normals=radius, WeightSum=radius, IsoValue=radius)
         extract = sphere(particles)
 
         def extracted(scalar, **settings):
-            """The surface, the name of the array that is the iso value everywhere, and all names."""
+            """Returns the surface, the name of the array that holds the iso value, and all names."""
             surface = self.good(extract, InputArrayToProcess=(0, 0, 0, POINTS, scalar), **settings)
             data = surface.GetPointData()
             names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
@@ -259,14 +260,14 @@ class TestArrays(FilterTest):
             self.assertIn(("Scalar", [scalar]), statistics_of(extract))
         surface, iso, _ = extracted("WeightSum", ComputeWeightSum=1)
         self.assertEqual((iso, values_of(surface, "WeightSum").max() > 0.9), (["IsoValue"], True))
-        # Not computed: an array like all others, and no normals.
+        # If these are not computed, the input's array is carried like all others, and there are no normals.
         surface, _, _ = extracted("Radius", ComputeNormals=0, ComputeWeightSum=0)
         self.assertIsNone(surface.GetPointData().GetNormals())
         self.assertEqual(values_of(surface, "Normals").ndim, 1)
         self.assertAlmostEqual(values_of(surface, "WeightSum")[0], 0.6, delta=0.05)
         self.assertEqual(extracted("Normals")[1], ["Normals"])
         self.assertGreater(values_of(extracted("Normals", ComputeScalars=0)[0], "Normals").max(), 0.6)
-        # Active scalars without a name are the default.
+        # By default, active scalars without a name are contoured.
         unnamed, untold = vtkDoubleArray(), vtkMarchingCorrectors()
         unnamed.DeepCopy(particles.GetPointData().GetArray("Radius"))
         unnamed.SetName(None)
@@ -279,7 +280,7 @@ class TestArrays(FilterTest):
         wanted = "Gradients WeightSum BoundaryEigenvalue Curvature CorrectionLength Residual BoundaryFlag"
         surface = self.good(extract, **{f"Compute{name}": 1 for name in wanted.split()})
         self.has(surface, "Normals GaussCurvature " + wanted.replace("Curvature", "MeanCurvature"))
-        self.assertAlmostEqual(values_of(surface, "MeanCurvature").mean() * 0.6, -1, delta=0.05)  # around lower values
+        self.assertAlmostEqual(values_of(surface, "MeanCurvature").mean() * 0.6, -1, delta=0.05)  # The surface encloses lower values.
         self.assertEqual((values_of(surface, "Radius").dtype, set(values_of(surface, "Radius"))), ("f8", {0.6}))
         extract.SetInputArrayToProcess(0, 0, 0, POINTS, "Position")
         self.has(run(extract)[0], "Position_Magnitude Position")
@@ -289,7 +290,7 @@ class TestArrays(FilterTest):
         self.assertIsNone(surface.GetPointData().GetNormals())
 
     def test_coarse_points(self):
-        """Floats that are too coarse for the surface are told of; these steps are 0.0625, the cubes 0.065."""
+        """A warning says that float coordinates are too coarse for the surface: their steps are 0.0625, the cubes 0.065."""
         extract, far = sphere(), particles_of(points_of(cube()) - [0, 1e6, 0]).GetPoints()
         self.good(extract, OutputPointsPrecision=0)
         extract.GetInput().SetPoints(far)
@@ -298,13 +299,13 @@ class TestArrays(FilterTest):
             self.assertEqual((len(told), surface.GetNumberOfCells() > 100), (count, True))
 
     def test_statistics(self):
-        """Costs of a run, which another run for the same surface may not have, are no part of the surface."""
+        """Costs of a run are not stored with the surface, because another run for the same surface may have others."""
         self.assertEqual(vtkMarchingCorrectors().GetRunStatistics().GetNumberOfArrays(), 0)
         extract = sphere(self.make_particles())
         surface = self.good(extract, OutputPointsPrecision=1)
         data, found = surface.GetFieldData(), dict(statistics_of(extract))
         self.assertEqual({data.GetArrayName(i): data.GetArray(i).GetValue(0) for i in range(data.GetNumberOfArrays())},
-                         {"TimeValue": 0.9, "IsoValues": 0.6})  # more would fill ParaView's menus of colours
+                         {"TimeValue": 0.9, "IsoValues": 0.6})  # More arrays would fill ParaView's menus of colours.
         for name, value in {"Kernel": "cubic", "Field": "shepard", "SeedMode": "complete", "Topology": "table",
                             "BoundaryDetection": "weight_sum", "Scalar": "Radius", "SmoothingLengthArray": "SmoothingLength",
                             "VolumeArray": "Volume", "MassArray": "", "IsoValues": "0.6", "FluidParticles": "9261",
@@ -323,11 +324,11 @@ class TestArrays(FilterTest):
         self.assertGreater(seconds.GetComponent(0, len(names) - 1), 0)
         for name in ("DeviceBytesPeak", "Bricks", "NodesEvaluated", "MarchRounds"):
             self.assertEqual((statistic(extract, name) > 0, data.HasArray(name)), (True, 0))
-        # As VTK measures them; a cut surface has no volume.
+        # The numbers are those of VTK's filters; a cut surface has no volume.
         masses = vtkMassProperties()
         masses.SetInputData(surface)
         self.assertAlmostEqual(numbers["Area"] / masses.GetSurfaceArea(), 1, delta=1e-5)
-        self.assertAlmostEqual(-numbers["Volume"] / masses.GetVolume(), 1, delta=1e-5)  # what is above is outside
+        self.assertAlmostEqual(-numbers["Volume"] / masses.GetVolume(), 1, delta=1e-5)  # Values above are outside.
         self.assertRegex(extract.GetSurfaceMeasures(), "^area [0-9.]+, volume -[0-9.]+$")
         self.good(extract, Box=(-2, 0, -2, 2, -2, 2), UseBox=1)
         self.assertFalse(extract.GetRunStatistics().HasArray("Volume"))
@@ -337,7 +338,7 @@ class TestArrays(FilterTest):
         self.assertGreater(kept.GetNumberOfComponents(), 2)
 
     def test_active_scalars(self):
-        self.assertIsNone(self.good(make_filter()).GetPointData().GetScalars())  # nothing varies: one iso value, one hsml
+        self.assertIsNone(self.good(make_filter()).GetPointData().GetScalars())  # No array varies: there is one iso value and one smoothing length.
 
 
 class TestTold(FilterTest):
@@ -368,12 +369,12 @@ class TestTold(FilterTest):
         self.assertEqual(extract.GetFluidScalarRange(), (inside.min(), inside.max()))
 
     def test_what_the_next_update_takes(self):
-        """Known without a run, for any scalar, with and without walls, box and blocks."""
+        """The range and the number of cells are known without a run, for any scalar, with and without walls, box and blocks."""
         particles, ends = make_particles(), (RADIUS.min(), RADIUS.max())
         extract = vtkMarchingCorrectors()
         self.assertEqual((extract.GetNextScalarRange(), extract.GetNextCells()), ((0, 0), 0))
         extract.SetInputData(particles)
-        self.assertEqual((extract.GetNextArray(), extract.GetNextComponents()), ("Radius", 1))  # the one that varies
+        self.assertEqual((extract.GetNextArray(), extract.GetNextComponents()), ("Radius", 1))  # This is the array that varies.
         self.assertAlmostEqual(extract.GetNextCells(), CELLS, 3)
         extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius")
         self.assertEqual(extract.GetNextScalarRange(), ends)
@@ -384,7 +385,7 @@ class TestTold(FilterTest):
         extract.SetCubeSizeFactor(0.25)
         self.assertAlmostEqual(extract.GetNextCells(), 8 * CELLS, 3)
         extract.UseBoxOn()
-        extract.SetBox(-9, 9, -9, 9, -9, 0.05)  # 6 of 11 layers
+        extract.SetBox(-9, 9, -9, 9, -9, 0.05)  # The box holds 6 of 11 layers.
         self.assertAlmostEqual(extract.GetNextCells(), 8 * CELLS * 6 / 11, 3)
         extract.UseBoxOff()
         values_of(particles, "Radius")[0] = 7.0
@@ -394,10 +395,10 @@ class TestTold(FilterTest):
         extract.SetInputData(blocks_of(make_particles(), particles))
         self.assertEqual(extract.GetNextScalarRange(), (ends[0], 7.0))
         self.assertAlmostEqual(extract.GetNextCells(), 2 * 8 * CELLS, 3)
-        self.assertEqual(extract.GetFluidScalarRange(), (0, 0))  # nothing ran
+        self.assertEqual(extract.GetFluidScalarRange(), (0, 0))  # Nothing has run yet.
 
     def test_huge_run_is_announced(self):
-        """Before it begins: here it is ended at its first sign of progress."""
+        """The warning about many cells comes before the run begins; here the run is stopped at its first sign of progress."""
         extract = make_filter()
         warnings = []
         extract.AddObserver("WarningEvent", lambda *_: warnings.append(extract.GetEstimatedCells()))
@@ -430,7 +431,7 @@ class TestTold(FilterTest):
             self.assertEqual(getattr(extract, "Get" + name)(), getattr(vtkMarchingCorrectors, after))
         self.assertIn(":", vtkMarchingCorrectors.ListDevices())
         for words in ("Cube Size Factor: 0.5", "Kernel: (cubic|0)", "Boundary Detection: (eigenvalue|1)", "Vertex Threshold: 0.5",
-                      "Iteration Limit: 255"):  # the wheel's class has numbers
+                      "Iteration Limit: 255"):  # The class in the wheel prints numbers.
             self.assertRegex(str(extract), words + "\n")
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Input of all kinds. Weird input first: an empty output and one sentence, and the filter works again. Then arrays and point
-sets of any kind, and what is found where nobody has named it."""
+"""Tests input of all kinds. Odd input comes first: it gives an empty output and one sentence, and the filter works again afterwards. Then arrays and
+point sets of any kind, and what is found where nothing is named."""
 import math
 import unittest
 
@@ -20,7 +20,7 @@ BARE = {"InterpolateAttributes": 0, "ComputeScalars": 0}
 
 
 def bare(data=None, *scalar, **settings):
-    """The surface without what is interpolated, for all comparisons of inputs."""
+    """Returns the surface without interpolated arrays, for comparisons of inputs."""
     extract = sphere(data, *scalar)
     surface, told = run(extract, **BARE, **settings)
     assert told == [] and surface.GetNumberOfCells() > 100, told
@@ -48,7 +48,7 @@ class TestWeird(unittest.TestCase):
         moved.GetPoints().SetPoint(20, 0, math.nan, 0)
         scalar = {name: {"InputArrayToProcess": (0, 0, 0, POINTS, name)} for name in ("NoSuch", "Text", "Short", "Vector", "")}
         for words, data, settings in (
-                (("scalar", "free surface", "Volume"), without("Radius"), scalar[""]),  # no other one varies
+                (("scalar", "free surface", "Volume"), without("Radius"), scalar[""]),  # No other array varies.
                 (("'NoSuch'", "scalar", "Radius"), cube(), scalar["NoSuch"]),
                 (("'NoSuch'", "scalar"), cube(), {"InputArrayToProcess": (0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "NoSuch")}),
                 (("'Text'", "numbers"), cube(Text=text), scalar["Text"]),
@@ -62,7 +62,7 @@ class TestWeird(unittest.TestCase):
                 *(((f"'NoSuch' for the {role}", "Point arrays"), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
                     ("Fluid", "fluid"))),
-                # The core's sentences arrive; core_input has all that it refuses.
+                # Sentences of the core reach the user; core_input tests all of them.
                 (("17", "SmoothingLength"), changed("SmoothingLength", 17, math.nan), {}),
                 (("18", "Radius"), changed("Radius", 18, math.inf), {}),
                 (("20", "osition"), moved, {}),
@@ -73,13 +73,13 @@ class TestWeird(unittest.TestCase):
                 extract = sphere(data)
                 surface, told = run(extract, **settings)
                 self.assertEqual((surface.GetNumberOfPoints(), surface.GetNumberOfCells()), (0, 0))
-                self.assertIn(extract.GetErrorMessage(), told[-1])  # which for cubes so small follows a warning
+                self.assertIn(extract.GetErrorMessage(), told[-1])  # The last sentence is the error; for such small cubes a warning comes before it.
                 for word in words:
                     self.assertIn(word, extract.GetErrorMessage())
                 self.assertNotIn("\n", extract.GetErrorMessage())
 
     def test_legal(self):
-        """Nothing at all, a point in the middle of nowhere, twice the same, no such value: no error."""
+        """No particles, one particle alone, no surface at this value, and the same twice are no errors."""
         empty, one = vtkPolyData(), particles_of([[1.0, 2.0, 3.0]])
         nothing = particles_of(numpy.empty((0, 3)))
         single = {"SmoothingLength": 0.1, "FreeSurface": 1}
@@ -113,7 +113,7 @@ class TestWeird(unittest.TestCase):
 
 class TestKinds(unittest.TestCase):
     def apart(self, kind, values):
-        """An array that has each component by itself."""
+        """Returns an array that stores each component separately."""
         array = vtkSOADataArrayTemplate[kind]()
         array.SetNumberOfComponents(values.shape[1])
         array.SetNumberOfTuples(len(values))
@@ -122,7 +122,7 @@ class TestKinds(unittest.TestCase):
         return array
 
     def test_scalars(self):
-        """Whole numbers, so that every type can hold them."""
+        """The values are whole numbers, which every type can hold."""
         values = numpy.floor(100 * values_of(cube(), "Radius"))
         expected = bare(cube(Count=values), "Count", 60.5)
         for kind in ("f4", "i4", "i2", "i8", "u1"):
@@ -131,7 +131,7 @@ class TestKinds(unittest.TestCase):
             self.assertTrue(bare(cube(Count=self.apart(kind, values[:, None])), "Count", 60.5) == expected, kind)
 
     def test_vectors(self):
-        """Magnitude, one component, the dot product of two: as if computed beforehand."""
+        """Magnitude, one component and the dot product of two arrays give the same as an array that was computed beforehand."""
         x = points_of(cube())
         data = cube(Vector=x, Apart=self.apart("float64", x), Third=x[:, 2], Square=(x ** 2).sum(axis=1))
         self.assertTrue(bare(data, "Vector") == bare(data, "Apart"))
@@ -142,7 +142,8 @@ class TestKinds(unittest.TestCase):
         self.assertTrue(run(named, ScalarComponent=1)[0].GetPointData().HasArray("Vector_Y"))
 
     def test_rare_arrays(self):
-        """Each as scalar, and carried to the surface; one array in several roles, and arrays without values or name."""
+        """Each type works as scalar, and is carried to the surface; one array may have several roles, and arrays without values or name do no
+        harm."""
         data, bits, variants, none = cube(), vtkBitArray(), vtkVariantArray(), vtkFloatArray()
         inside = (values_of(data, "Radius") < 0.6).astype(numpy.uint8)
         for i, value in enumerate(inside):
@@ -151,7 +152,7 @@ class TestKinds(unittest.TestCase):
         add(data, Byte=inside, Bit=bits, Variant=variants, hsml=none)
         data.GetPointData().AddArray(vtkFloatArray())
         data.GetPoints().GetData().SetName("Position")
-        data.GetPointData().AddArray(data.GetPoints().GetData())  # the points' own array
+        data.GetPointData().AddArray(data.GetPoints().GetData())  # This is the points' own array.
         self.assertEqual(*(bare(data, name, 0.5)["points"] for name in ("Byte", "Bit")))
         surface, _ = run(sphere(data))
         arrays, count = surface.GetPointData(), surface.GetNumberOfPoints()
@@ -163,10 +164,10 @@ class TestKinds(unittest.TestCase):
         self.assertEqual({arrays.GetAbstractArray(i).GetNumberOfTuples() for i in range(arrays.GetNumberOfArrays())}, {count})
         shared = sphere(cube(), "SmoothingLength", H / 2)
         surface, _ = run(shared, FluidArrayName="SmoothingLength", FluidValue=H, MassArrayName="SmoothingLength")
-        self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # nowhere half of it
+        self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # The field is nowhere half of it.
 
     def test_points(self):
-        """Whole numbers are as good as others; the surface's points have the type of the particles'."""
+        """Coordinates may be whole numbers; the surface's points have the type of the particles' points."""
         whole, surfaces = vtkPoints(), []
         whole.SetDataTypeToInt()
         for place in numpy.rint(lattice(10, 10, 10) / SPACING):
@@ -199,8 +200,8 @@ class TestKinds(unittest.TestCase):
         self.assertTrue(all(surface_of(apart.GetBlock(i)) == expected for i in range(2)))
 
     def make_mesh(self, particles, arrays):
-        """Hexahedra, between points of their own, before the particles' vertices, if there are any; with the particles'
-        arrays for all cells, or all points."""
+        """Makes hexahedra with points of their own before the particles' vertices, if there are any. `arrays` says whether all cells or all points
+        have the particles' arrays."""
         places = numpy.array([(i & 1, i >> 1 & 1, i >> 2) for i in (0, 1, 3, 2, 4, 5, 7, 6)], float)
         grid, count = vtkUnstructuredGrid(), COUNT if particles else 0
         grid.SetPoints(particles_of(numpy.concatenate([places, points_of(particles)] if particles else [places])).GetPoints())
@@ -208,14 +209,14 @@ class TestKinds(unittest.TestCase):
             grid.InsertNextCell(VTK_HEXAHEDRON, 8, list(range(8)))
         for i in range(count):
             grid.InsertNextCell(VTK_VERTEX, 1, [8 + i])
-        nodes = numpy.full(2 if arrays == "cells" else 8, -1.0)  # which no smoothing length may be
+        nodes = numpy.full(2 if arrays == "cells" else 8, -1.0)  # No smoothing length may be -1.
         of_all = add(vtkPolyData(), **{name: numpy.concatenate([nodes, values_of(particles, name)])
                                        for name in (("Radius", "SmoothingLength") if particles else ())}).GetPointData()
         (grid.GetCellData() if arrays == "cells" else grid.GetPointData()).ShallowCopy(of_all)
         return grid
 
     def test_particles_among_meshes(self):
-        """Vertices beside other cells are the particles; so they are where blocks have either."""
+        """Vertices beside other cells are the particles, also where some blocks have vertices and others have other cells."""
         particles, mesh = cube(), self.make_mesh(None, "points")
         particles.GetPointData().RemoveArray("Volume")
         expected = run(sphere(particles))[0].GetNumberOfCells()
@@ -228,7 +229,7 @@ class TestKinds(unittest.TestCase):
                 surface, told = run(extract)
                 self.assertEqual((extract.GetErrorMessage(), len(told), surface.GetNumberOfCells()), ("", 1, expected))
                 self.assertAlmostEqual(values_of(surface, "SmoothingLength")[0], H)
-        alone = vtkMarchingCorrectors()  # no vertices at all: all points are particles
+        alone = vtkMarchingCorrectors()  # Without any vertex, all points are particles.
         self.assertGreater(run(alone, mesh, EstimateSmoothingLength=1, FreeSurface=1)[0].GetNumberOfCells(), 0)
 
     def test_untouched(self):
@@ -242,7 +243,7 @@ class TestKinds(unittest.TestCase):
 
 class TestQuantities(unittest.TestCase):
     def test_volumes(self):
-        """All ways to the same volumes; a mass that is set goes before a volume array that is there."""
+        """All ways to give volumes give the same surface. A mass array that is set wins over a volume array in the file."""
         volume = SPACING ** 3
         extract = sphere(cube(**{"my masses": numpy.full(COUNT, 4 * volume), "RHO": numpy.full(COUNT, 4.0)}))
         surfaces = []
@@ -267,7 +268,7 @@ class TestQuantities(unittest.TestCase):
 
 class TestFound(unittest.TestCase):
     def test_fluid(self):
-        """Where it is not to look, the filter warns."""
+        """Where the filter is not to detect walls, it warns of them."""
         wall = points_of(cube())[:, 2] < -0.45
         for name, fluid, other, expected, warns in (
                 ("Type", 3, 0, "Type = 3", True), ("isFluid", 1, 0, "isFluid = 1", None), ("ParticleType", 2, 5, "", True),
@@ -283,18 +284,18 @@ class TestFound(unittest.TestCase):
                 self.assertTrue(not expected or told == [])
 
     def test_named(self):
-        """Found is as good as named, and what is named goes before."""
+        """Fluid that is detected gives the same surface as fluid that is named, and a named array wins."""
         particles = cube(ParticleType=(points_of(cube())[:, 2] < -0.45).astype(numpy.int32))
         named, found = sphere(particles), sphere(particles)
         surfaces = [surface_of(run(named, FluidArrayName="ParticleType")[0]),
-                    surface_of(run(found, DetectFluid=1, FluidArrayName="(automatic)")[0])]  # as ParaView's panel says it
+                    surface_of(run(found, DetectFluid=1, FluidArrayName="(automatic)")[0])]  # This is the text of ParaView's panel.
         self.assertTrue(surfaces[0] == surfaces[1])
         self.assertEqual(statistics_of(named), statistics_of(found))
         run(named, FluidValue=1, DetectFluid=1)
         self.assertEqual(named.GetUsedFluid(), "ParticleType = 1")
 
     def test_scalar(self):
-        """Velocities, the first vector, the first scalar that varies; no numbers of particles."""
+        """The default array is the velocity, else the first vector, else the first scalar that varies, but never particle numbers."""
         data, x = cube(Idp=numpy.arange(COUNT), IsoValue=numpy.full(COUNT, 0.5)), points_of(cube())
         data.GetPointData().RemoveArray("Radius")
         extract = vtkMarchingCorrectors()
@@ -305,11 +306,11 @@ class TestFound(unittest.TestCase):
                                     ({"velocity": x[:, ::-1]}, "velocity", "Height"), ({}, "velocity", "velocity")):
             add(data, **more)
             if not more:
-                data.GetPointData().SetActiveScalars("Height")  # fit, and so it is taken
+                data.GetPointData().SetActiveScalars("Height")  # The active array fits, so it is taken.
             data.Modified()
             self.assertEqual(extract.GetNextArray(), array)
             surface, _ = run(extract)
-            scalars = surface.GetPointData().GetScalars()  # what is the iso value everywhere shows nothing
+            scalars = surface.GetPointData().GetScalars()  # An array that equals the iso value everywhere shows nothing.
             self.assertEqual((surface.GetNumberOfCells() > 0, scalars.GetName() if scalars else ""), (True, active))
         self.assertEqual(len(set(values_of(surface, "Height"))), 1)
 

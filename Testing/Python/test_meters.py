@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkSPHGauge, vtkSPHFlux and vtkSPHComponents: weird input first; then levels against brute force, uniform flow, and pieces
-against VTK's own filters and shapes of known volume."""
+"""Tests vtkSPHGauge, vtkSPHFlux and vtkSPHComponents: odd input first; then levels against brute force, uniform flow, and pieces against VTK's own
+filters and shapes of known volume."""
 import math
 import unittest
 
@@ -24,7 +24,7 @@ def made_by(source, **settings):
 
 
 def named(data, *names):
-    """The cells' names."""
+    """Returns the array that names the cells."""
     array = vtkStringArray()
     array.SetName("Name")
     for name in names:
@@ -40,7 +40,7 @@ def timed(data):
 
 class MeterTest(unittest.TestCase):
     def measured(self, meter, data=None, **settings):
-        """Rows by the names of columns, of a run that says nothing."""
+        """Returns the rows of a run that prints nothing, by names of columns."""
         table, told = run(meter, data, **settings)
         self.assertEqual((told, meter.GetErrorMessage()), ([], ""))
         return self.rows(table)
@@ -93,8 +93,8 @@ class TestGauge(MeterTest):
             self.assertEqual((inside["state"], inside["last"]), ("full", 0.5))
 
     def test_lines(self):
-        """Lines of the second input, with and without names; and two points alone."""
-        line = made_by(vtkLineSource(), Point1=(0.3, 0.1, -2), Point2=(0.3, 0.1, 2), Resolution=7)  # one line, and one gauge
+        """Lines come from the second input, with and without names; two points alone are a line, too."""
+        line = made_by(vtkLineSource(), Point1=(0.3, 0.1, -2), Point2=(0.3, 0.1, 2), Resolution=7)  # This is one line, so one gauge.
         gauge = self.gauge(self.MAST)
         rows = self.measured(gauge, cube(), LinesData=line)
         self.assertEqual([row["gauge"] for row in rows], ["mast", "line 0"])
@@ -142,7 +142,7 @@ class TestFlux(MeterTest):
             self.refuse(flux, words, data, VelocityArrayName=velocity)
 
     def test_sections(self):
-        """By methods, and of the second input by names, closed or not; and the disc alone."""
+        """Sections are added by methods, or come from the second input with their names, closed or not; and a disc alone works."""
         flux = vtkSPHFlux()
         flux.AddRectangle(*self.WALL)
         flux.AddDisc("disc", (0, 0, 0.1), (0, 0, -3), 0.5)
@@ -166,7 +166,7 @@ class TestFlux(MeterTest):
         self.assertEqual((len(told), self.rows(table)[0]["area"]), (1, 0))
 
     def test_density(self):
-        """An array, one value, mass / volume, or not known."""
+        """The density is an array, one value, mass / volume, or unknown."""
         for arrays, density, expected in (({"Density": 7.0}, 0, 7), ({}, 7, 7), ({"Mass": 7 * SPACING ** 3}, 0, 7), ({}, 0, None)):
             flux = vtkSPHFlux()
             flux.AddRectangle(*self.WALL)
@@ -187,7 +187,7 @@ class TestComponents(MeterTest):
         return self.rows(split.GetTable())
 
     def sphere(self, radius, x=0.0, y=0.0, inwards=False):
-        """`inwards` as the surface of a cavity is."""
+        """Makes a sphere. inwards: its triangles face inwards, as a cavity's do."""
         reverse = vtkReverseSense()
         reverse.SetInputData(made_by(vtkSphereSource(), Radius=radius, Center=(x, y, 0.0), ThetaResolution=60, PhiResolution=40,
                                      OutputPointsPrecision=1))
@@ -200,7 +200,7 @@ class TestComponents(MeterTest):
         return made_by(append, OutputPointsPrecision=1)
 
     def particles(self, *places, **arrays):
-        """Particles of mass 2, with velocities that are twice the place."""
+        """Makes particles of mass 2 whose velocities are twice their places."""
         places = numpy.array(places, float)
         return particles_of(places, Mass=numpy.full(len(places), 2.0), Velocity=2 * places, **arrays)
 
@@ -211,7 +211,7 @@ class TestComponents(MeterTest):
         self.assertEqual(len(run(vtkSPHComponents(), made_by(vtkPlaneSource()))[1]), 1)  # a quad
 
     def test_parents(self):
-        """A shell with a cavity in which a drop flies that has a bubble; another ball, an open one."""
+        """The surface has a shell with a cavity, in which a drop with a bubble flies, another ball, and an open ball."""
         opened = self.sphere(0.4, 0, 8)
         opened.GetPolys().ReplaceCellAtId(7, 3, [0, 0, 0])
         surface = self.together(self.sphere(0.5, 5), self.sphere(2), self.sphere(0.6, 0.1), self.sphere(0.3, 0.1, inwards=True),
@@ -234,7 +234,7 @@ class TestComponents(MeterTest):
         for i, name, value, delta in ((0, "vy", 0, 1e-12), (0, "vz", 0.1, 1e-12), (3, "vx", 10, 0), (3, "x", 5, 1e-9),
                                       (3, "xmax", 5.5, 0.01), (3, "zmin", -0.5, 0.01)):
             self.assertAlmostEqual(rows[i][name], value, delta=delta)
-        # The drop goes, and the bubble in it; so does the ball of one particle.
+        # With LeastParticles the drop goes with its bubble, and so does the ball of one particle.
         rows = self.measured(split, LeastParticles=2)
         self.assertEqual([(row["component"], row["closed"]) for row in rows], [(0, 1), (1, 1), (2, 0)])
         rows = self.measured(split, LeastParticles=0, LeastVolume=4 / 3 * math.pi * 0.55 ** 3)
@@ -242,12 +242,12 @@ class TestComponents(MeterTest):
         self.assertEqual((len(rows), len(ids), ids.max()), (4, split.GetOutput().GetNumberOfPoints(), 3))
 
     def test_fluid(self):
-        """Walls do not count where they are found; blocks of particles are one set, whose names tell of walls."""
+        """Walls do not count where they are detected. Blocks of particles are one set, and their names may tell walls."""
         surface, places = self.together(self.sphere(2), self.sphere(0.5, 5)), ((0, 1.7, 0), (0, -1, 0.1), (5, 0, 0))
         whole = self.particles(*places, ParticleType=numpy.array([0, 1, 0]))
         blocks = blocks_of(self.particles(places[0]), self.particles(places[2]), Walls=self.particles(places[1]))
         for data, cases in ((whole, (({"FluidArrayName": "(automatic)"}, [2, 1]), ({"DetectFluid": 1}, [1, 1]),
-                                     ({"FluidArrayName": "ParticleType", "FluidValue": 1}, [1, 0]))),  # of a panel's list
+                                     ({"FluidArrayName": "ParticleType", "FluidValue": 1}, [1, 0]))),  # This is how a panel sets the array.
                             (blocks, (({}, [2, 1]), ({"DetectFluid": 1}, [1, 1])))):
             split = vtkSPHComponents()
             for settings, counts in cases:
@@ -255,7 +255,7 @@ class TestComponents(MeterTest):
                 self.assertEqual([row["particles"] for row in rows], counts)
 
     def test_against_vtk(self):
-        """Each piece of a surface of noise."""
+        """A surface of noise is compared piece by piece."""
         particles, extract, split = cube(), vtkMarchingCorrectors(), vtkSPHComponents()
         wave = numpy.sin(points_of(particles) * [7, 8, 6]).prod(axis=1)
         surface, _ = run(extract, cube(Wave=wave), InputArrayToProcess=(0, 0, 0, 0, "Wave"), Value=(0, 0.3), OutputPointsPrecision=1)
@@ -287,7 +287,7 @@ class TestComponents(MeterTest):
         self.assertGreater(closed, 10)
 
     def pieces_of(self, shift, wanted, period):
-        """Particles of a lattice of spacing 0.1 in the period 2, moved by `shift`: those whose way from the origin is wanted."""
+        """Returns particles of a lattice of spacing 0.1 in the period 2, moved by `shift`. `wanted` chooses them by their place before the shift."""
         way = numpy.remainder(lattice(20, 20, 20) + 1, 2) - 1
         chosen = way[wanted(way)]
         particles = self.particles(*(chosen + shift))
@@ -296,7 +296,7 @@ class TestComponents(MeterTest):
         return self.measured(vtkSPHComponents(), surface, particles, PeriodicBounds=period), chosen
 
     def test_sides(self):
-        """Wherever the period begins: its sides need not be planes of the lattice, where the surface ends."""
+        """The period may begin anywhere: its sides, where the surface ends, need not be planes of the lattice."""
         def wanted(way):
             return (numpy.linalg.norm(way, axis=1) < 0.45) | (numpy.linalg.norm(way - 0.8, axis=1) < 0.3)
 
@@ -315,7 +315,7 @@ class TestComponents(MeterTest):
                     self.assertTrue(period[2 * a] - 1e-3 < row[axis] < period[2 * a + 1] + 1e-3)
 
     def test_drops_in_bubbles(self):
-        """Pieces of a ball, and of a layer without an end: each holds its particles wherever sides cut these."""
+        """The pieces of a ball, and of a layer without an end, hold all their particles wherever sides cut them."""
         for is_layer in (False, True):
             def wanted(way, is_layer=is_layer):
                 r = numpy.linalg.norm(way, axis=1)

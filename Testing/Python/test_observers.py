@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Observers of the progress change nothing of the update that runs, whatever they do."""
+"""Observers of the progress never change the update that runs, whatever they do."""
 import unittest
 
 import numpy
@@ -28,7 +28,7 @@ class TestObservers(unittest.TestCase):
         return extract
 
     def observed(self, extract, act):
-        """The surface with an observer that acts at each call but the first, which VTK makes before the filter runs."""
+        """Returns the surface of a run with an observer that acts at each call but the first; VTK makes the first before the filter runs."""
         calls, acting = [], []
 
         def respond(made):
@@ -67,7 +67,7 @@ class TestObservers(unittest.TestCase):
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
 
     def test_blocks(self):
-        """Blocks that are taken out of the input, or changed, have their surfaces all the same."""
+        """Blocks that an observer removes or changes still have their surfaces."""
         expected = surface_of(run(sphere())[0])
         for change in (lambda blocks: blocks.SetNumberOfBlocks(0), lambda blocks: blocks.GetBlock(1).Initialize(),
                        lambda blocks: blocks.GetBlock(1).GetPointData().RemoveArray("Radius")):
@@ -80,7 +80,7 @@ class TestObservers(unittest.TestCase):
                 self.assertTrue(surface_of(output.GetBlock(i)) == expected)
 
     def test_update_within(self):
-        """Is refused by VTK, and changes nothing; one after it works."""
+        """VTK refuses an update within an update, and nothing changes; a later one works."""
         extract, errors = self.make(), []
         expected = surface_of(run(extract)[0])
         extract.Modified()
@@ -91,7 +91,7 @@ class TestObservers(unittest.TestCase):
         self.assertTrue(after != expected and len(after["corners"]) > 0)
 
     def test_release_within(self):
-        """Memory is released when the update is done with it."""
+        """If an observer releases memory, that happens at the end of the update."""
         def peak(extract):
             surface, _ = run(extract, particles_of([[0.0, 0.0, 0.0]]), FluidArrayName="", SmoothingLength=0.1, FreeSurface=1)
             self.assertGreater(surface.GetNumberOfCells(), 0)

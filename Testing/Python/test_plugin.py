@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin in pvpython and pvbatch, or in the pvserver of with_pvserver.py. Renders nothing. Traces and states:
-test_plugin_properties.py."""
+"""Tests the plugin in pvpython and pvbatch, or with the pvserver of with_pvserver.py. Renders nothing. test_plugin_properties.py tests traces and
+states."""
 import faulthandler
 import math
 import os
@@ -20,7 +20,7 @@ PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
 DATA = os.environ["MCOR_TEST_DATA"]
 
 
-SIDE, SPACING, RATE = 11, 0.1, 0.5  # of particles that turn
+SIDE, SPACING, RATE = 11, 0.1, 0.5  # These are for particles that turn.
 
 
 def names_offered(proxy, name):
@@ -48,7 +48,7 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # Nothing need be chosen: velocities, their median in the fluid, which is found, to the walls.
+    # The defaults are velocities, their median in the fluid, which is detected, and an end at the walls.
     assert list(extract.Isosurfaces) == []
     extract.UpdatePipeline()
     extract.UpdatePropertyInformation()
@@ -92,7 +92,7 @@ def check_surfaces(extract):
 
 
 def value_of(proxy, name):
-    """The value of a property by its name or label: a list, a text, or a number."""
+    """Returns the value of the property with this name or label: a list, a text, or a number."""
     value = proxy.GetProperty(name)
     if hasattr(value, "__len__") and not isinstance(value, str):
         value = list(value) if len(value) != 1 or name == "Isosurfaces" else value[0]
@@ -100,7 +100,7 @@ def value_of(proxy, name):
 
 
 def check_in_use(reader):
-    """Checks what the panel tells after Apply, for walls left out, a component and a dot product."""
+    """Checks what the panel shows after Apply: with walls left out, for a component, and for a dot product."""
     extract = MarchingCorrectors(Input=reader)  # noqa: F821
     extract.FluidArray = "ParticleType"
     extract.ContourBy = ["POINTS", "Velocity"]
@@ -110,7 +110,7 @@ def check_in_use(reader):
             extract.DotProductWith = ["POINTS", "Vorticity"]
         else:
             extract.Component = choice
-        # Known before the run, and what the list of iso values offers.
+        # These are known before the run, as is the range that the list of iso values offers.
         extract.UpdateVTKObjects()
         extract.UpdatePropertyInformation()
         ahead = value_of(extract, "NextScalarRange")
@@ -149,7 +149,7 @@ def check_undo(extract):
     def now():
         return [extract.CubeSizeFactor, extract.Trim, list(extract.Isosurfaces), str(extract.Kernel).strip("'")]
 
-    # States are kept from now on: the first one is what the next change is told from.
+    # From here on undo keeps states: the next change is relative to the first one.
     extract.CubeSizeFactor = 0.75
     before = now()
     builder.Begin("changes")
@@ -165,7 +165,7 @@ def check_undo(extract):
 
 
 def check_refusal(extract):
-    """An error leaves an empty output and a program that goes on."""
+    """An error gives an empty output, and the program goes on."""
     extract.Device = "no such device"
     extract.UpdatePipeline()
     assert extract.GetDataInformation().GetNumberOfCells() == 0
@@ -175,7 +175,7 @@ def check_refusal(extract):
 
 
 def check_blocks(reader):
-    """Blocks of one input are one set of particles, unless they are taken apart."""
+    """Blocks of one input are one set of particles, unless they are extracted one by one."""
     halves = [Clip(Input=reader, ClipType="Plane", Invert=side) for side in (0, 1)]
     for half in halves:
         half.ClipType.Origin, half.ClipType.Normal = [1.5, 0, 0], [1, 0, 0]
@@ -192,7 +192,7 @@ def check_blocks(reader):
             Delete(pieces)
         Delete(extract)
     assert counts[0] == counts[1] < counts[2], counts
-    assert held[0] == held[1] and 40000 < held[0][1][1] < 44880, held  # the walls are none of it
+    assert held[0] == held[1] and 40000 < held[0][1][1] < 44880, held  # The walls are no part of it.
 
 
 def check_plugin():
@@ -216,7 +216,7 @@ def check_plugin():
 
 
 def turned(time):
-    """A lattice, turned around the z axis: points and velocities."""
+    """Returns a lattice, turned around the z axis: points and velocities."""
     x, y, z = (numpy.mgrid[0:SIDE, 0:SIDE, 0:SIDE].reshape(3, -1) - SIDE // 2) * SPACING
     c, s = math.cos(RATE * time), math.sin(RATE * time)
     x, y = c * x - s * y, s * x + c * y
@@ -224,7 +224,7 @@ def turned(time):
 
 
 def write_step(path, time, order):
-    """Particles in this order. Height is z; all but those at the lowest z, of Kind 0, are fluid."""
+    """Makes particles in this order. Height is z; particles at the lowest z (Kind 0) are walls, all others fluid."""
     points, velocities = turned(time)
     particles = vtkPolyData()
     particles.SetPoints(vtkPoints())
@@ -253,7 +253,7 @@ def arrays_of(proxy, time=None):
 
 
 def check_probe(reader, plane):
-    """The points come from one input, the particles and the names in the panel from the other."""
+    """Points come from one input. Particles, and the names in the panel, come from the other."""
     probe = SPHProbe(Points=plane, Particles=reader)  # noqa: F821, LoadPlugin made it
     data, found = arrays_of(probe)
     assert data.IsA("vtkPolyData") and data.GetNumberOfPoints() == 21 * 21
@@ -262,7 +262,7 @@ def check_probe(reader, plane):
     assert names_offered(probe, "FluidArray") >= {"(automatic)", "Kind"}
     assert {"Velocity", "Height", "WeightSum", "vtkValidPointMask"} <= set(found) and "Idp" not in found
     points = vtk_to_numpy(data.GetPoints().GetData())
-    inside = numpy.abs(points[:, :2]).max(1) < 0.25  # the kernel's support is whole there
+    inside = numpy.abs(points[:, :2]).max(1) < 0.25  # Here the whole support of the kernel is within the particles.
     outside = numpy.abs(points[:, :2]).max(1) > 0.8
     assert inside.sum() > 20 and outside.sum() > 20
     assert abs(found["WeightSum"][inside] - 1).max() < 0.02 and found["WeightSum"][outside].max() == 0
@@ -286,7 +286,7 @@ def check_probe(reader, plane):
 
 
 def check_slices(reader):
-    """Particles in, and the panel's own place: nothing else need be chosen."""
+    """With particles and the panel's default place nothing else need be chosen."""
     cut = SPHSlice(Input=reader)  # noqa: F821
     data, found = arrays_of(cut)
     points = vtk_to_numpy(data.GetPoints().GetData())
@@ -304,7 +304,7 @@ def check_slices(reader):
     assert data.GetNumberOfPoints() == 50 and abs(found["arc_length"][-1] - numpy.linalg.norm(high - low)) < 1e-6
     Delete(line)
     volume = SPHVolume(Input=reader, WeightThreshold=0.4)  # noqa: F821
-    data, found = arrays_of(volume)  # to be drawn as a volume, with about a million cubes
+    data, found = arrays_of(volume)  # The output is drawn as a volume, with about a million cubes.
     assert data.IsA("vtkImageData") and 0.8e6 < data.GetNumberOfPoints() < 1.3e6, data.GetDimensions()
     assert not numpy.isnan(found["Height"]).any()
     volume.Dimensions = [20, 21, 22]
@@ -316,16 +316,16 @@ def check_slices(reader):
 
 
 def check_gauge(reader):
-    """A line upright through the particles, over time as the guide says."""
+    """A line runs upright through the particles, and is read over time as the guide says."""
     gauge = SPHGauge(Particles=reader, Point1=[0.0, 0.0, 0.0], Point2=[0.0, 0.0, 1.0])  # noqa: F821
-    assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # not the bounds
+    assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # These are not the bounds of the particles.
     gauge.Point1 = [0.0, 0.0, -1.0]
     over_time = PlotDataOverTime(Input=gauge, FieldAssociation="Rows", OnlyReportSelectionStatistics=0)
     over_time.UpdatePipeline()
     rows = over_time.GetDataInformation().GetRowDataInformation()
     names = [rows.GetArrayInformation(i).GetName() for i in range(rows.GetNumberOfArrays())]
     depth = next(rows.GetArrayInformation(name) for name in names if name.startswith("depth"))
-    height = (SIDE - 1) * SPACING  # of the lattice, and half a spacing on either side
+    height = (SIDE - 1) * SPACING  # The fluid is as high as the lattice and half a spacing on either side.
     assert depth.GetNumberOfTuples() == 2 and abs(depth.GetComponentRange(0)[1] - height - SPACING) < 0.1 * SPACING, (
         depth.GetNumberOfTuples(), depth.GetComponentRange(0))
     Delete(over_time)
@@ -333,7 +333,7 @@ def check_gauge(reader):
 
 
 def check_flux(reader):
-    """One Apply: through the middle of a body that turns, nothing flows in sum."""
+    """One Apply is enough: through the middle of a body that turns, the inflow and the outflow are equal."""
     flux = SPHFlux(Particles=reader)  # noqa: F821
     flux.UpdatePipeline(reader.TimestepValues[0])  # when the body is along the axes
     assert numpy.allclose(flux.Origin, 0, atol=1e-6) and abs(flux.Radius - (SIDE - 1) * SPACING) < 1e-6, (flux.Origin, flux.Radius)
@@ -346,9 +346,9 @@ def check_flux(reader):
 def check_derivatives(reader):
     derive = SPHDerivatives(Input=reader)  # noqa: F821
     assert names_offered(derive, "SelectInputArray") >= {"Velocity", "Height"}
-    assert list(derive.Array) == ["POINTS", "Velocity"]  # though no array is active, nor this the first
+    assert list(derive.Array) == ["POINTS", "Velocity"]  # No array is active, and this is not the first one.
     found = arrays_of(derive)[1]
-    # The corrected gradient of a rotation is exact, the end of the fluid included.
+    # The corrected gradient of a rotation is exact, even at the end of the fluid.
     assert found["GradientsCorrected"].all() and "StrainRate" not in found
     assert abs(found["Vorticity"] - [0, 0, 2 * RATE]).max() < 1e-4
     assert abs(found["Divergence"]).max() < 1e-4
@@ -391,13 +391,13 @@ def check_real_data():
     found = arrays_of(derive)[1]
     wall = found["ParticleType"] != 0
     assert not found["Vorticity"][wall].any() and found["Vorticity"][~wall].any()
-    # Files with one step pass through.
+    # Files with a single step pass through.
     film = SPHTemporalInterpolator(Input=reader)  # noqa: F821
     assert (arrays_of(film)[1]["Velocity"] == found["Velocity"]).all()
 
 
 def check_field_filters():
-    """SPH Probe, SPH Slice and its like, SPH Gauge, SPH Flux, SPH Derivatives and SPH Temporal Interpolator."""
+    """Tests SPH Probe, SPH Slice, SPH Line, SPH Volume, SPH Gauge, SPH Flux, SPH Derivatives and SPH Temporal Interpolator."""
     with tempfile.TemporaryDirectory() as folder:
         steps = [os.path.join(folder, f"step_{i}.vtp") for i in range(2)]
         numbers = numpy.arange(SIDE ** 3)
@@ -413,12 +413,12 @@ def check_field_filters():
 
 
 def main():
-    faulthandler.dump_traceback_later(500, file=2)  # where it stands, if it stands
+    faulthandler.dump_traceback_later(500, file=2)  # If the test hangs, this shows where.
     server = os.environ.get("MCOR_TEST_SERVER")
     if server:
         Connect(server.split(":")[0], int(server.split(":")[1]))
     LoadPlugin(PLUGIN, remote=bool(server), ns=globals())
-    check_field_filters()  # first, since a scene has the times of all readers
+    check_field_filters()  # This comes first, because a scene has the times of all readers.
     check_plugin()
     if server:
         Disconnect()

@@ -20,7 +20,7 @@ PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
 FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
 PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
-ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # what is not shown is not greyed out
+ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # Widgets that are not shown do not become grey.
 APPLY = (f"{PANEL}/Accept", "activate", "")
 DELETE = (f"{PANEL}/Delete", "activate", "")
 COLOUR = f"{WINDOW}/variableToolbar/displayColor/Variables"
@@ -28,7 +28,7 @@ UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
 REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
 OF_SCALARS = ("SelectInputScalars", "ContourValues", "DotProductWith", "ShepardNormalization", "Trim", "NodeThreshold",
               "BoundaryDetection", "VertexThreshold")
-CHECK = "check"  # instead of a command: a property of the widget has this value
+CHECK = "check"  # This stands in the place of a command: a property of the widget must have this value.
 
 
 def shown(widget, prop, value):
@@ -75,10 +75,10 @@ def run(paraview, events, folder):
 
 
 def first_apply(folder):
-    """The panel shows choices that are not applied yet: the box, the number of cells, the red warning."""
+    """The panel shows the effect of choices before Apply: the box, the number of cells, the red warning."""
     return [
         FILTERS, ADVANCED, PAUSE,
-        *greyed("ContourValues", "Filled"),  # walls are found, so the water is what is shown first
+        *greyed("ContourValues", "Filled"),  # Walls are detected, so the water is shown first.
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
         shown("sph_in_use/Values", "visible", "false"),
@@ -106,7 +106,7 @@ def first_apply(folder):
 
 
 def empty_first():
-    """A first output that is empty is told of, in the panel, too; what is drawn at last has the colours that it would have had at first."""
+    """The panel, too, says that the first output is empty. When there is something to draw, it has the colours that a first output would have."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),
@@ -118,7 +118,7 @@ def empty_first():
 
 
 def later_applies(folder):
-    """Undo and redo of an Apply with several changes; a second array chosen and given up again; own iso values."""
+    """An Apply with several changes is undone and redone; a second array is chosen and given up again; iso values are typed."""
     return [
         change("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "set_string", "1"),
         change("CubeSizeMode/ComboBox", "set_string", "Adaptive"),
@@ -140,11 +140,12 @@ def later_applies(folder):
     ]
 
 
-SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "SurfaceMeasures")  # how names begin of what the panel shows
+# The names of properties that the panel only shows begin like this.
+SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "SurfaceMeasures")
 
 
 def properties(file):
-    """Properties that a user may set, in a saved state: a list of values each."""
+    """Returns the properties in a saved state that a user may set, each with a list of values."""
     proxy = xml.parse(file).find(".//Proxy[@type='MarchingCorrectors']")
     return {p.get("name"): [e.get("value") for e in p.findall("Element")] for p in proxy.findall("Property")
             if not p.get("name").startswith(SHOWN)}
@@ -158,17 +159,17 @@ def check_states(states):
     applied = states["applied"]
     wanted = {"FreeSurface": ["1"], "FluidArray": ["ParticleType"], "CubeSizeMode": ["0"], "CubeSize": ["0"], "UseBox": ["1"]}
     assert {name: applied[name] for name in wanted} == wanted, applied
-    # The box began as the particles' bounds.
+    # The box began with the particles' bounds.
     assert applied["BoxPosition"] == ["0.75", "0", "-0.5"] and applied["BoxLength"][0] == "1.5", applied
     assert abs(float(applied["BoxLength"][1]) - 1.2) < 1e-6, applied
-    # A new filter begins with an array and its median in the fluid.
+    # A new filter begins with an array and the array's median in the fluid.
     assert applied["SelectInputScalars"][4] == "Velocity", applied
     assert [abs(float(value) - 1.06648) < 1e-5 for value in applied["ContourValues"]] == [True], applied
     changes = {"CubeSizeFactor", "CubeSizeMode", "BoxPosition"}
     assert differing(states, "applied", "changed") == changes, differing(states, "applied", "changed")
     assert not differing(states, "applied", "undone") and not differing(states, "changed", "redone")
     assert states["dot"]["DotProductWith"][4] == "Vorticity" and states["dot"]["SelectInputScalars"][4] == "Velocity"
-    # The iso value follows until it is touched.
+    # The iso value follows the chosen array until the user changes it.
     assert differing(states, "dot", "none") == {"DotProductWith", "ContourValues"}, differing(states, "dot", "none")
     assert states["none"]["DotProductWith"][4] == "(none)" and states["none"]["ContourValues"] == applied["ContourValues"]
     assert states["touched"]["ContourValues"] == 2 * applied["ContourValues"], states["touched"]["ContourValues"]

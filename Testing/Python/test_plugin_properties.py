@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every property of every filter comes back by a trace and by a state, whatever it is set to. In pvpython;
-nothing is computed, as many of these choices together make no sense."""
+"""Every property of every filter is restored by a trace and by a state, whatever its value. Runs in pvpython and computes nothing, because many of
+these choices together make no sense."""
 import os
 import pathlib
 import re
@@ -43,13 +43,13 @@ def other_text(found, before):
 
 
 def change(found):
-    """Another value than it has, for all of its elements."""
+    """Sets another value than the present one for all elements."""
     count = found.GetNumberOfElements()
     if count == 0:  # a list of any length
         found.SetNumberOfElements(1)
         found.SetElement(0, other_text(found, "") if found.IsA("vtkSMStringVectorProperty") else 1.5)
     elif found.IsA("vtkSMStringVectorProperty"):
-        last = count - 1  # of the five that name an array
+        last = count - 1  # The last of the five elements names an array.
         found.SetElement(last, other_text(found, found.GetElement(last)))
     elif found.IsA("vtkSMIntVectorProperty"):
         for i in range(count):
@@ -60,11 +60,11 @@ def change(found):
 
 
 def choose_all(make):
-    """The filter with nothing as it was, and the trace of that."""
+    """Makes the filter with every property changed, and returns the trace."""
     smtrace.start_trace()
     proxy = make("traced")
     before = values_of(proxy)
-    applied = smtrace.PropertiesModified(proxy)  # as the window does around Apply
+    applied = smtrace.PropertiesModified(proxy)  # The window does this around Apply.
     for _, found in properties_of(proxy):
         change(found)
     proxy.UpdateVTKObjects()
@@ -112,7 +112,7 @@ def run_alone(script):
 
 
 def check_python_state():
-    """A state saved as Python wants the line that the guide tells, and nothing else."""
+    """To load a state saved as Python, the line that the guide gives is needed, and nothing else."""
     source = PointSource(NumberOfPoints=100)
     made = SPHContourIsosurfaceFreeSurface(registrationName="found", Input=source)  # noqa: F821, pylint: disable=undefined-variable
     state = smstate.get_state() + '\nprint("found:", FindSource("found").CubeSizeFactor)\n'
@@ -132,7 +132,7 @@ def check_python_state():
 
 def main():
     LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())
-    check_python_state()  # of these sources alone
+    check_python_state()  # The state has only these sources.
     data = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
     reader = XMLPolyDataReader(registrationName="reader", FileName=[data])
     reader.UpdatePipeline()

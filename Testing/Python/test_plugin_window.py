@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filter's panel in the real window: run as paraview --script=test_plugin_window.py."""
+"""Tests the filter's panel in the real window. Run it as paraview
+--script=test_plugin_window.py."""
 import os
 import traceback
 
@@ -9,7 +10,7 @@ from paraview.simple import (GetActiveViewOrCreate, LoadPlugin, PointSource, Ren
 
 
 def show_panel(source, **properties):
-    """Selecting the filter builds its panel, with all widgets and decorators."""
+    """Selects the filter, which builds its panel with all widgets and decorators."""
     extract = MarchingCorrectors(Input=source)  # noqa: F821, LoadPlugin made it
     SetActiveSource(extract)
     for name, value in properties.items():
@@ -21,16 +22,16 @@ def show_panel(source, **properties):
 
 def main():
     LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())
-    # No array at all: every list of arrays is empty.
+    # Without any array, every list of arrays is empty.
     show_panel(PointSource(NumberOfPoints=2000, Radius=1.0), FreeSurface=1,
                EstimateSmoothingLength=1)
-    # Arrays that are not known yet when the panel is built.
+    # These arrays are not known yet when the panel is built.
     data = os.path.join(os.environ["MCOR_TEST_DATA"], "double_dam_break_small.vtp")
     show_panel(XMLPolyDataReader(FileName=[data]), ContourBy=["POINTS", "Speed"], Preview=1)
     print("the panel works", flush=True)
 
 
-# ParaView would go on with its window after the script, whatever became of it.
+# Without this, ParaView would keep its window open after the script.
 status = 1
 try:
     main()

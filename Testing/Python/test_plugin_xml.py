@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin's XML against the wrapped filters, without ParaView: commands, defaults, values."""
+"""Compares the plugin's XML with the wrapped filters, without ParaView: commands, defaults, values."""
 import os
 import pathlib
 import re
@@ -13,14 +13,14 @@ FOLDER = pathlib.Path(os.environ["MCOR_PLUGIN_XML"])
 FILTERS = ("vtkMarchingCorrectors", "vtkSPHComponents", "vtkSPHDerivatives", "vtkSPHFlux", "vtkSPHGauge", "vtkSPHProbe",
            "vtkSPHProjection", "vtkSPHResample", "vtkSPHTemporalInterpolator")
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
-NO_NAMES = ("(automatic)", "(none)", "(density)")  # the filters' empty array name
-# Setters of more or less than one value.
+NO_NAMES = ("(automatic)", "(none)", "(density)")  # These texts stand for an empty array name.
+# These setters take more or less than one value.
 NOT_SCALAR = ("SetInputArrayToProcess", "SetValue", "AddExcludedArray", "SetPanelBoxPosition", "SetPanelBoxLength",
               "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory", "SetOrigin", "SetNormal", "SetRadius", "SetPoint1",
               "SetPoint2", "SetBounds", "SetDimensions", "SetDirection", "SetBox")
-# Defaults that are not the filters', and what those are: a panel shows what was found.
+# These defaults differ from the filters' own, which stand here: a panel shows what was found.
 DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
-# Setters without a property, and why.
+# These setters have no property, for the reason given.
 NOT_IN_XML = {
     "SetController": "ParaView's processes have one, which is the default",
     "SetDetectArrays": "(automatic) in the panel's lists of arrays",
@@ -32,7 +32,7 @@ NOT_IN_XML = {
 
 
 def get(made, command):
-    """The value that the setter `command` has set."""
+    """Returns the value that the setter `command` has set."""
     if command == "SetPanelComponent":
         component = made.GetScalarComponent()
         return 3 if component == made.MAGNITUDE else component
@@ -40,7 +40,7 @@ def get(made, command):
 
 
 def domain_values(element):
-    """Texts of all values that the property's domains name."""
+    """Yields the texts of all values that the property's domains name."""
     for domain in element:
         if domain.tag == "BooleanDomain":
             yield from ("0", "1")
@@ -57,7 +57,7 @@ class TestPluginXml(unittest.TestCase):
         self.main = next(proxy for proxy in self.proxies if proxy.get("name") == "MarchingCorrectors")
 
     def filters(self):
-        """The class, its proxy, and the properties that a user sets, of each filter."""
+        """Yields each filter's class, its proxy, and the properties that a user sets."""
         found = {proxy.get("class"): proxy for proxy in self.proxies if not proxy.get("base_proxyname")}
         self.assertEqual(sorted(found), sorted(FILTERS))
         for name, proxy in found.items():
@@ -65,7 +65,7 @@ class TestPluginXml(unittest.TestCase):
                 e for e in proxy if e.tag.endswith("Property") and not e.get("information_only")]
 
     def scalars(self):
-        """The class, the setter, its type, and the XML element, of all properties of one value."""
+        """Yields the class, the setter, its type and the XML element of all properties with one value."""
         for kind, _, elements in self.filters():
             for element in elements:
                 if element.tag in TYPES and element.get("command") not in NOT_SCALAR:
@@ -75,7 +75,7 @@ class TestPluginXml(unittest.TestCase):
         for kind, proxy, elements in self.filters():
             self.assertIn(proxy.get("name"), (kind.__name__, kind.__name__[len("vtk"):]))
             for element in elements:
-                self.assertIn(element.tag, {"InputProperty", "Property", "ProxyProperty", *TYPES})  # panels leave out others
+                self.assertIn(element.tag, {"InputProperty", "Property", "ProxyProperty", *TYPES})  # Panels leave out other elements.
                 for command in filter(None, map(element.get, ("command", "set_number_command", "clean_command"))):
                     self.assertTrue(callable(getattr(kind, command, None)), command)
 
@@ -91,18 +91,18 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(lacking, allowed)
 
     def test_label_is_found(self):
-        """ParaView's quick search looks at labels only."""
+        """ParaView's quick search finds only words of the label."""
         label = self.main.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
-        # The first of the labels that begin with what was typed is taken: among ParaView's SPH Dataset Interpolator,
-        # and all that the plugin has.
+        # Quick search takes the first label, in alphabetical order, that begins with the typed text. It must be this filter's, among ParaView's SPH
+        # Dataset Interpolator and all of the plugin's.
         labels = [proxy.get("label").lower() for proxy in self.proxies]
         self.assertGreater(len(labels), 8)
         self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)
 
     def test_guide_names_it(self):
-        """As ParaView's traces do: the letters and digits of the label."""
+        """ParaView's traces name the filter by the letters and digits of its label, and the guide has this name."""
         guide = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "Guide" / "paraview.md"
         self.assertIn("`" + re.sub("[^A-Za-z0-9]", "", self.main.get("label")) + "`", guide.read_text(encoding="utf-8"))
 
@@ -158,13 +158,13 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(made, command), value, where)
 
     def test_limits(self):
-        """Enumerations and ranges end where the filters clamp; the filter in Python has its limits from here."""
+        """Enumerations and ranges in the XML end where the filters clamp. The filter in Python takes its limits from the XML."""
         for kind, command, number, element in self.scalars():
             if number is not int or element.find("BooleanDomain") is not None:
                 continue
             ends = [int(text) for text in domain_values(element)]
             beyond = [(min(ends) - 1, min(ends))] if not command.endswith("Component") else []
-            beyond += [(max(ends) + 1, max(ends))] if len(ends) > 1 else []  # or all greater ones are legal
+            beyond += [(max(ends) + 1, max(ends))] if len(ends) > 1 else []  # Or all greater values are legal.
             for value, legal in beyond:
                 made = kind()
                 getattr(made, command)(value)
@@ -184,7 +184,7 @@ class TestPluginXml(unittest.TestCase):
             self.assertEqual(extract.GetBox(), (1.0, 1.5, 2.0, 2.25, 3.0, 7.0))
 
     def test_list_of_names(self):
-        """A property of any number of names: cleared, then added one by one."""
+        """A property with any number of names clears the list and adds them one by one."""
         extract = marchingcorrectors.vtkMarchingCorrectors()
         element, = [e for e in self.main if e.get("clean_command")]
         self.assertEqual(element.get("name"), "ExcludedArrays")
@@ -195,8 +195,8 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([extract.GetExcludedArray(i) for i in range(extract.GetNumberOfExcludedArrays())], ["Density", "Id"])
 
     def test_places(self):
-        """ParaView fits what nobody has set to the particles' bounds, and takes a value for that which equals the
-        default: where there is none, every value is a wish."""
+        """ParaView fits a property to the particles' bounds while it equals its default. So these have no default, and every value that a user sets
+        is kept."""
         fitted = [e for proxy in self.proxies for e in proxy.iter("DoubleVectorProperty") if e.find("BoundsDomain") is not None]
         self.assertEqual([e.get("default_values") for e in fitted], ["none"] * 9)
 

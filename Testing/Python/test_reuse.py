@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data kept on the device between runs never change a result and can be given back; a run that is aborted, or short of
-device memory, leaves an empty output and a filter that works."""
+"""Data that are kept on the device between runs never change a result, and can be released. A run that is aborted, or short of device memory, leaves
+an empty output and a filter that works."""
 import unittest
 
 import numpy
@@ -25,7 +25,7 @@ def grow(_, data):
     data.GetPointData().GetArray("Other").Modified()
 
 
-# Steps that versions of arrays tell of; core_reuse has all options.
+# These steps change arrays or their versions; core_reuse tests all options.
 STEPS = (
     {}, {"Value": (0, 0.5)}, {"InputArrayToProcess": (0, 0, 0, POINTS, "Other")}, {"CubeLevelLimit": 1},
     {"CubeSizeModeToUniform": ()}, {"CubeSizeModeToAdaptive": ()}, {"Box": (-2, 0.1, -0.2, 0.6, -2, 2), "UseBox": 1}, {"UseBox": 0},
@@ -38,16 +38,16 @@ STEPS = (
 
 class TestReuse(unittest.TestCase):
     def test_steps(self):
-        """A filter that lives through all steps against a new one for each."""
+        """Compares a filter that goes through all steps with a new filter for each step."""
         x = points_of(cube())
         data = cube(Other=(values_of(cube(), "Radius") + 0.1 * x[:, 0]).astype(numpy.float32),
                     Type=(x[:, 1] > 0.3).astype(numpy.float32), Sort=(x[:, 1] > 0.2).astype(numpy.float32))
-        values_of(data, "SmoothingLength")[:] *= numpy.select([x[:, 0] > 0.3, x[:, 0] > -0.3], [4, 2], 1)  # three levels
+        values_of(data, "SmoothingLength")[:] *= numpy.select([x[:, 0] > 0.3, x[:, 0] > -0.3], [4, 2], 1)  # There are three levels.
         lasting, before = sphere(data), None
         for last, step in enumerate(STEPS):
             take_step(step, lasting, data)
             fresh, ignored = sphere(data), vtkPolyData()
-            ignored.DeepCopy(data)  # the particles have been changed already
+            ignored.DeepCopy(data)  # The particles have been changed already.
             for each in STEPS[:last + 1]:
                 take_step(each, fresh, ignored)
             with self.subTest(last):
@@ -60,7 +60,7 @@ class TestReuse(unittest.TestCase):
                 before = new
 
     def test_widening(self):
-        """Factors hold for another iso value, and so does the search grid; not for particles that were moved."""
+        """Factors, and the search grid, are kept for another iso value, but not for moved particles."""
         phases, data = [], cube()
         extract = sphere(data)
         extract.SetWidening(2)
@@ -85,7 +85,7 @@ class TestReuse(unittest.TestCase):
         self.assertEqual(extract.GetErrorMessage(), "")
 
     def test_release(self):
-        """The most memory of a run for one particle begins with what was kept of a run for many."""
+        """The peak memory of a run for one particle includes what was kept of a run for many."""
         particle, data = particles_of([[0.0, 0.0, 0.0]]), cube()
 
         def peak(first, change=lambda extract: None):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles between stored steps: vtkSPHTemporalInterpolator against paths that are known."""
+"""Tests vtkSPHTemporalInterpolator, particles between stored steps, against known paths."""
 import math
 import unittest
 
@@ -13,12 +13,12 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHTemporalInterpolator
 from vtk_test import add, blocks_of, lattice, particles_of, points_of, run, says, values_of
 
-RATE = 2.0  # of the rotation, radians per unit of time
+RATE = 2.0  # The rotation is in radians per unit of time.
 START = lattice(7, 7, 7, around_origin=True)
 
 
 def turned(time):
-    """Where START is at this time, rotating around the z axis while falling, and its velocities."""
+    """Returns where the particles of START are at this time, rotating around the z axis while they fall, and their velocities."""
     c, s = math.cos(RATE * time), math.sin(RATE * time)
     x, y, z = START.T
     a, b = c * x - s * y, s * x + c * y
@@ -27,7 +27,7 @@ def turned(time):
 
 
 def rotating(time, numbers=range(343), ids=numpy.int64):
-    """The particles with these numbers, in that order; Heat is linear in time."""
+    """Returns the particles with these numbers, in this order; Heat is linear in time."""
     numbers = numpy.array(numbers)
     places, velocities = turned(time)
     return particles_of(places[numbers], Velocity=velocities[numbers], Idp=numbers.astype(ids), Heat=numbers + 10.0 * time,
@@ -41,7 +41,7 @@ def few(places, ids, velocities, **arrays):
 
 
 class Steps(VTKPythonAlgorithmBase):
-    """A reader: {time: data}; which times were read stands in `read`, those in `broken` fail."""
+    """Is a reader of {time: data}. `read` lists the times that were read; times in `broken` fail."""
 
     def __init__(self, steps):
         kind = next(iter(steps.values())).GetClassName()
@@ -74,19 +74,19 @@ def interpolator(steps):
     source = steps if isinstance(steps, Steps) else Steps(steps)
     result = vtkSPHTemporalInterpolator()
     result.SetInputConnection(source.GetOutputPort())
-    result.source = source  # kept alive with it
+    result.source = source  # The result keeps its source alive.
     return result
 
 
 class TestTemporal(unittest.TestCase):
     def told(self, film, time, **settings):
-        """Sentences of the filter at this time."""
+        """Returns the filter's sentences at this time."""
         film.UpdateInformation()
         film.GetOutputInformation(0).Set(Pipeline.UPDATE_TIME_STEP(), time)
         return run(film, **settings)[1]
 
     def at(self, film, time, **settings):
-        """Output for this time, without an error."""
+        """Returns the output at this time, which must come without an error."""
         self.told(film, time, **settings)
         self.assertEqual(film.GetErrorMessage(), "")
         return film.GetOutputDataObject(0)
@@ -101,7 +101,7 @@ class TestTemporal(unittest.TestCase):
     def assert_points(self, particles, places):
         self.assertEqual(points_of(particles).tolist(), [list(map(float, place)) for place in places])
 
-    # Something weird
+    # ---- Odd input ----
 
     def test_no_particles(self):
         none = particles_of(numpy.empty((0, 3)))
@@ -131,7 +131,7 @@ class TestTemporal(unittest.TestCase):
                 self.assertTrue((values_of(output, "Heat") == values_of(stored, "Heat")).all())
 
     def test_hermite(self):
-        """Positions converge with the fourth power of the step; linear ones with the second."""
+        """Errors of positions fall with the fourth power of the step, those of linear interpolation with the second."""
         errors, linear = [], []
         for step in (0.4, 0.2, 0.1):
             film = interpolator({0.0: rotating(0.0), step: rotating(step)})
@@ -144,7 +144,7 @@ class TestTemporal(unittest.TestCase):
         self.assertGreater(linear[-1], 1e-3)
 
     def test_formula(self):
-        """A few particles with any velocities, at a time that is no fraction of the interval."""
+        """A few particles with any velocities are compared at times that are no simple fraction of the interval."""
         x0, x1, v0, v1 = numpy.random.default_rng(1).uniform(-1, 1, (4, 5, 3))
         film = interpolator({1.0: few(x0, range(5), v0), 3.0: few(x1, range(5), v1)})
         for time in (1.3, 2.0, 2.9):
@@ -164,7 +164,7 @@ class TestTemporal(unittest.TestCase):
             self.assertEqual(values_of(output, "Kind").dtype, numpy.int32)
 
     def test_order(self):
-        """Shuffled numbers of any type give the same particles."""
+        """Particle numbers may be shuffled and of any type; the particles are the same."""
         expected = self.at(interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)}), 0.05)
         paths = points_of(expected)[numpy.argsort(values_of(expected, "Idp"))]
         rng = numpy.random.default_rng(10)
@@ -178,7 +178,7 @@ class TestTemporal(unittest.TestCase):
             self.assertTrue((points_of(output) == paths[order]).all())
 
     def test_leaving_and_entering(self):
-        """Particle 1 leaves, 9 enters: each is there in its half of the interval, and moves."""
+        """Particle 1 leaves and 9 enters. Each is there in its half of the interval, and moves."""
         film = interpolator({
             0.0: few([(0, 0, 0), (1, 0, 0)], [0, 1], [(1, 0, 0), (0, 1, 0)], Heat=[0, 5]),
             1.0: few([(7, 0, 0), (1, 0, 0)], [9, 0], [(0, 0, 2), (1, 0, 0)], Heat=[7, 1])})
@@ -191,15 +191,15 @@ class TestTemporal(unittest.TestCase):
         self.assert_points(self.at(film, 0.25, UseVelocities=0), [(0.25, 0, 0), (1, 0, 0)])
 
     def test_time_scale(self):
-        """Steps numbered 0 and 1 that are 0.1 apart."""
+        """Steps with the times 0 and 1 are really 0.1 apart, which a warning says."""
         numbered = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1)})
         warning, = self.told(numbered, 0.5)
-        self.assertIn("0.1003", warning)  # tan(0.1) / 0.1 of what the velocities say
+        self.assertIn("0.1003", warning)  # tan(0.1) / 0.1 times what the velocities say
         self.assertGreater(self.farthest(numbered.GetOutput(), 0.05), 1e-3)
         self.assertEqual(self.told(numbered, 0.6), [])  # said once
         self.assertEqual(self.told(numbered, 0.5, TimeScale=0.1), [])
         self.assertLess(self.farthest(numbered.GetOutput(), 0.05), 3e-6)
-        alone = interpolator({  # in one step each: they move by their velocities alone
+        alone = interpolator({  # Each particle is in one step only, and moves by its velocity alone.
             0.0: few([(0, 0, 0), (1, 0, 0)], [0, 1], [(0, 0, 0), (0, 1, 0)]),
             1.0: few([(7, 0, 0), (0, 0, 0)], [9, 0], [(0, 0, 2), (0, 0, 0)])})
         self.assert_points(self.at(alone, 0.25, TimeScale=0.125), [(0, 0, 0), (1, 0.03125, 0)])
@@ -207,7 +207,7 @@ class TestTemporal(unittest.TestCase):
         self.refuse(numbered, 0.5, "The time scale must be greater than 0", TimeScale=0.0)
 
     def test_velocities_that_are_not_finite(self):
-        """Are named as such: not as positions, which they would make NaN."""
+        """Velocities that are not finite are named as such, before they make positions NaN."""
         for wrong in (math.nan, math.inf):
             film = interpolator({time: few([(0, 0, 0), (1, 0, 0)], [0, 1], [(1, 0, 0), (0, wrong if time else 0, 0)])
                                  for time in (0.0, 1.0)})
@@ -225,7 +225,7 @@ class TestTemporal(unittest.TestCase):
             places[:, 1], velocities[:, 1] = 0.1 * order, 0.1 * numpy.arange(count)
             steps[time] = particles_of(places, Idp=order, Heat=0.3 * order, Velocity=velocities)
         found = []
-        for threads in (0, 1):  # 0: as many as there are
+        for threads in (0, 1):  # 0 means as many threads as there are processors.
             vtkSMPTools.Initialize(threads)
             film = interpolator(steps)
             told = self.told(film, 0.07)
@@ -236,7 +236,7 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(output.GetNumberOfPoints(), count)
         self.assertTrue(found[0] == found[1])
 
-    # The pipeline
+    # ---- The pipeline ----
 
     def test_each_step_is_read_once(self):
         film = interpolator({t: rotating(t) for t in (0.0, 0.1, 0.2)})
@@ -263,7 +263,7 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(values_of(self.at(film, 0.1), "Heat")[0], 50.0)
 
     def test_surface(self):
-        """A surface between two steps."""
+        """A surface between two steps is compared with known values."""
         film = interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)})
         extract = vtkMarchingCorrectors()
         extract.SetInputConnection(film.GetOutputPort())
@@ -271,10 +271,10 @@ class TestTemporal(unittest.TestCase):
         extract.UpdateTimeStep(0.1)
         surface = extract.GetOutput()
         self.assertGreater(surface.GetNumberOfCells(), 100)
-        self.assertLess(abs(values_of(surface, "Velocity")[:, 2] + 0.1).max(), 1e-5)  # all fall alike
+        self.assertLess(abs(values_of(surface, "Velocity")[:, 2] + 0.1).max(), 1e-5)  # All particles fall at the same speed.
 
     def test_types_of_data(self):
-        """Unstructured grids and blocks; a vertex for each particle where the input has cells."""
+        """Unstructured grids and blocks keep their class; where the input has cells, each particle gets a vertex."""
         def grid(time):
             result = vtkUnstructuredGrid()
             result.ShallowCopy(rotating(time))
@@ -296,7 +296,7 @@ class TestTemporal(unittest.TestCase):
         for i in (0, 3):
             self.assertLess(self.farthest(output.GetBlock(i), 0.05), 3e-6)
 
-    # Refusals and warnings
+    # ---- Refusals and warnings ----
 
     def test_no_numbers(self):
         film = interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)})
@@ -308,12 +308,12 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(self.at(film, 0.2).GetNumberOfPoints(), 343)
         self.refuse(film, 0.1, "no point array 'Number'.*at time 0", IdArrayName="Number")
         self.refuse(film, 0.1, "'Velocity'.*3 components", IdArrayName="Velocity")
-        values_of(film.source.steps[0.2], "Heat")[7] = 0.5  # whole at time 0
+        values_of(film.source.steps[0.2], "Heat")[7] = 0.5  # At time 0 this number is whole.
         film.source.Modified()
         self.refuse(film, 0.1, "'Heat' of particle 7 in the step at time 0.2 is 0.5", IdArrayName="Heat")
 
     def test_global_ids(self):
-        """Arrays of no usual name, which are the active global ids."""
+        """Particle numbers may have an unusual name if they are the active global ids."""
         steps = {}
         for time in (0.0, 0.2):
             steps[time], ids = rotating(time), vtkIdTypeArray()
@@ -357,7 +357,7 @@ class TestTemporal(unittest.TestCase):
             self.assertFalse(data.HasArray("Heat") or data.HasArray("Names"))
 
     def test_failing_reader(self):
-        """After a step that could not be read the others are as they were."""
+        """After a step that could not be read, the other steps work as before."""
         film = interpolator({t: rotating(t) for t in (0.0, 0.1, 0.2)})
 
         def break_at(*times):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's warnings arrive, once in a run, and name their block; core_warning has all of them."""
+"""The core's warnings arrive once in a run, and name their block; core_warning tests all of them."""
 import unittest
 
 import numpy
@@ -11,7 +11,7 @@ from vtk_test import blocks_of, run, says
 
 class TestWarnings(unittest.TestCase):
     def check(self, words, extract, **settings):
-        """One sentence with these words; None: not a word."""
+        """Checks that a run gives one sentence with these words, or none if words is None."""
         told = run(extract, **settings)[1]
         self.assertEqual(len(told), 1 if words else 0, told)
         if words:
@@ -45,7 +45,7 @@ class TestWarnings(unittest.TestCase):
             with self.subTest(name):
                 particles = make_particles(**{name: kinds})
                 self.check(words, make_filter(particles), InterpolateAttributes=0)
-                self.check(None, make_filter(particles), FluidArrayName=name, FluidValue=1, Solids=0)  # they lie everywhere
+                self.check(None, make_filter(particles), FluidArrayName=name, FluidValue=1, Solids=0)  # The other particles lie everywhere.
 
 
 if __name__ == "__main__":

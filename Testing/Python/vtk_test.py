@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles, blocks of them, and a run with all that it says, for the tests of VTK's filters."""
+"""Makes particles and blocks, and runs filters and collects what they say, for the tests of VTK's filters."""
 import sys
 from pathlib import Path
 
@@ -20,13 +20,13 @@ POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 
 
 def lattice(*sides, around_origin=False):
-    """Places SPACING apart in a block with so many on its sides, x running slowest."""
+    """Returns places SPACING apart in a block with this many on each side; x runs slowest."""
     places = numpy.stack(numpy.meshgrid(*map(numpy.arange, sides), indexing="ij"), -1).reshape(-1, 3).astype(float)
     return SPACING * (places - (numpy.array(sides) - 1) / 2 * around_origin)
 
 
 def add(data, **arrays):
-    """Point arrays of these names: {name: values, or a vtkAbstractArray}."""
+    """Adds point arrays: {name: values, or a vtkAbstractArray}."""
     for name, values in arrays.items():
         array = values if hasattr(values, "GetName") else numpy_to_vtk(numpy.ascontiguousarray(values), deep=1)
         array.SetName(name)
@@ -42,8 +42,8 @@ def particles_of(points, **arrays):
 
 
 def cube(kind=float, **arrays):
-    """21^3 particles in [-1, 1]^3, a little off their lattice so that no two neighbourhoods are alike; Radius is the
-    distance from the middle."""
+    """Returns 21^3 particles in [-1, 1]^3, moved a little from their lattice so that no two neighbourhoods are alike. Radius is the distance from the
+    middle."""
     places = lattice(21, 21, 21, around_origin=True)
     places = (places + 0.1 * SPACING * numpy.random.default_rng(21).uniform(-1, 1, places.shape)).astype(kind)
     return particles_of(places, SmoothingLength=numpy.full(COUNT, H), Volume=numpy.full(COUNT, SPACING ** 3),
@@ -51,7 +51,7 @@ def cube(kind=float, **arrays):
 
 
 def sphere(data=None, scalar="Radius", iso=0.6):
-    """A filter for about a sphere in the cube."""
+    """Returns a filter whose surface in the cube is about a sphere."""
     extract = vtkMarchingCorrectors()
     extract.SetInputDataObject(cube() if data is None else data)
     extract.SetInputArrayToProcess(0, 0, 0, POINTS, scalar)
@@ -60,7 +60,7 @@ def sphere(data=None, scalar="Radius", iso=0.6):
 
 
 def sums_at(particles, values, places):
-    """Weight sum and sum of a scalar by the textbooks' cubic spline: no code shared with the core."""
+    """Returns the weight sum and the sum of a scalar by the textbooks' cubic spline, without code of the core."""
     x, volume = points_of(particles), values_of(particles, "Volume")
     found = []
     for place in numpy.asarray(places, float):
@@ -73,13 +73,13 @@ def sums_at(particles, values, places):
 
 
 def take(data, chosen):
-    """These particles, with all arrays."""
+    """Returns the chosen particles, with all arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return particles_of(points_of(data)[chosen], **{array.GetName(): vtk_to_numpy(array)[chosen] for array in arrays})
 
 
 def blocks_of(*blocks, **named):
-    """Blocks without names, and with them."""
+    """Returns blocks, the first without names, then those with names."""
     result = vtkMultiBlockDataSet()
     for i, block in enumerate((*blocks, *named.values())):
         result.SetBlock(i, block)
@@ -89,7 +89,7 @@ def blocks_of(*blocks, **named):
 
 
 def take_step(step, extract, *data):
-    """A step is what to set, or a function."""
+    """Applies a step: a function, or settings."""
     if callable(step):
         step(extract, *data)
         return
@@ -98,8 +98,7 @@ def take_step(step, extract, *data):
 
 
 def run(made, data=None, **settings):
-    """The output, and the sentences of errors and warnings in the order in which they came. A setting that is a tuple has
-    several arguments."""
+    """Returns the output, and the sentences of errors and warnings in their order. A setting that is a tuple has several arguments."""
     told, tags = [], []
 
     def keep(_, event, text):
@@ -118,7 +117,7 @@ def run(made, data=None, **settings):
 
 
 def values_of(data, name):
-    """A point array as NumPy's."""
+    """Returns a point array as a NumPy array."""
     return vtk_to_numpy(data.GetPointData().GetArray(name))
 
 
@@ -127,20 +126,20 @@ def points_of(data):
 
 
 def bytes_of(data):
-    """Bytes of the points and all their arrays."""
+    """Returns the bytes of the points and of all their arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]
 
 
 def surface_of(data):
-    """All that a surface has, by the names of its arrays."""
+    """Returns all that a surface has, by names of arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return {"points": points_of(data).tobytes(), "corners": vtk_to_numpy(data.GetPolys().GetConnectivityArray()).tobytes(),
             **{array.GetName(): bytes(memoryview(array)) for array in arrays}}
 
 
 def statistics_of(extract):
-    """The run's statistics, but for what another run for the same surface may not cost."""
+    """Returns the run's statistics, without those that another run for the same surface may change."""
     data = extract.GetRunStatistics()
     arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     return [(array.GetName(), [array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues())])
@@ -158,7 +157,7 @@ def on_progress(extract, act):
 
 
 def aborted(extract):
-    """The output of a run that is ended at its first sign of progress."""
+    """Returns the output of a run that is stopped at its first sign of progress."""
     tag = on_progress(extract, lambda made: made.SetAbortExecute(1))
     extract.Modified()
     output, told = run(extract)

@@ -23,7 +23,7 @@ import sys
 import tempfile
 import time
 
-START_SECONDS = 200  # for loading some hundred libraries on a busy machine
+START_SECONDS = 200  # The server loads some hundred libraries, perhaps on a busy machine.
 STOP_SECONDS = 30
 
 
@@ -34,7 +34,7 @@ def free_port():
 
 
 def end(process):
-    """All of its group: what it started ends, too."""
+    """Kills the process and all that it started."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
@@ -43,7 +43,7 @@ def end(process):
 
 
 def start_server(command, log):
-    """The server and its port, once it waits for a client; it takes one, and ends with it."""
+    """Starts the server and returns it with its port, once it waits for a client. It takes one client, and ends with it."""
     port = free_port()
     server = subprocess.Popen([*command, f"--server-port={port}"], stdin=subprocess.DEVNULL, stdout=log,
                               stderr=subprocess.STDOUT, start_new_session=True)
@@ -68,7 +68,7 @@ def show_stacks(*processes):
 
 
 def run_client(command, server, port, seconds):
-    """The client's exit status; None if there was none in time."""
+    """Returns the client's exit status, or None if it did not end in time."""
     client = subprocess.Popen(command, env={**os.environ, "MCOR_TEST_SERVER": f"localhost:{port}"},
                               stdin=subprocess.DEVNULL, start_new_session=True)
     try:
@@ -82,7 +82,7 @@ def run_client(command, server, port, seconds):
 
 def main(seconds, server_command, client_command):
     with tempfile.TemporaryFile() as log:
-        for _ in range(3):  # somebody else may take the port in between
+        for _ in range(3):  # Another program may take the port in between.
             log.truncate(0)
             log.seek(0)
             server, port = start_server(server_command, log)

@@ -23,7 +23,7 @@ COMMENT = re.compile(r"(?:#|//|/\*) *([0-9][0-9,]*) triangles")
 
 
 def section_of(page, title):
-    if title == "-":  # what stands before the first section
+    if title == "-":  # "-" means what stands before the first section.
         return FENCE.findall(page.split("\n## ")[0])
     match = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)
     if not match:
@@ -49,7 +49,7 @@ def write_files(blocks, scratch):
 
 
 def run(blocks, scratch):
-    """The shell blocks in their order; returns what they print."""
+    """Runs the shell blocks in their order, and returns what they print."""
     commands = "".join(text for language, name, text in blocks if language == "sh" and not name)
     if not commands:
         sys.exit("the section has no shell commands")
@@ -76,23 +76,23 @@ def faults(blocks, scratch, output):
 
 
 def not_ignored(source, scratch):
-    """Files of the scratch folder, the links apart, that "git status" would show in the source tree."""
+    """Returns the files of the scratch folder, without links, that "git status" would show in the source tree."""
     written = [entry.name + "/" * entry.is_dir() for entry in os.scandir(scratch) if not entry.is_symlink()]
     ignored = subprocess.run(["git", "-C", source, "check-ignore", "--no-index", *written], stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL, text=True, check=False)
-    if ignored.returncode in (0, 1):  # else these sources are no clone
+    if ignored.returncode in (0, 1):  # Otherwise these sources are no clone.
         yield from (f"git status would show {name}" for name in written if name not in ignored.stdout.split("\n"))
 
 
 def pages(source):
-    """All .md files but those of build trees."""
+    """Yields all .md files outside of build trees."""
     for folder, folders, names in os.walk(source):
         folders[:] = sorted(name for name in folders if not re.match(r"build|install|\.", name))
         yield from (os.path.join(folder, name) for name in sorted(names) if name.endswith(".md"))
 
 
 def dead_links(source):
-    """Links and pictures of the pages that name no file of the tree."""
+    """Returns links and pictures of the pages that name no file of the tree."""
     for path in pages(source):
         with open(path, encoding="utf-8") as file:
             text = re.sub(r"^```.*?^```$", "", file.read(), flags=re.MULTILINE | re.DOTALL)

@@ -36,7 +36,7 @@ class Sources(unittest.TestCase):
 
 
     def test_letters_are_small_in_every_locale(self):
-        """tolower('I') is no i in a Turkish one: names of arrays and blocks would not be found."""
+        """No source uses tolower for names, because in a Turkish locale tolower('I') is not i, and arrays and blocks would not be found."""
         for folder, _, names in os.walk(os.path.join(SOURCE, "vtkMarchingCorrectors")):
             for name in names:
                 with open(os.path.join(folder, name), encoding="utf-8") as file:
@@ -47,7 +47,7 @@ class Arguments(unittest.TestCase):
     def check_refused(self, sentence, *command):
         result = run(*command)
         self.assertNotEqual(result.returncode, 0)
-        self.assertEqual(result.stdout.count("\n"), 1, result.stdout)  # nothing was built or installed
+        self.assertEqual(result.stdout.count("\n"), 1, result.stdout)  # Nothing was built or installed.
         self.assertIn(sentence, result.stdout)
 
     def test_unknown_options_are_refused_at_once(self):
@@ -75,8 +75,8 @@ class Steps(unittest.TestCase):
         os.makedirs(SCRATCH)
 
     def run_steps(self, commands, interrupt=False):
-        """Runs commands in bash with the steps. interrupt: Ctrl-C, which goes to all processes of the terminal, when a step
-        has written to the pipe; what reads from it goes on afterwards."""
+        """Runs commands in bash with the functions of the steps. interrupt: sends Ctrl-C to all processes of the terminal when a step has written to
+        the pipe; the reader of the pipe goes on afterwards."""
         pipe = os.path.join(SCRATCH, "pipe")
         os.mkfifo(pipe)
         with tempfile.TemporaryFile("w+") as output, subprocess.Popen(
@@ -117,7 +117,7 @@ class Steps(unittest.TestCase):
         self.assertNotIn("after", output)
 
     def test_kernels_of_another_build_are_taken(self):
-        """By quickstart.sh those of run-tests.sh, and the other way round."""
+        """quickstart.sh uses the kernels that run-tests.sh has compiled, and the other way round."""
         for other, build in (("build", "build-tests"), ("build-tests", "build")):
             kept = os.path.join(SCRATCH, other, "vtkMarchingCorrectors", "core", "ahead")
             os.makedirs(kept)
@@ -166,7 +166,7 @@ class Configuration(unittest.TestCase):
         self.check_stops(result, "cmocka (Debian: libcmocka-dev) was not found")
 
     def test_the_sdk_is_told_before_anything_is_installed(self):
-        """Where neither is there: a question at a terminal, else a sentence."""
+        """If neither SDK is installed, a terminal gets a question, everything else a sentence."""
         def choose(stdin):
             return subprocess.run(["bash", "-c", ". .ci/packages.sh; mcor_is_installed() { false; }; mcor_choose_sdk ''"],
                                   cwd=SOURCE, text=True, check=True, stdin=stdin, stdout=subprocess.PIPE,

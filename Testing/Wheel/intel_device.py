@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A surface on Intel's OpenCL driver is that of the built-in device. test_systems.py runs it under wine."""
+"""Checks that a surface on Intel's OpenCL driver is that of the built-in device. test_systems.py runs it under wine."""
 import warnings
 
 import numpy as np

@@ -122,7 +122,7 @@ def main():
             for step in (lambda: run_blocks(page), go_through_calls, go_through_threads, go_through_files):
                 step()
         finally:
-            os.chdir(before)  # Windows removes no folder that is in use
+            os.chdir(before)  # Windows cannot remove a folder that is in use.
     print("the page's words hold")
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A ball of particles, and files of them whose layouts need no package but NumPy."""
+"""Makes a ball of particles, and files of it whose layouts need only NumPy."""
 import struct
 from pathlib import Path
 
@@ -16,7 +16,7 @@ WALL = X[:, 2] < -0.5
 
 
 def write_bi4(path, order="<", wide=False, double=True, period=0, time=0.75, positions=X):
-    """By the layout that JBinaryData.h and .cpp describe."""
+    """Writes a .bi4 file in the layout that JBinaryData.h and .cpp describe."""
     def pack(form, *values):
         return struct.pack(order + form, *values)
 

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints the SHA-256 of results, one line each: the same on every system. NumPy alone, by operations that round alike."""
+"""Prints the SHA-256 of results, one per line, which are the same on every system. It uses NumPy alone, and operations that round alike
+everywhere."""
 import hashlib
 import os
 import sys
@@ -42,7 +43,7 @@ show("probe", samples.values["r"], samples.weight_sum)
 gauges = mc.gauge(x, {"a": ([0.5, 0.4, -1], [0.5, 0.4, 2]), "b": ([0.1, 0.2, 0.5], [1.5, 1.3, 0.7])}, 0.3, **words)
 show("gauges", gauges.last, gauges.depth, gauges.place, *gauges.crossings.values())
 
-with tempfile.TemporaryDirectory() as folder:  # names that no code page of one byte has
+with tempfile.TemporaryDirectory() as folder:  # No code page with one byte per character has these names.
     folder = os.path.join(folder, "été 測試")
     os.mkdir(folder)
     name = os.path.join(folder, "surface 測.ply")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The extension in Blender itself (bpy): the zip is installed, a series imported, saved, opened and rendered."""
+"""Tests the extension in Blender itself (bpy): the zip is installed; a series is imported, saved, opened and rendered."""
 import os
 import subprocess
 import sys
@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 HOLDER = tempfile.TemporaryDirectory()
-os.environ["BLENDER_USER_RESOURCES"] = HOLDER.name  # not those of the person who runs the test
+os.environ["BLENDER_USER_RESOURCES"] = HOLDER.name  # The settings of the person who runs the test stay untouched.
 
 import bpy
 import mathutils
@@ -20,7 +20,7 @@ import marchingcorrectors as mc
 
 FOLDER = Path(HOLDER.name)
 SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
-WHEEL, = (Path.cwd() / "dist").glob("*.whl")  # in_environment.py starts tests beside it
+WHEEL, = (Path.cwd() / "dist").glob("*.whl")  # in_environment.py starts tests beside the folder of the wheel.
 VELOCITY = 5.0  # along x
 
 
@@ -29,7 +29,7 @@ def setUpModule():
     side = np.arange(-0.75, 0.8, 0.1)
     ball = np.stack(np.meshgrid(side, side, side), -1).reshape(-1, 3)
     ball = ball[np.linalg.norm(ball, axis=1) < 0.8]
-    for i in range(12):  # step_10 is after step_9
+    for i in range(12):  # step_10 comes after step_9.
         alone = np.array([[3.0 + VELOCITY * i / 24, 0, 0]]) if i == 7 else np.empty((0, 3))
         data = pyvista.PolyData(np.concatenate([ball * (1 + 0.02 * i) + [VELOCITY * i / 24, 0, 0], alone]).astype("f4"))
         data["Speed"] = np.full(data.n_points, VELOCITY, "f4")
@@ -68,7 +68,7 @@ class Blender(unittest.TestCase):
         return mc.free_surface(particles, smooth=True, attributes=["vel"], **words)
 
     def test_frames(self):
-        """The mesh of a frame is the package's own surface of that step, with its normals and velocities."""
+        """A frame's mesh is the surface that the package makes of this step, with its normals and velocities."""
         thing = self.import_steps()
         for frame in (1, 3, 11, 12, 40):
             self.scene.frame_set(frame)
@@ -83,7 +83,7 @@ class Blender(unittest.TestCase):
             self.assertLess(np.abs(normals - expected.normals[corners]).max(), 2e-3)
 
     def test_speed(self):
-        """In slow motion each step stands for more frames, and velocities are those of the scene's seconds."""
+        """In slow motion each step lasts for more frames, and velocities are per second of the scene."""
         thing = self.import_steps(speed=0.5)
         self.scene.frame_set(5)
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(2).points.astype("f4"))
@@ -92,7 +92,7 @@ class Blender(unittest.TestCase):
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(0).points.astype("f4"))
 
     def test_once(self):
-        """Nothing is computed twice for one frame; a setting makes the mesh anew."""
+        """A frame is computed once; a changed setting computes the mesh anew."""
         thing = self.import_steps(3)
         before = thing.data.vertices[0].co.copy()
         thing.data.vertices[0].co.x += 1
@@ -122,7 +122,7 @@ class Blender(unittest.TestCase):
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(5).points.astype("f4"))
 
     def test_errors(self):
-        """The core's sentence is a report, and stands in the panel later."""
+        """The core's sentence is reported, and later stands in the panel."""
         with self.assertRaisesRegex(RuntimeError, "no file"):
             bpy.ops.import_scene.sph_particles(filepath=str(FOLDER / "none.vtp"))
         thing = self.import_steps(3)
@@ -133,7 +133,7 @@ class Blender(unittest.TestCase):
         self.assertEqual(thing.sph.message, "")
 
     def test_usd(self):
-        """The film has the frames' meshes, at the scene's rate."""
+        """The exported film has the frames' meshes, at the scene's rate."""
         from pxr import Usd, UsdGeom
 
         thing = self.import_steps(4, speed=0.5)

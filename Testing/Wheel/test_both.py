@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files through the wheel's filter, its accessor, the C++ filter and the program: the same warnings, errors,
-arrays, bits and statistics. The C++ filter runs in the Python that it was built for."""
+"""Gives the same files to the wheel's filter, its accessor, the C++ filter and the program. Warnings, errors, arrays, bits and statistics must be the
+same. The C++ filter runs in the Python that it was built for."""
 import itertools
 import json
 import os
@@ -28,12 +28,12 @@ N = 14
 
 
 def codes_of(sentence):
-    """The codes of the core's sentences in this one; the sentence itself, if it is another interface's."""
+    """Returns the codes of the core's sentences in this one, or the sentence itself if it is not the core's."""
     return [code for code in TEXTS if re.search(says(code), sentence)] or sentence
 
 
 def lattice(folder, name, arrays, fields=(), positions=None, h=0.13):
-    """A file of particles on a lattice, somewhat out of order."""
+    """Writes a file of particles, moved a little from a lattice."""
     x = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1 if positions is None \
         else positions
     x = x + np.random.default_rng(1).normal(0, 0.004, x.shape) * (positions is None)
@@ -113,7 +113,7 @@ WANTED = {"no period": "'ParticleType' is not used", "unused type": "'ParticleTy
           "units": "node threshold", "all trimmed": "vertex threshold 5", "bad attribute": "'T' is NaN"}
 
 
-# The program's options for the filter's properties.
+# Maps the filter's properties to the program's options.
 OPTIONS = {
     "FluidArrayName": lambda name: ["--fluid", name + "=0"], "FreeSurface": lambda on: ["--free-surface"],
     "Solids": lambda number: ["--solids", ["weight", "ignore", "wall", "auto"][number]],
@@ -171,7 +171,7 @@ class Test(unittest.TestCase):
 
     @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
     def test_program(self):
-        """It says, beside the filter's sentence, how to give its own options, and that a surface is empty."""
+        """The program gives the filter's sentence, and adds how to set its own options, and that a surface is empty."""
         folder = Path(self.folder.name)
         for (name, (file, scalar, value, properties)), found in zip(self.cases.items(), self.wheel["cases"]):
             if not {*properties} <= {*OPTIONS}:
@@ -198,7 +198,7 @@ class Test(unittest.TestCase):
                              {key: value for key, value in found["fields"].items() if key in told}, name)
 
     def test_accessor(self):
-        """Makes the triangles, names and sentences of the filter."""
+        """The accessor makes the filter's triangles, names and sentences."""
         words_of = {"Kernel": lambda value: {"sph_kernel": value}, "Dimension": lambda value: {"dimension": value},
                     "VertexThreshold": lambda value: {"vertex_threshold": value},
                     "FluidArrayName": lambda value: {"fluid": (value, 0)},
@@ -234,7 +234,7 @@ class Test(unittest.TestCase):
             mesh = report_mesh(surface)
             for part in ("triangles", "lines"):
                 self.assertEqual(mesh.get(part), found.get(part), f"{name}: {part}")
-            computed = {scalar, scalar + "_Magnitude", "Normals"}  # the filter's iso value
+            computed = {scalar, scalar + "_Magnitude", "Normals"}  # The filter has the iso value in these.
             self.assertEqual(set(surface.point_data.keys()) | computed, set(found["arrays"]) | computed, name)
             compared += 1
         self.assertGreater(compared, 12)

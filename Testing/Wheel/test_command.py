@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""python -m marchingcorrectors surface, gauge, slice, line: what the functions give, and what the program writes."""
+"""Tests python -m marchingcorrectors surface, gauge, slice, line: they give what the functions give, and write what the program writes."""
 import csv
 import os
 import subprocess
@@ -23,7 +23,7 @@ class Command(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def run_it(self, command, name, *words, program=(), status=0, given=DAM):
-        """The file that the wheel's command wrote, and the program's beside it, if it was asked for."""
+        """Returns the file that the wheel's command wrote, and the program's file if that was asked for."""
         path, other = (str(Path(self.folder.name) / each) for each in (name, "program_" + name))
         done = subprocess.run([sys.executable, "-m", "marchingcorrectors", command, given, path, *words],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -41,7 +41,7 @@ class Command(unittest.TestCase):
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
     def test_ply(self):
-        """Byte for byte the program's, with every array."""
+        """The file is, byte for byte, the program's, with every array."""
         for words in (["--free-surface"], ["--free-surface", "--smooth", "--iso", "0.4,0.5", "--curvature"],
                       ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"]):
             mine, its = (Path(path).read_bytes() for path in self.run_it("surface", "a.ply", *FLUID, "--cube-factor", "2", *words))
@@ -49,7 +49,7 @@ class Command(unittest.TestCase):
             self.assertTrue(mine == its, words)
 
     def test_lines(self):
-        """The program's columns and numbers; a surface has no place in a table."""
+        """A table has the program's columns and numbers; a surface cannot be written as a table."""
         line = np.arange(20) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3))
         data["R"], data["V"] = np.linalg.norm(data.points - [0.9, 0.9, 0], axis=1), data.points
@@ -63,7 +63,7 @@ class Command(unittest.TestCase):
         self.assertLess({"Line", "X", "Y", "Z", "V:0", "V:2", "R", "'=f", "Normals:1"}, set(mine))
         for name, column in mine.items():
             found, wanted = ([float(value) for value in each] for each in (column, its[name]))
-            if name == "R":  # means here, the iso value there
+            if name == "R":  # At points the array is a mean, on the line the iso value.
                 np.testing.assert_allclose(found, wanted, rtol=1e-6)
             else:
                 self.assertEqual(found, wanted, name)
@@ -72,7 +72,7 @@ class Command(unittest.TestCase):
         self.assertIn("but this is a surface", self.said)
 
     def test_period_and_curvature(self):
-        """The period of the file."""
+        """The period comes from the file."""
         line = np.arange(12) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line[:6]), -1).reshape(-1, 3))
         data.field_data["PeriodicBounds"] = [0, 1.2, 0, 1.2, 0, 0]
@@ -86,7 +86,7 @@ class Command(unittest.TestCase):
             np.testing.assert_array_equal(mine["MeanCurvature"], its["MeanCurvature"])
 
     def test_left_out(self):
-        """Any of several ranges of one array counts; several arrays, and the bounds, all do."""
+        """Of several ranges for one array any may hold; ranges for several arrays, and bounds, must all hold."""
         words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
                  "ParticleType=0"]
         mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"]))
@@ -94,7 +94,7 @@ class Command(unittest.TestCase):
         self.assertEqual(mine.points.tobytes(), its.points.tobytes())
 
     def test_particle_distance(self):
-        """h, and volumes, of DualSPHysics' particles without mass and density."""
+        """h and volumes are found for DualSPHysics' particles without mass and density."""
         line = np.arange(16) * 0.02
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3))
         data["Idp"] = np.arange(data.n_points)
@@ -102,7 +102,7 @@ class Command(unittest.TestCase):
         path, _ = self.run_it("gauge", "a.csv", "--dp", "0.02", "--coefh", "1.2", "--kernel", "wendland", "--gauge",
                               "up=0.15,0.15,-1:0.15,0.15,1", given=str(Path(self.folder.name) / "in.vtk"))
         with open(path) as file:
-            self.assertAlmostEqual(float(next(csv.DictReader(file))["z"]), 0.31, delta=0.001)  # half a spacing above
+            self.assertAlmostEqual(float(next(csv.DictReader(file))["z"]), 0.31, delta=0.001)  # The level is half a spacing above the particles.
 
     def test_tables(self):
         words = [*FLUID, "--gauge", "tank=0.5,-0.05,0:0.5,1,0", "--gauge", "front=2.9,-0.05,0:2.9,1,0"]
@@ -115,7 +115,7 @@ class Command(unittest.TestCase):
                     self.assertAlmostEqual(float(one[name]), float(other[name]), places=6)
 
     def test_film(self):
-        """All steps of a file are measured, at their times."""
+        """All steps of a file are measured, each at its time."""
         line, path = np.arange(-4, 5) * 0.1, Path(self.folder.name) / "in.xyz"
         block = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
         path.write_text("".join(f"{len(block)}\nProperties=pos:R:3 Time={0.5 * i}\n"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that python -m marchingcorrectors convert writes, and files that it leaves alone."""
+"""Tests which files python -m marchingcorrectors convert writes, and which it leaves alone."""
 import os
 import signal
 import stat
@@ -50,7 +50,7 @@ class Convert(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def refuse(self, done, sentence, left=()):
-        """One line, and the folder as it was, but for the names in `left`, which hold "old"."""
+        """Checks that one line is printed, and that the folder is as it was, except for the names in `left`, which hold "old"."""
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr, "^marchingcorrectors: .*" + sentence + ".*\n$")
         self.assertEqual({p.name: p.read_bytes() for p in self.folder.iterdir() if p.is_file()},

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""marchingcorrectors.io: what is damaged, empty or hostile gives one sentence and nothing else, and no code of it is run."""
+"""marchingcorrectors.io: a damaged, empty or hostile file gives one sentence and nothing else, and no code in it is run."""
 import gzip
 import os
 import subprocess
@@ -26,7 +26,7 @@ def write_vtk(path):
 
 
 def write_packed(path, kind):
-    """Bytes behind the XML, packed by one of VTK's."""
+    """Writes a .vtp file whose bytes stand behind the XML, packed by one of VTK's methods."""
     body = pyvista.PolyData(X)
     body["Density"], body["Velocity"] = DENSITY, X.astype(np.float32)
     writer = vtkXMLPolyDataWriter()
@@ -38,7 +38,7 @@ def write_packed(path, kind):
 
 
 def write_grid(path, text=False):
-    """As SPlisHSPlasH does."""
+    """Writes a .vtk file as SPlisHSPlasH does."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     writer = vtkUnstructuredGridWriter()
@@ -72,7 +72,7 @@ class Hostile(Case):
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file["PartType0"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
         self.assert_refused("is a link", self.at("snap.hdf5"))
-        with h5py.File(self.at("snap.hdf5"), "a") as file:  # a link inside of the file to that
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # This is a link inside of the file to that.
             file["elsewhere"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
             del file["PartType0"]
             file["PartType0"] = h5py.SoftLink("/elsewhere")
@@ -97,16 +97,16 @@ class Hostile(Case):
         self.assert_refused("lies in other files", self.at("snap.hdf5"))
 
     def test_claims(self):
-        """Sizes that a file cannot have."""
+        """Files claim sizes that they cannot have."""
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file.create_dataset("PartType0/Coordinates", (10 ** 12, 3), "f8", chunks=(1024, 3))
         self.assert_refused("claims", self.at("snap.hdf5"))
         write_gadget(self.at("snap.hdf5"))
-        with h5py.File(self.at("snap.hdf5"), "a") as file:  # a chunk is made room for as a whole
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # Memory is reserved for whole chunks.
             file["PartType0"].create_dataset("Large", (len(X),), "f8", maxshape=(None,), chunks=(2 ** 27,), compression=9)
         self.assert_refused("claims 1073741824 bytes", self.at("snap.hdf5"))
         write_gadget(self.at("snap.hdf5"))
-        with h5py.File(self.at("snap.hdf5"), "a") as file:  # many names of one
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # One dataset has many names.
             for i in range(20000):
                 file[f"PartType0/{i}"] = file["PartType0/Density"]
         with h5py.File(self.at("few.hdf5"), "w", libver="latest") as file:
@@ -137,7 +137,7 @@ class Hostile(Case):
         self.assert_refused("too short", self.at("bomb.bgeo"))
 
     def test_little_memory(self):
-        """A long word among 70,000 short ones is as long as it is: NumPy's arrays of words are as wide as the longest."""
+        """A long word among 70,000 short ones must not cost much memory, though NumPy's arrays of words are as wide as the longest word."""
         self.at("text.vtk").write_text("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 30000 double\n"
                                        + "1" * 14000 + " 2" * 89999 + "\n")
         lines = ("import resource, sys", "from marchingcorrectors import io",
@@ -147,7 +147,7 @@ class Hostile(Case):
         self.assertEqual((done.returncode, done.stdout), (0, b"30000\n"))
 
     def test_written_anew(self):
-        """By a solver that runs, after it was opened; and no file stays open."""
+        """A running solver shortens the file after it was opened; and no file stays open."""
         write_bi4(self.at("Part_0001.bi4"))
         particles = io.read(self.at("Part_0001.bi4"))
         self.at("Part_0001.bi4").write_bytes(self.at("Part_0001.bi4").read_bytes()[:1000])
@@ -160,7 +160,7 @@ class Hostile(Case):
         self.assertEqual(len(kept[0].positions), len(X))
 
     def test_cut_off(self):
-        """A file of each kind without its end: one line on stderr, and no file."""
+        """A file of each kind without its end gives one line on stderr, and no output file."""
         for name, make in (("Part_0001.bi4", write_bi4), ("fluid.bgeo", write_bgeo), ("body.vtp", write_vtk),
                            ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", write_grid),
                            ("text.vtk", lambda path: write_grid(path, True)), ("snap.hdf5", write_gadget)):
@@ -173,11 +173,11 @@ class Hostile(Case):
             self.assertFalse(self.at("out.vtp").exists())
 
     def test_cells(self):
-        """VTK's own reader would read where a damaged list of cells points to."""
+        """A damaged list of cells must not be followed, as VTK's own reader would follow it."""
         write_grid(self.at("grid.vtk"))
         whole = self.at("grid.vtk").read_bytes()
         wanted = io.read(self.at("grid.vtk"))
-        at = whole.index(b"\n", whole.index(b"\nCELLS ") + 1) + 1 + 8 * 2000  # how many points the 2000th cell has
+        at = whole.index(b"\n", whole.index(b"\nCELLS ") + 1) + 1 + 8 * 2000  # This number says how many points the 2000th cell has.
         self.at("grid.vtk").write_bytes(whole[:at] + b"\2\0\0\1" + whole[at + 4:])
         found = io.read(self.at("grid.vtk"))
         self.assertEqual(found.positions.tobytes(), wanted.positions.tobytes())

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which device is found: the built-in one, with no driver, no program and no home; drivers' by name. Each case in
-a process of its own. Whole: of a wheel with all kernels."""
+"""Tests which device is found: the built-in one without any driver, program or home; a driver's device by name. Each case runs in its own process.
+With "whole" the wheel has all kernels."""
 import os
 import subprocess
 import sys
@@ -25,7 +25,7 @@ print(*mc.devices(), sep=";")
 {after}
 """
 
-# In place of RUN's own run.
+# This replaces RUN's own run.
 ALL = """
 import hashlib
 from marchingcorrectors._options import words_of
@@ -45,10 +45,10 @@ class Case(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def run_it(self, system=True, before="", after="", device=None, **environment):
-        """Lines of the output. system: with the system's drivers."""
+        """Returns the lines of the output. system: whether the system's drivers are found."""
         variables = {**os.environ, **environment}
         if not system:
-            variables["OCL_ICD_VENDORS"] = self.folder.name  # where there is none
+            variables["OCL_ICD_VENDORS"] = self.folder.name  # There is no driver in this folder.
         done = subprocess.run([sys.executable, "-c", RUN.format(before=before, after=after, device=device)],
                               env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.assertEqual(done.returncode, 0, done.stdout)
@@ -57,7 +57,7 @@ class Case(unittest.TestCase):
 
 class Whole(Case):
     def test_all_kernels_are_built_in(self):
-        """With the bits of PoCL."""
+        """The built-in device gives PoCL's bits."""
         built, here = self.run_it(system=False, before=ALL.format(device=None)), self.run_it(device="pocl")
         self.assertEqual(len(set(built)), 18)
         if here[0] != "DeviceError":
@@ -82,7 +82,7 @@ class Usual(Case):
         self.assertIn("built in: this CPU", sentence)
 
     def test_off_the_path(self):
-        """As in ParaView, which loads the plugin's file from a folder where it looks for no package."""
+        """ParaView loads the plugin's file from a folder where Python does not look for packages."""
         before = "import sys; sys.path = [p for p in sys.path if not p.endswith('site-packages')]"
         self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""marchingcorrectors.io: files made here in the layout of each solver give the surface of the arrays that went into
-them. What is damaged: test_damaged.py."""
+"""marchingcorrectors.io: files in the layout of each solver, written here, give the same surface as the arrays in them. test_damaged.py has damaged
+files."""
 import gzip
 import importlib.util
 import itertools
@@ -48,7 +48,7 @@ def write_gadget(path, part=slice(None), files=1, table=False, swift=False, peri
 
 
 def complete_swift(path):
-    """All else that swiftsimio wants to see."""
+    """Adds everything else that swiftsimio needs."""
     counts, one, zero = np.array([len(X), 5, 0, 0, 0, 0, 0]), [1.0], [0.0]
     units = {f"Unit {name} in cgs (U_{letter})": one for name, letter in (
         ("mass", "M"), ("length", "L"), ("time", "t"), ("current", "I"), ("temperature", "T"))}
@@ -82,7 +82,7 @@ def write_phantom(path):
 
 
 def write_native(path):
-    """Phantom's own dump, as far as sarracen reads it: blocks of Fortran."""
+    """Writes Phantom's own dump, Fortran's blocks, as far as sarracen reads it."""
     def block(data):
         return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
 
@@ -115,7 +115,7 @@ def write_pysph(path):
                 arrays[letter] = X[chosen, axis]
             arrays["h"], arrays["m"] = np.full(chosen.sum(), H), MASS[chosen]
             arrays["rho"] = DENSITY[chosen]
-            arrays["tag"] = np.arange(chosen.sum()) == 0  # one that is another process's
+            arrays["tag"] = np.arange(chosen.sum()) == 0  # One particle belongs to another process.
             if name == "fluid":
                 arrays["u"], arrays["v"], arrays["w"] = X[chosen].T
 
@@ -142,7 +142,8 @@ class Case(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
     def fuzz(self, makers, random, tries, damage, least, readings=({},)):
-        """Each file cut off, or as `damage` makes it: a FileError of one line, at least so often, or particles."""
+        """Reads each file after it was cut off, or changed by `damage`: either particles come, or a FileError of one line, which must happen at least
+        `least` times."""
         refused = 0
         for name, make in makers.items():
             make(self.at(name))
@@ -199,7 +200,7 @@ class Layouts(Case):
         self.assertTrue((io.read(self.at("snap.hdf5")).quantity("mass") == 0.001).all())
 
     def test_period(self):
-        """As GADGET-4's and AREPO's configuration tells."""
+        """The period follows from the configuration of GADGET-4 and AREPO."""
         def period(**config):
             write_gadget(self.at("snap.hdf5"))
             with h5py.File(self.at("snap.hdf5"), "a") as file:
@@ -247,11 +248,11 @@ class Layouts(Case):
         alive = np.arange(len(X)) != 7
         self.assertEqual(particles.positions.tobytes(), X[alive].tobytes())
         self.assertLess(np.abs(particles.arrays["density"] / DENSITY[alive] - 1).max(), 1e-12)
-        self.assertNotIn("itype", particles.arrays)  # -1 is no wall
+        self.assertNotIn("itype", particles.arrays)  # -1 marks no wall here.
         self.assertEqual(particles.time, 7.0)
 
     def test_packages(self):
-        """Names of packages as pip knows them."""
+        """The sentence gives packages by the names that pip knows."""
         write_native(self.at("dump"))
         write_gadget(self.at("snap.hdf5"))
         for missing, name, packages in (("sarracen", "dump", "sarracen scikit-learn"), ("h5py", "snap.hdf5", "h5py")):
@@ -270,7 +271,7 @@ class Layouts(Case):
     def test_pysph(self):
         write_pysph(self.at("run_9.hdf5"))
         particles = io.read(self.at("run_9.hdf5"))
-        own = np.concatenate([X[WALL][1:], X[~WALL][1:]])  # sets by their names
+        own = np.concatenate([X[WALL][1:], X[~WALL][1:]])  # The order is that of the sets' names.
         self.assertEqual(particles.positions.tobytes(), own.tobytes())
         self.assertEqual(particles.solid.tolist(), [True] * (WALL.sum() - 1) + [False] * ((~WALL).sum() - 1))
         self.assertEqual((particles.time, particles.dimension), (0.5, 3))
@@ -311,7 +312,7 @@ class Layouts(Case):
         for name, chosen in (("WaterBody_1.vtp", ~WALL), ("WallBoundary_1.vtp", WALL)):
             body = pyvista.PolyData(X[chosen])
             body["Density"] = DENSITY[chosen]
-            if name.startswith("Water"):  # as SPHinXsys does
+            if name.startswith("Water"):  # SPHinXsys writes it like this.
                 body["Pressure"], body["Velocity"] = DENSITY[chosen] + 1, X[chosen]
                 body.field_data["TimeValue"] = [0.25]
             body.save(self.at(name))
@@ -328,7 +329,7 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
     def test_sphinxsys(self):
-        """As its own writer has them, without VTK: text, a name for vectors that are not there."""
+        """Writes files as SPHinXsys' own writer does, without VTK: as text, with a name even for vectors that are not there."""
         def write(name, chosen, arrays):
             def array(name, values, more=""):
                 kind = "Int32" if values.dtype.kind == "i" else "Float32"
@@ -364,7 +365,7 @@ class Layouts(Case):
             self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum(), wall)
 
     def test_partvtk(self):
-        """Types tell of walls, in one file and in several, whatever these are called."""
+        """Types tell walls, in one file and in several, whatever the files' names are."""
         kinds = np.where(WALL, 1, 3).astype(np.uint8)
         for name, chosen in (("PartAll_0001.vtk", X[:, 0] < 9), ("PartFluid_0001.vtk", ~WALL), ("PartMoving_0001.vtk", WALL)):
             body = pyvista.PolyData(X[chosen].astype(np.float32))
@@ -376,7 +377,7 @@ class Layouts(Case):
         self.assertIsNone(io.read(self.at("PartFluid_0001.vtk")).solid)
 
     def test_legacy_of_all_kinds(self):
-        """Versions, bytes and text, bodies and grids, arrays of cells: as VTK reads them."""
+        """.vtk files of both versions, as text and bytes, with all classes and arrays of cells, are read as VTK reads them."""
         for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
             body = pyvista.PolyData(X.astype(np.float32) if grid else X)
             body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)
@@ -395,7 +396,7 @@ class Layouts(Case):
             self.assertEqual(found.time, 0.75)
 
     def test_xml_of_all_kinds(self):
-        """Text, base64 and bytes, packed or not, both byte orders and sizes of headers: as VTK reads them."""
+        """.vtp and .vtu files as text, base64 and bytes, packed or not, in both byte orders and sizes of headers, are read as VTK reads them."""
         random = np.random.default_rng(43)
         for mode, packed, order, header in itertools.product(
                 ("Ascii", "Binary", "Appended", "bytes"), ("None", "ZLib", "LZ4", "LZMA"), (0, 1), (32, 64)):
@@ -421,7 +422,7 @@ class Layouts(Case):
             writer.Write()
             found, wanted = io.read(path), pyvista.read(path)
             self.assertEqual((found.positions.dtype, found.positions.tolist()), (wanted.points.dtype, wanted.points.tolist()))
-            self.assertEqual(sorted(found.arrays), sorted([*wanted.point_data, "Mass"]))  # that of the vertices
+            self.assertEqual(sorted(found.arrays), sorted([*wanted.point_data, "Mass"]))  # Mass is the array of the vertices.
             for name in found.arrays:
                 values = np.asarray(wanted[name])
                 self.assertEqual(found.arrays[name].dtype, values.dtype)
@@ -429,7 +430,7 @@ class Layouts(Case):
             self.assertEqual(found.time, 0.75)
 
     def test_vertices_in_a_mesh(self):
-        """Points that no vertex uses are a mesh's; arrays of the vertices' cells are theirs. As VTK writes them."""
+        """Points that no vertex uses belong to a mesh; arrays of vertex cells are the particles'. VTK's writer made the files."""
         box = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
         order = np.random.default_rng(44).permutation(len(X))
         cells = np.concatenate([box.cells, np.column_stack([np.ones(len(X), int), box.n_points + order]).ravel()])
@@ -442,7 +443,7 @@ class Layouts(Case):
         body["Velocity"], body.cell_data["rho"] = grid.points * 2, np.append(DENSITY[order], 0)
         for name, data in (("grid.vtu", grid), ("body.vtp", body), ("body.vtk", body), ("old.vtk", grid), ("new.vtk", grid)):
             data = data.copy()
-            with self.assertWarnsRegex(mc.InputWarning, says("MESH_NODES", "64 of 3033 points are")):  # PyVista's, too
+            with self.assertWarnsRegex(mc.InputWarning, says("MESH_NODES", "64 of 3033 points are")):  # PyVista gives this warning, too.
                 taken = data.sph._particles
             self.assertTrue(np.array_equal(taken.points, X) and np.array_equal(taken["Velocity"], X * 2))
             self.assertTrue(np.array_equal(taken["rho"], DENSITY))
@@ -462,13 +463,13 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["rho"], DENSITY), name)
             self.assertEqual(particles.density, "rho")
         box.save(self.at("box.vtu"))
-        for names, count in ((("box.vtu", "grid.vtu"), len(X)), (("box.vtu", "box.vtu"), 128)):  # as VTK's pieces are
+        for names, count in ((("box.vtu", "grid.vtu"), len(X)), (("box.vtu", "box.vtu"), 128)):  # Pieces as VTK reads them.
             self.at("p.pvtu").write_text('<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>' + "".join(
                 f'<Piece Source="{name}"/>' for name in names) + "</PUnstructuredGrid></VTKFile>")
             self.assertEqual(len(quietly(io.read, self.at("p.pvtu"))), count)
 
     def test_xml_in_pieces(self):
-        """Arrays that all pieces have, one after the other."""
+        """Arrays that all pieces have are joined, one after the other."""
         def piece(numbers, more=""):
             return (f'<Piece NumberOfPoints="{len(numbers)}"><PointData><DataArray type="Float64" Name="h" format="ascii">'
                     f'{" ".join(map(str, numbers))}</DataArray>{more}</PointData><Points><DataArray type="Float32" '
@@ -484,7 +485,7 @@ class Layouts(Case):
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
 
     def test_lists(self):
-        """Pieces are one set, without each other's copies; of times, a repeated part takes the place of the earlier one."""
+        """Pieces are one set, without copies that one has of another's particles. Where a part occurs twice for one time, the later one counts."""
         def write(name, numbers, ghosts=()):
             text = " ".join(map(str, numbers))
             self.at(name).write_text(
@@ -522,7 +523,7 @@ class Layouts(Case):
                 io.read(self.at(kind))
 
     def test_quantities(self):
-        """Arguments take the place of what the file has, and of nothing else; names are those of the core."""
+        """Arguments replace what the file has, and nothing else; names are the core's."""
         body = pyvista.PolyData(X)
         body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
         body.save(self.at("body.vtp"))
@@ -565,7 +566,7 @@ class Layouts(Case):
         self.assertEqual(len(io.read(self.at("snap.0.hdf5"))), len(X))
 
     def test_legacy_strings(self):
-        """Beside numbers, in text and bytes."""
+        """Texts in field data, beside numbers, are read from text and bytes."""
         for binary in (False, True):
             body = pyvista.PolyData(X)
             body.field_data["constants"], body.field_data["TIME"] = ["h:0.025", "", "m 0.56", "x" * 300], [0.5]
@@ -587,7 +588,7 @@ class Layouts(Case):
         self.assertEqual(list(particles._all._kept), [""])
 
     def test_kernels(self):
-        """Each as its code writes it: the surface of sph_kernel, and half of the support radius, or what it is."""
+        """Each solver's kernel name gives the surface of sph_kernel, with half of the support radius or the file's own h."""
         swift = {"Cubic spline (M4)": "cubic", "Quartic spline (M5)": "quartic", "Quintic spline (M6)": "quintic",
                  "Wendland C2": "wendland", "Wendland C4": "wendland_c4", "Wendland C6": "wendland_c6"}
         gizmo = {3: "cubic", 4: "quartic", 5: "quintic", 6: "wendland", 7: "wendland_c4", 9: "wendland_c6"}
@@ -625,7 +626,7 @@ class Layouts(Case):
 
 class Conversion(Case):
     def test_blocks(self):
-        """All blocks are one set; those with names of walls are walls."""
+        """All blocks are one set, and blocks with names of walls are walls."""
         blocks = pyvista.MultiBlock()
         for name, chosen in (("water", ~WALL), ("wall", WALL)):
             blocks[name] = pyvista.PolyData(X[chosen])

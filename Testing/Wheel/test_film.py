@@ -25,7 +25,7 @@ DX, SPIN, WORDS = 0.05, 2.0, ["--smoothing-length", "0.065", "--mass", "0.125", 
 
 
 def drop(time=0.0, radius=8, at=(0.0, 0.0, 0.0)):
-    """A drop that spins around z: places and velocities."""
+    """Returns a drop that spins around z: places and velocities."""
     line = np.arange(-radius, radius + 1) * DX
     sites = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
     sites = sites[(sites ** 2).sum(axis=1) < (radius * DX) ** 2]
@@ -67,7 +67,7 @@ class Films(unittest.TestCase):
 
     def open(self, name):
         stage = Usd.Stage.Open(self.at(name))
-        self.stages.append(stage)  # whose prims end with it
+        self.stages.append(stage)  # Its prims end with it.
         self.assertEqual(errors(stage), [])
         self.assertEqual(stage.GetDefaultPrim().GetPath(), "/film")
         return stage, {prim.GetName(): prim for prim in stage.Traverse()}
@@ -76,7 +76,7 @@ class Films(unittest.TestCase):
         return np.array(prim.GetAttribute(name).Get(code))
 
     def test_steps(self):
-        """Each sample is what the functions give of that step, and the velocity that of the field there."""
+        """Each sample is the surface that the functions make of the step, and the velocity is the field's there."""
         paths = self.write_steps()
         empty = pyvista.PolyData()
         empty.field_data["TimeValue"] = [0.3]
@@ -108,13 +108,13 @@ class Films(unittest.TestCase):
             field = mc.probe(particles, surface.points, smoothing_length=0.065, mass=0.125, density=1000, attributes=["Velocity"])
             np.testing.assert_allclose(velocities, field.values["Velocity"], atol=1e-5)
             exact = SPIN * np.stack([-points[:, 1], points[:, 0], 0 * points[:, 0]], axis=1)
-            self.assertLess(np.abs(velocities - exact).max(), 0.7 * DX * SPIN)  # the mean of one side is of a place inside
+            self.assertLess(np.abs(velocities - exact).max(), 0.7 * DX * SPIN)  # The mean on one side belongs to a place farther inside.
         for name in ("points", "faceVertexCounts", "faceVertexIndices", "normals", "velocities", "primvars:id"):
             self.assertEqual(len(mesh.GetAttribute(name).Get(30)), 0, name)
         self.assertNotIn("primvars:Big", [each.GetName() for each in mesh.GetAttributes()])
 
     def test_between_steps(self):
-        """Particles turn on circles; slow motion has a mesh for each frame, and velocities per second of the film."""
+        """Particles move on circles. Slow motion has a mesh for each frame, and velocities per second of the film."""
         self.write_steps(times=(0.0, 0.1))
         steps = [self.at(f"step_{i}.vtp") for i in (9, 10)]
         self.run_it("surface", *steps, "a.usdc", *WORDS, "--times", "0.03,0:0.1:0.05", "--fps", "100")
@@ -128,7 +128,7 @@ class Films(unittest.TestCase):
         for code in (3, 5):
             points, velocities = drop(code / 100)
             made = between(io.read(steps[0]), io.read(steps[1]), 0.0, 0.1, code / 100)
-            np.testing.assert_allclose(made.positions, points, atol=1e-5)  # linear ones are off by 0.002
+            np.testing.assert_allclose(made.positions, points, atol=1e-5)  # Points that move on straight lines would be off by 0.002.
             np.testing.assert_allclose(made["Velocity"], velocities, atol=0.005)
             surface = mc.free_surface(made, smoothing_length=0.065, mass=0.125, density=1000)
             np.testing.assert_array_equal(self.values(first, "points", code), surface.points.astype("f4"))
@@ -142,7 +142,7 @@ class Films(unittest.TestCase):
         self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, "--times", "0.05", status=1), "step_9.vtp has no ids of particles")
 
     def test_convert(self):
-        """Surfaces that the program wrote, by their list and by themselves, give the film that the command makes."""
+        """Surfaces that the program wrote, given as a list or one by one, make the film that the command makes."""
         paths = self.write_steps()
         words = ["--smooth", *WORDS]
         if PROGRAM:
@@ -166,7 +166,7 @@ class Films(unittest.TestCase):
         self.assertRegex(self.run_it("convert", "film_0000.vtp", "film.pvd", "film_0000.vtp", status=1), "would overwrite the input")
 
     def test_spray(self):
-        """Drops of three particles, and lone ones, are balls; a larger drop, and a bubble, are surface."""
+        """Drops of three particles, and single ones, become balls; a larger drop, and a bubble, stay surface."""
         points = drop()[0]
         points = points[np.linalg.norm(points, axis=1) > 0.15]
         small = np.array([[0, 0, 0], [DX, 0, 0], [0, DX, 0]]) + [0.9, 0, 0]
@@ -178,7 +178,7 @@ class Films(unittest.TestCase):
         data.save(self.at("in.vtp"))
         count = len(every)
         wanted = [*range(len(points), len(points) + 3), count - 1]
-        ball, given = (6 / np.pi) ** (1 / 3) * DX, ["--volume", str(1.5 * DX ** 3)]  # of which small drops have no surface
+        ball, given = (6 / np.pi) ** (1 / 3) * DX, ["--volume", str(1.5 * DX ** 3)]  # With this volume small drops have no surface.
         for i, (words, there, width) in enumerate(((["--spray"], wanted, ball), (["--spray", "1"], [], ball),
                                                    (["--spray", "200"], [*range(len(points), count)], ball),
                                                    (["--spray", "1", *given], wanted, 1.5 ** (1 / 3) * ball))):
@@ -217,10 +217,10 @@ class Films(unittest.TestCase):
                                    rtol=1e-6)
         self.assertTrue(0 < width < 0.1)
         np.testing.assert_allclose(2 * self.values(curves, "velocities", 48), surface.attributes["velocity"][surface.line_points], rtol=1e-6)
-        self.assertFalse(curves.HasAttribute("primvars:velocity"))  # which Blender would take for the film's
+        self.assertFalse(curves.HasAttribute("primvars:velocity"))  # Blender would use it instead of the film's velocities.
 
     def test_save(self):
-        """One surface, with arrays whose names are none in USD."""
+        """A film of one surface keeps arrays whose names USD does not allow."""
         points, velocities = drop()
         surface = mc.free_surface(points, smoothing_length=0.065, attributes={
             "a b": points[:, 0], "a_b": points[:, 1], "V": velocities, "matrix": np.zeros((len(points), 9)), "2": points[:, :2]})
@@ -234,7 +234,7 @@ class Films(unittest.TestCase):
             self.assertEqual(self.values(mesh, "primvars:_2", 0).shape, (len(surface.points), 2))
 
     def test_changing_arrays(self):
-        """What a step lacks has no value there, not that of the step before."""
+        """An array that a step lacks has no value there, not the value of the step before."""
         points, velocities = drop(radius=3)
         with Film(self.at("a.usdc")) as film:
             for time, attributes in enumerate(({"a": points[:, 0]}, {"b": points[:, 0], "v": velocities}, {"a": points[:, 0]})):
@@ -248,7 +248,7 @@ class Films(unittest.TestCase):
         self.assertEqual([len(self.values(prims["spray"], "points", 24 * time)) for time in range(3)], [0, 1, 2])
 
     def test_interrupted(self):
-        """Ctrl-C leaves the steps that were made; what else ends a film leaves nothing."""
+        """Ctrl-C keeps the steps that were made; any other error leaves no file."""
         points = drop(radius=3)[0]
         surface = mc.free_surface(points, smoothing_length=0.065)
         Path(self.at("b.usdc")).write_text("old")
@@ -263,7 +263,7 @@ class Films(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt), Film(self.at("b.usdc")) as film:
             film.add(surface, 0)
             film.add(surface, 1)
-            film._parts["surface"].make = halt  # where half of the step is written
+            film._parts["surface"].make = halt  # Half of the step is written here.
             surface.attributes = {"late": surface.points[:, 0]}
             film.add(surface, 2)
         mesh = self.open("b.usdc")[1]["surface"]
@@ -305,7 +305,7 @@ class Films(unittest.TestCase):
             1, "marchingcorrectors: b.usdc needs the package usd-core, the extra [usd] of this one: pip install usd-core.\n"))
 
     def test_page(self):
-        """The commands of the guide's page, with the steps of the one about films."""
+        """Runs the commands of the guide's page on Blender, with the steps of its page on films."""
         guide = Path(os.environ["MCOR_TEST_SOURCES"]) / "Documentation" / "Guide"
         steps = re.search(r"^```python steps.py\n(.*?)^```$", (guide / "films.md").read_text(), re.M | re.S)[1]
         subprocess.run([sys.executable, "-c", steps], cwd=self.folder, check=True)
@@ -326,7 +326,7 @@ class Films(unittest.TestCase):
             self.assertEqual(len(prims["surface"].GetAttribute("velocities").GetTimeSamples()), 3)
 
     def test_up(self):
-        """y where the file's solver is y-up."""
+        """The up axis is y if the file's solver has it so."""
         write_bgeo(self.at("in.bgeo"))
         self.run_it("surface", "in.bgeo", "film.usdc", "--smoothing-length", "estimate")
         stage, prims = self.open("film.usdc")

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The guide's pages for Python: the blocks of python.md as they stand, the recipes of readers-python.md on
-files in the layout of each code."""
+"""Runs the guide's pages for Python: the blocks of python.md as they stand, and the recipes of readers-python.md on files in each code's layout."""
 import os
 import re
 import unittest
@@ -37,7 +36,7 @@ class Test(unittest.TestCase):
         self.assertLess(np.abs(np.linalg.norm(points, axis=1) - radius).max(), tolerance)
 
     def test_python_page(self):
-        surface = run_blocks(SOURCES / "Documentation" / "Guide" / "python.md")  # a closed ball, whose normals point outwards
+        surface = run_blocks(SOURCES / "Documentation" / "Guide" / "python.md")  # It is a closed ball, whose normals point outwards.
         self.assert_ball(surface.points, np.sqrt(-np.log(0.7)))
         self.assertTrue(surface.statistics["is_closed"])
         self.assertGreater(np.einsum("ij,ij->i", surface.normals, surface.points).min(), 0)
@@ -73,7 +72,7 @@ class Test(unittest.TestCase):
         self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)
 
     def test_dualsphysics(self):
-        """A dam break's spray, and water that ends at walls."""
+        """The recipes are run on a dam break's spray, and on water that ends at walls."""
         particles = pyvista.read(SOURCES / "Examples" / "Data" / "dam_break_45k.vtp")
         bare = pyvista.PolyData(particles.points)
         bare["Rhop"] = particles["Density"]
@@ -86,7 +85,7 @@ class Test(unittest.TestCase):
         self.assertLess(outside, 0.7 * many)
 
     def test_splishsplash(self):
-        """A real run's particles."""
+        """The recipe is run on a real run's particles."""
         particles = pyvista.read(SOURCES / "Examples" / "Data" / "double_dam_break_small.vtp")
         bare = pyvista.PolyData(particles.points)
         bare["velocity"] = particles["Velocity"]
@@ -97,7 +96,7 @@ class Test(unittest.TestCase):
         self.assertLess(outside, 0.01 * many)
 
     def test_splash(self):
-        """Drops of one and of two particles beside a block."""
+        """The recipe is run on drops of one and of two particles beside a block."""
         drops = np.array([[1.5 + i, 0.0, k] for i in range(4) for k in range(3)])
         particles = pyvista.PolyData(np.concatenate([X, drops, drops[::2] + [0, 0, SPACING]]))
         particles["Rhop"], particles["Mass"] = np.full((2, particles.n_points), 1000.0)
@@ -106,7 +105,7 @@ class Test(unittest.TestCase):
             self.assertEqual(bodies_of(recipes()[name](particles, size)), 1 + len(drops), name)
 
     def measure(self, name, file, recipe, volume, words):
-        """(Bodies, particles outside of the surface) of the recipe, and with one volume for all."""
+        """Returns (bodies, particles outside of the surface) of the recipe, and the same with one volume for all particles."""
         rows = []
         for surface, more in ((recipe(file), {}), (file.sph.free_surface(volume=volume, **words), {"volume": volume})):
             weights = file.sph.probe(pyvista.PolyData(file.points), attributes=[], **words, **more)["WeightSum"]

@@ -22,7 +22,7 @@ FILE = SOURCES / "Examples" / "Notebook" / "dam_break.ipynb"
 
 
 def texts(cell):
-    """Texts that it prints and shows, without what drivers say on stderr."""
+    """Returns the texts that the cell prints and shows, without what drivers write to stderr."""
     return "".join(output["text"] if output.output_type == "stream" else output.get("data", {}).get("text/plain", "")
                    for output in cell.get("outputs", []) if output.get("name") != "stderr"
                    and "image/png" not in output.get("data", {}))
@@ -57,7 +57,7 @@ def main():
         assert len(pictures(new)) == len(pictures(old))
         for picture, expected in zip(pictures(new), pictures(old)):
             assert picture.shape == expected.shape
-            differ = np.mean(np.abs(picture - expected).max(axis=2) > 40)  # renderers and fonts are not alike
+            differ = np.mean(np.abs(picture - expected).max(axis=2) > 40)  # Renderers and fonts differ a little.
             background = np.mean((picture == picture[0, 0]).all(axis=2))
             print(f"{100 * differ:.1f} % of the pixels differ, {100 * background:.0f} % are background")
             assert differ < 0.05 and 0.3 < background < 0.97

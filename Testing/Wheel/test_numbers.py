@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""gauge(), flux() and project(): of a block of particles by hand, of others against probe() and counts; PyVista's methods
-and files; and what is refused."""
+"""Tests gauge(), flux() and project(): of a block of particles by hand, of others against probe() and counts; PyVista's methods and files; and
+refusals."""
 import os
 import sys
 import tempfile
@@ -23,7 +23,7 @@ UP = np.array([[0.52, 0.55, -1.0], [0.52, 0.55, 2.0]])
 UNIFORM = np.tile([1.0, -2.0, 3.0], (len(X), 1))
 DISC = ("disc", (0.5, 0.5, 0.5), (0, 0, 2), 0.2)
 WALL = np.array([[0.5, 0.2, 0.2], [0.5, 0.8, 0.2], [0.5, 0.2, 0.7]])
-# Particles anywhere, far smaller than pixels.
+# Random particles, far smaller than pixels.
 RANDOM = np.random.default_rng(4)
 POINTS, M, SMALL = RANDOM.random((3000, 3)), RANDOM.random(3000), np.full(3000, 1e-5)
 WHOLE = {"box": (0, 1, 0, 1, 0, 1), "smoothing_length": SMALL, "mass": M, "resolution": 16}
@@ -90,7 +90,7 @@ class Project(unittest.TestCase):
         for direction, (u, v) in (("x", (1, 2)), ((0, -2, 0), (0, 2)), (None, (0, 1))):
             image = mc.project(POINTS, direction=direction, **WHOLE)
             expected, _, _ = np.histogram2d(POINTS[:, v], POINTS[:, u], 16, [[0, 1], [0, 1]], weights=M)
-            split = np.abs(image.values * image.pixel_area - expected) > 1e-12  # by particles on the sides of pixels
+            split = np.abs(image.values * image.pixel_area - expected) > 1e-12  # Particles on the sides of pixels are split.
             self.assertLess(split.sum(), 20)
             self.assertAlmostEqual(image.values.sum() * image.pixel_area, M.sum(), delta=0.1)
             self.assertEqual((image.extent.tolist(), image.values.shape), ([0, 1, 0, 1], (16, 16)))
@@ -109,7 +109,7 @@ class Project(unittest.TestCase):
 
 class OtherParticles(unittest.TestCase):
     def particles(self, x, columns):
-        """Particles as PyVista's, and from a file; and their places."""
+        """Returns the particles as PyVista's, and read from a file, and their places."""
         data = pyvista.PolyData(x)
         for name, values in columns.items():
             data[name] = values
@@ -120,7 +120,7 @@ class OtherParticles(unittest.TestCase):
         return data.sph, mc.io.read(path), np.asarray(data.points)
 
     def test_gauge_and_flux(self):
-        """Masses and volumes of files make densities."""
+        """Densities are made of the files' masses and volumes."""
         sph, file, x = self.particles(X, {"Velocity": UNIFORM, "h": np.full(len(X), H), "Volume": np.full(len(X), V),
                                           "Mass": np.full(len(X), 1000 * V)})
         lines, sections = {"mast": UP}, {"a": DISC}
@@ -138,7 +138,7 @@ class OtherParticles(unittest.TestCase):
             self.assertLess(abs(found.volume_flux[0] - 3 * sphere.volume), 1e-3)  # outwards
 
     def test_project(self):
-        """Masses count even where there are volumes."""
+        """Projections use masses even where there are volumes."""
         sph, file, x = self.particles(POINTS, {"Mass": M, "h": SMALL + 0.1, "Volume": SMALL + 1})
         words = {"smoothing_length": SMALL + 0.1, "mass": M, "volume": SMALL + 1, "direction": "x", "resolution": 10}
         for given, scalars in (({}, ()), ({"weighted_by": "Mass"}, ("Mass",))):

@@ -24,7 +24,7 @@ H, V = 0.13, 0.001
 
 
 def lattice(dtype=np.float64):
-    """A cube of particles, somewhat out of order, and their distances from its middle."""
+    """Returns a cube of particles, moved a little from a lattice, and their distances from its middle."""
     random = np.random.default_rng(1)
     indices = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3)
     positions = indices * 0.1 + random.normal(0, 0.004, (N ** 3, 3))
@@ -39,7 +39,7 @@ def sphere(**more):
 
 
 def quietly(function, *arguments, **words):
-    """Where a warning is not the point."""
+    """Calls the function without warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mc.InputWarning)
         return function(*arguments, **words)
@@ -51,7 +51,7 @@ class Results(unittest.TestCase):
         radius = np.linalg.norm(surface.points - 0.65, axis=1)
         self.assertGreater(len(surface.triangles), 500)
         self.assertLess(np.abs(radius - 0.4).max(), 0.03)
-        # Towards lower values: to the middle.
+        # Normals point to lower values, here to the middle.
         inwards = np.einsum("ij,ij->i", surface.normals, 0.65 - surface.points)
         self.assertGreater(inwards.min(), 0)
         self.assertEqual((surface.points.dtype, surface.triangles.dtype, surface.normals.dtype),
@@ -140,7 +140,7 @@ class Results(unittest.TestCase):
         self.assertGreater(surface.points[:, 0].min(), 0.2)
 
     def test_left_out(self):
-        """As if they were not there, whatever they hold."""
+        """Particles that are left out might as well not be there, whatever they hold."""
         kind = np.arange(N ** 3) % 4
         near = POSITIONS[:, 0] < 0.7
         for more, present in (({"within": (-np.inf, 0.7, -1, 2, -1, 2)}, near),
@@ -169,7 +169,7 @@ class Results(unittest.TestCase):
         self.assertEqual(mc.gauge(POSITIONS, line, within=(-1, 1, -1, 2, -1, 2), **level).last,
                          mc.gauge(POSITIONS[POSITIONS[:, 0] <= 1], line, **level).last)
         self.assertLess(mc.gauge(POSITIONS, line, only=near, **level).last[0], 0.2)
-        solid = np.full(N ** 3, 2, np.uint8)  # the core's number of what is left out
+        solid = np.full(N ** 3, 2, np.uint8)  # This is the core's number for particles that are left out.
         solid[near] = 0
         self.assertEqual(sphere(solid=solid), sphere(solid=~near))
 
@@ -179,7 +179,7 @@ class Results(unittest.TestCase):
         self.assertEqual(mc.free_surface(POSITIONS, estimate_smoothing_length=True).statistics["solid_particles"], 0)
 
     def test_widening(self):
-        """The factors, and volumes of the lengths themselves, make the same surface with cubes of one size."""
+        """The factors, with the volumes of the original lengths, make the same surface if cubes have one size."""
         for given in ({}, {"volume": 1e-3}):
             words = {"cube_size": H / 2, **given}
             factors, volume = mc.widening(POSITIONS, smoothing_length=H, return_volume=True, **words)
@@ -192,7 +192,7 @@ class Results(unittest.TestCase):
 
     def test_compact(self):
         usual, compact = (mc.free_surface(POSITIONS, smoothing_length=H, compact=compact) for compact in (False, True))
-        self.assertLess(len(compact.triangles), 0.95 * len(usual.triangles))  # flat sides merge little
+        self.assertLess(len(compact.triangles), 0.95 * len(usual.triangles))  # Flat sides merge little.
 
     def test_lines(self):
         flat = np.stack(np.meshgrid(np.arange(N) * 0.1, [0.5], np.arange(N) * 0.1, indexing="ij"), -1).reshape(-1, 3)
@@ -287,7 +287,7 @@ class Inputs(unittest.TestCase):
 
 class Refused(unittest.TestCase):
     def check(self, error, *cases, call=sphere, **common):
-        """cases: a sentence, then keywords of which each is refused with it."""
+        """Checks refusals. cases: a sentence, then keywords, each of which is refused with it."""
         for sentence, *several in cases:
             for words in several:
                 with self.subTest(str(words)[:80]), self.assertRaisesRegex(error, sentence):
@@ -303,7 +303,7 @@ class Refused(unittest.TestCase):
                    (r"positions is 'a.vtp'. To read a file, give .*io.read\('a.vtp'\)", {"positions": "a.vtp"}),
                    ("positions is None; it must be an array", {"positions": None}), ("is a set;", {"scalar": {1}}),
                    ("has the shape", {"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
-                    {"scalar_dot": nothing}),  # the core reads 0 components as 1
+                    {"scalar_dot": nothing}),  # The core reads 0 components as 1.
                    ("iso value", {"iso": None}), ("The iso value is nan; it must be a finite number", {"iso": np.nan}),
                    ("The iso value is inf", {"iso": [0.4, np.inf]}),
                    ("wendland", {"sph_kernel": "gaussian"}), ("does not hold numbers", {"volume": text}),
@@ -334,7 +334,7 @@ class Refused(unittest.TestCase):
         self.check(mc.InvalidData, ("5", {"positions": bad}), ("smoothing length.* 11 ", {"smoothing_length": zeros}))
         self.check(mc.OutOfCapacity, ("(?i)memory|cube", {"memory_limit": 1000}))
         self.check(mc.DeviceError, ("no OpenCL device \"nonsuch\"", {"device": "nonsuch"}), ("", {"device": "\udc80"}))
-        self.assertGreater(len(sphere().triangles), 500)  # as if nothing had happened
+        self.assertGreater(len(sphere().triangles), 500)  # The library works as before.
 
     def test_what_leaves_particles_out(self):
         wall = np.arange(N ** 3) % 4
@@ -351,10 +351,10 @@ class Refused(unittest.TestCase):
 
 
 class Neighbours(unittest.TestCase):
-    """Smoothing lengths that are estimated for each particle."""
+    """Tests smoothing lengths that are estimated for each particle."""
 
     def test_densities(self):
-        """Summed from masses where "Density" is asked for and not there; what is left out plays no part in either."""
+        """If "Density" is asked for and missing, it is summed from masses. Particles that are left out play no part in it."""
         x = np.random.default_rng(3).normal(size=(200, 3))
         mass, apart = 1 + np.arange(200) % 3, np.linalg.norm(x[:, None] - x, axis=2)
         more = np.concatenate([x, [[np.nan, 0, 0], [50, 0, 0]]])
@@ -383,7 +383,7 @@ class Neighbours(unittest.TestCase):
             ranges[word] = found["smoothing_length_min"], found["smoothing_length_max"]
         self.assertEqual(len(set(ranges.values())), 2)
         self.assertAlmostEqual(ranges["neighbours"][0], H, delta=0.05 * H)  # inside
-        self.assertGreater(ranges["neighbours"][1], 1.2 * H)  # at corners
+        self.assertGreater(ranges["neighbours"][1], 1.2 * H)  # Lengths are larger at corners.
         self.assertLess(ranges["neighbours=1.1"][0], 0.9 * ranges["neighbours"][0])
         with self.assertRaisesRegex(mc.InvalidArgument, "The scalar is 'Speed'; it must be an array"):
             mc.isosurface(POSITIONS, "Speed", 1)
@@ -411,7 +411,7 @@ class Runs(unittest.TestCase):
         for end in (False, np.bool_(False)):
             with self.assertRaises(mc.Cancelled):
                 sphere(progress=lambda fraction, phase, end=end: end)
-        for go_on in (True, None, 0, 1, np.bool_(True)):  # tqdm's update() returns True
+        for go_on in (True, None, 0, 1, np.bool_(True)):  # tqdm's update() returns True.
             self.assertEqual(sphere(progress=lambda fraction, phase, answer=go_on: answer), sphere())
 
         def fail(fraction, phase):
@@ -421,7 +421,7 @@ class Runs(unittest.TestCase):
             sphere(progress=fail)
 
     def test_callback_that_uses_its_own_context(self):
-        """It would wait for itself."""
+        """A callback may not use its own context, which would wait for itself."""
         with mc.Context() as context:
             for use in (context.close, context.release_memory, lambda: sphere(context=context)):
                 with self.assertRaisesRegex(mc.InvalidArgument, "callback"):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""People at a prompt meet signatures and help, misspelt names, repr and ==, warnings, units, data frames,
-DLPack, bars, files, copies."""
+"""Tests what people meet at a prompt: signatures and help, misspelt names, repr and ==, warnings, units, data frames, DLPack, progress bars, files,
+copies."""
 import contextlib
 import copy
 import inspect
@@ -45,7 +45,7 @@ class Signatures(unittest.TestCase):
                 mc.widening, sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge, sph.flux, sph.project]
 
     def test_options_are_those_of_the_header(self):
-        """All but what only ranks need, and what is said in another way."""
+        """Every option of the core is a keyword, except those for ranks, and those that have another form."""
         numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
         numbers.update(name[len("MCOR_OUT_"):].lower() for name in _structs.ENUMS["mcor_output"])
         others = {name for name in numbers if name.endswith("_count") or name in (
@@ -79,7 +79,7 @@ class Signatures(unittest.TestCase):
         self.assertNotIn("capping", inspect.signature(mc.probe).parameters)
 
     def test_shown_defaults_are_the_defaults(self):
-        """Defaults of the signature, given, change nothing."""
+        """Passing the signature's defaults changes nothing."""
         shown = {name: parameter.default for name, parameter in inspect.signature(mc.isosurface).parameters.items()
                  if name in _options.ISOSURFACE}
         again = sphere(**shown)
@@ -180,7 +180,7 @@ class Objects(unittest.TestCase):
         self.assertEqual(quietly(mc.gauge, again, [[[0.6, 0.6, -1], [0.6, 0.6, 2]]], smoothing_length="distance").names, ["0"])
 
     def test_context_is_not_copied(self):
-        """Both would give the same device back."""
+        """A copy would release the same device twice."""
         with mc.Context() as context:
             for make in (copy.copy, copy.deepcopy, pickle.dumps):
                 with self.assertRaisesRegex(TypeError, "cannot be copied or pickled"):
@@ -198,7 +198,7 @@ class Warned(unittest.TestCase):
                                 ({"volume": V / 1000}, "node threshold 0.1")):
             found = caught(sphere, **words)
             self.assertEqual({w.category for w in found}, {mc.InputWarning})
-            self.assertRegex(str(found[0].message), sentence)  # a further one tells that the surface is empty
+            self.assertRegex(str(found[0].message), sentence)  # Another warning says that the surface is empty.
         with warnings.catch_warnings():
             warnings.simplefilter("error", mc.InputWarning)
             with self.assertRaises(mc.InputWarning):
@@ -254,7 +254,7 @@ class Inputs(unittest.TestCase):
         found = mc.isosurface(frame[["x", "y", "z"]], frame["distance"], 0.4, smoothing_length=H, volume=V,
                               attributes=frame[["distance", "id"]])
         self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "id": np.arange(COUNT)}))
-        frame["kind"] = "é"  # so that the table is one of objects
+        frame["kind"] = "é"  # With this column the table is one of objects.
         rows, fluid = frame.values, {"smoothing_length": H, "volume": V}
         found = mc.isosurface(rows[:, :3], rows[:, 3], 0.4, attributes={"distance": rows[:, 3], "kind": frame["kind"]}, **fluid)
         self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "kind": np.full(COUNT, "é")}))
@@ -266,7 +266,7 @@ class Inputs(unittest.TestCase):
 
     def test_dlpack(self):
         class Tensor:
-            """All that such a library must have."""
+            """Has all that such a library must have."""
 
             def __init__(self, array):
                 self.array = array
@@ -290,7 +290,7 @@ class Inputs(unittest.TestCase):
             mc.isosurface(POSITIONS, Elsewhere(DISTANCE), 0.4, smoothing_length=H)
 
     def test_units(self):
-        """Metres beside centimetres, in two libraries."""
+        """Metres and centimetres may be mixed, in two libraries."""
         registry = pint.UnitRegistry()
         for metre, centimetre, kilogram, gram, second in (
                 (registry.m, registry.cm, registry.kg, registry.g, registry.s),
@@ -384,7 +384,7 @@ class Files(unittest.TestCase):
                 mesh.cells_dict[5] if name == "a.vtu" else mesh.faces.reshape(-1, 4)[:, 1:]
             self.assertEqual(corners.tolist(), self.surface.triangles.tolist(), name)
             data = mesh.point_data
-            if name != "a.ply":  # of which PyVista reads triangles, normals and colours alone
+            if name != "a.ply":  # PyVista reads only triangles, normals and colours of a .ply file.
                 np.testing.assert_allclose(data["speed"], self.surface.attributes["speed"], err_msg=name)
                 np.testing.assert_allclose(data["where"], self.surface.attributes["where"], err_msg=name)
             self.assertEqual(sentences, [])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_structs.py reads the core's headers alike however their lines are broken.
+"""make_structs.py reads the core's headers in the same way however their lines are broken.
 
     test_structs.py SOURCES
 """
@@ -17,7 +17,7 @@ NAMES = "mcor_parts.h", "mcor.h"
 
 
 def made_of(texts, folder):
-    """All that is written, by the files' names."""
+    """Returns all files that make_structs.py writes, by name."""
     folder.mkdir()
     (folder / "grid").mkdir()
     for name in ("mcor_statistics.def", "mcor_options.def", "mcor_says.def", "grid/mcor_sph_kernel.h"):
@@ -30,7 +30,7 @@ def made_of(texts, folder):
 
 
 def with_other_lines(text):
-    """A line for each token, except for comments, which stay behind what they follow."""
+    """Puts each token on its own line, except for comments, which stay behind what they follow."""
     parts = re.split(r"(/\*.*?\*/|^[ \t]*#[^\n]*)", text, flags=re.M | re.S)
     return "".join(part if i % 2 else re.sub(r"\s+(?=\S)", "\n", part) for i, part in enumerate(parts))
 
@@ -44,9 +44,9 @@ def formatted(text, columns):
 
 
 def rows_lack(folder):
-    """Members of mcor_options and mcor_statistics that stand in no row: an option of which reuse does not know."""
+    """Returns members of mcor_options and mcor_statistics that have no row in the .def files."""
     scope = {}
-    exec((folder / "_structs.py").read_text(encoding="utf-8"), scope)  # what was just written
+    exec((folder / "_structs.py").read_text(encoding="utf-8"), scope)  # This is the file that was just written.
     rows = {*scope["OPTIONS"], *(member for _, _, member, _ in scope["STATISTICS"])}
     members = {name for kind in ("mcor_options", "mcor_statistics") for name, _ in scope[kind]._fields_}
     return members - rows - {"iso_values", "iso_count", "globals", "ranks", "outputs", "progress", "progress_user",

@@ -23,7 +23,7 @@ import zipfile
 from pathlib import Path
 
 SOURCES, HERE = Path(os.environ["MCOR_TEST_SOURCES"]), Path(__file__).parent
-PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4", "pip==24.0")  # NumPy 2 wants functions that wine 8 has not
+PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4", "pip==24.0")  # NumPy 2 needs functions that wine 8 lacks.
 INTEL = ("intel-opencl-rt==2026.2.0", "tbb==2023.2.0")
 PYVISTA = ("pyvista==0.49.1", "vtk==9.3.1", PACKAGES[1])
 VERSION = (3, 11)
@@ -45,7 +45,7 @@ def skip(sentence):
 
 
 def run(*command, **environment):
-    """The lines that it prints, without blanks around them."""
+    """Returns the lines that a command prints, without blanks around them."""
     done = subprocess.run([*map(str, command)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True, errors="replace", env={**os.environ, **environment})
     print(done.stderr[-3000:])
@@ -97,7 +97,7 @@ def install(python, wheels, environment, *packages):
 
 
 def add_intel(wheels, folder, environment):
-    """A driver for wine: OpenCL.dll in place of wine's own, and its name in the registry."""
+    """Installs a driver under wine: OpenCL.dll in place of wine's own, and the driver's name in the registry."""
     folder.mkdir()
     for wheel in (*wheels.glob("intel_opencl_rt-*.whl"), *wheels.glob("tbb-*.whl")):
         with zipfile.ZipFile(wheel) as archive:
@@ -117,7 +117,7 @@ def check_windows(folder, here):
         skip("the modules of CPython %d.%d are wanted, and this is %d.%d." % (*VERSION, *sys.version_info[:2]))
     wheel = wheel_for("windows", "MCOR_WINDOWS_WHEEL", folder)
     python = make_windows_python(folder)
-    # wine reads names of files by the locale
+    # wine reads names of files by the locale.
     environment = {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8", "PYTHONIOENCODING": "utf-8"}
     os.environ.pop("PYTHONPATH", None)
     try:
@@ -136,7 +136,7 @@ def check_windows(folder, here):
 
 
 def make_arm64_root(root):
-    """Debian's packages of arm64, unpacked: none of their scripts runs."""
+    """Unpacks Debian's packages for arm64; none of their scripts runs."""
     done = subprocess.run(["debootstrap", "--arch=arm64", "--foreign", "--variant=minbase", "--include=python3-numpy",
                            "bookworm", root], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode:

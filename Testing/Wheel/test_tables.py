@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""marchingcorrectors.io: tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files against
-NumPy's own reading of the same bytes; damaged ones against a sentence."""
+"""marchingcorrectors.io: tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files are compared with NumPy's reading
+of the same bytes; damaged ones must give a sentence."""
 import gzip
 import os
 import re
@@ -23,7 +23,7 @@ WORDS = ("O", "H2", "Ar")
 
 
 def random_rows(random, columns, least=1):
-    """Text of numbers as programs write them."""
+    """Returns a table of random numbers as programs write them."""
     count = random.integers(least, 60)
     form = random.choice(["%.17g", "%.6e", "%12.5f"])
     values = random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))
@@ -31,7 +31,7 @@ def random_rows(random, columns, least=1):
 
 
 def write_csv(path, random):
-    """ParaView's, DualSPHysics', a plain one: (names, columns of positions, vectors, separator)."""
+    """Writes a .csv file as ParaView, DualSPHysics or others do. Returns its names, columns of positions, vectors and separator."""
     names, positions, vectors, separator = (
         (["Vel:0", "Vel:1", "Vel:2", "id", "Points:0", "Points:1", "Points:2", "Rhop"], (4, 5, 6), {"Vel": (0, 1, 2)}, ","),
         (["Pos.x [m]", "Pos.y [m]", "Pos.z [m]", "Idp", "Vel.x [m/s]", "Vel.y [m/s]", "Vel.z [m/s]"], (0, 1, 2),
@@ -85,7 +85,8 @@ def write_lammps(path, random, steps, scaled):
 
 
 def write_gadget_binary(path, random, named=False, order="<", double=False, files=1):
-    """As GADGET-2 does: gas, dark matter and stars; masses of dark matter in the header. Returns {label: of all types}."""
+    """Writes a snapshot as GADGET-2 does: gas, dark matter and stars; the header has the mass of dark matter. Returns {label: values of all
+    types}."""
     counts = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0]
     table = [0, 2.5, 0, 0, 0, 0]
     total, real = sum(counts), order + ("f8" if double else "f4")
@@ -107,7 +108,7 @@ def write_gadget_binary(path, random, named=False, order="<", double=False, file
 
 
 def write_ply(path, random, form, faces=False):
-    """As splashsurf, Houdini and MeshLab do: {property: values}, in the order of the file."""
+    """Writes a .ply file as splashsurf, Houdini and MeshLab do. Returns {property: values}, in the order of the file."""
     count = int(random.integers(2, 60))
     kinds = {"x": "f4", "y": "f4", "z": "f4", "vx": "f8", "vy": "f8", "vz": "f8", "id": "i4", "kind": "u1", "h": "f4"}
     names = {"f4": "float", "f8": "double", "i4": "int", "u1": "uchar"}
@@ -139,7 +140,7 @@ def write_npz(path, random, pack=np.savez):
 
 
 def write_gro(path, random, steps, velocities=True):
-    """As GROMACS does; returns (positions, velocities, box) of each step."""
+    """Writes a .gro file as GROMACS does. Returns (positions, velocities, box) of each step."""
     text, made = "", []
     for step in range(steps):
         count = int(random.integers(1, 30))
@@ -156,7 +157,7 @@ def write_gro(path, random, steps, velocities=True):
 
 
 def write_data(path, random, style="atomic"):
-    """As LAMMPS' write_data does: positions, velocities and masses in the order of the file's atoms."""
+    """Writes a file as LAMMPS' write_data does. Returns positions, velocities and masses in the order of the file's atoms."""
     count = int(random.integers(1, 40))
     x, v, kinds = random.normal(size=(count, 3)), random.normal(size=(count, 3)), random.integers(1, 3, count)
     ids, more = random.permutation(count) + 1, {"atomic": "", "full": "{0} -0.5 ", "sph": "1000 2.5 1 "}[style]
@@ -170,7 +171,7 @@ def write_data(path, random, style="atomic"):
 
 
 def write_h5part(path, random, steps):
-    """As SPH-EXA does: steps in no order of their names; returns the columns of each."""
+    """Writes a file as SPH-EXA does, with steps in another order than their names. Returns the columns of each step."""
     made = []
     with h5py.File(path, "w") as file:
         for step in range(steps):
@@ -184,7 +185,7 @@ def write_h5part(path, random, steps):
 
 
 def write_series(path, random):
-    """As ParaView does."""
+    """Writes a .series file as ParaView does."""
     write_csv(path.with_name("a.csv"), random)
     write_columns(path.with_name("b.txt"), random)
     path.write_text('{"file-series-version": "1.0", "files": [{"name": "b.txt", "time": 0.5}, {"name": "a.csv", "time": 0}]}')
@@ -228,7 +229,7 @@ def fuzz(case, writers, least):
 
 
 class AgainstNumPy(Case):
-    """40 random files of each kind."""
+    """Tests 40 random files of each kind."""
 
     def randoms(self):
         return (np.random.default_rng([44, seed]) for seed in range(40))
@@ -333,12 +334,12 @@ class AgainstNumPy(Case):
 
 BOX = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS "
 ROWS = "ITEM: ATOMS id type xs ys zs\n1 1 0.25 0.5 0.75\n2 1 0.5 0.5 0.5\n"
-TILTED = "0 26 4\n0 23 2\n0 20 3\n"  # a cell of 20 x 20 x 20 in a box of 26 x 23 x 20
+TILTED = "0 26 4\n0 23 2\n0 20 3\n"  # This is a cell of 20 x 20 x 20 in a box of 26 x 23 x 20.
 VECTORS = "20 0 0 1\n4 20 0 2\n2 3 20 3\n"
 XYZ = 'Properties=species:S:1:pos:R:3 Lattice="{}" pbc="{}"'
 TWO = 'A 1 2 3\nB 4 5 6\n'
 
-# The name of a file, its text, and what both readers must say of it: a sentence's words, or nothing and its period.
+# Each case has a file's name, its text, and what both readers must do: give a sentence with these words, or read it with this period.
 CASES = {
     "columns": ("a.csv", "x,y,z,Rhop,Vel:0,Vel:1,Vel:2\n1,2,3,1000,1,2,3\n4,5,6,1001,4,5,6\n", None),
     "names that stand twice": ("a.csv", "x,y,z,a,a,a_\n1,2,3,4,5,6\n4,5,6,7,8,9\n", None),
@@ -381,7 +382,7 @@ PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is t
 
 
 class Others(Case):
-    """Formats of Python's alone: random files against the numbers that went into them."""
+    """Tests formats that only Python reads: random files are compared with the numbers in them."""
 
     def randoms(self):
         return (np.random.default_rng([57, seed]) for seed in range(12))
@@ -480,7 +481,7 @@ class Others(Case):
             self.assert_refused("is no series of files", self.at("p.vtk.series"))
 
     def test_packed(self):
-        """Text by gzip, in one part or several."""
+        """Text files may be packed by gzip, in one part or several."""
         writers = {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 2, True),
                    "a.dump": lambda path, r: write_lammps(path, r, 2, True), "a.gro": lambda path, r: write_gro(path, r, 2),
                    "a.data": write_data, "a.ply": lambda path, r: write_ply(path, r, "ascii")}
@@ -507,17 +508,17 @@ class Others(Case):
 
 @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
 class AsTheProgram(Case):
-    """The program and Python read the same of the same files, or both refuse them."""
+    """The program and Python read the same of a file, or both refuse it."""
 
     def list_arrays(self, path):
         return subprocess.run([os.environ["MCOR_TEST_PROGRAM"], "--list-arrays", str(path)], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True)
 
     def describe(self, particles):
-        """As --list-arrays does: {name: (components, lowest and highest values, none of text)}."""
+        """Returns what --list-arrays shows: {name: (components, lowest and highest values)}; texts have no values."""
         found = {"positions": particles.positions, **{name: particles.arrays[name] for name in particles.arrays}}
         if "vx" in found:
-            found.pop("Velocity", None)  # three arrays of the file
+            found.pop("Velocity", None)  # In the file these are three arrays.
         return {name: (values[0].size, [] if values.dtype.kind == "U" else
                        [float(f"{each:.9g}") for end in (np.nanmin, np.nanmax) for each in np.ravel(end(values, axis=0))])
                 for name, values in found.items()}
@@ -560,7 +561,7 @@ class AsTheProgram(Case):
         self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
 
     def test_tilted_cells(self):
-        """Positions by hand; and what is said where a period is asked for."""
+        """Positions are worked out by hand; and a period that is asked for is used, or refused with a sentence."""
         for case in ("a tilted box", "a tilted box of one period", "vectors"):
             self.at("a.dump").write_text(CASES[case][1])
             low = np.array([1.0, 2, 3]) if case == "vectors" else np.zeros(3)
@@ -578,7 +579,7 @@ class AsTheProgram(Case):
                 mc.free_surface(io.read(self.at(name)), smoothing_length=9.0)
 
     def test_no_circle(self):
-        """What the program does not read names the command that makes what it does; that command reads all of it."""
+        """If the program cannot read a file, its sentence names the command that converts it, and this command reads all of it."""
         random = np.random.default_rng(3)
         writers = {"a.npz": write_npz, "a.npy": lambda path, r: np.save(path, r.normal(size=(20, 3))),
                    "a.gro": lambda path, r: write_gro(path, r, 2), "a.data": write_data,
@@ -643,7 +644,7 @@ class Tables(Case):
             self.assertEqual(io.read(self.at("p.csv")).positions.tolist(), [[1, 2, 3]])
 
     def test_surface(self):
-        """From a file alone, as from arrays; walls of a file of their own."""
+        """A surface from a file alone equals the one from arrays; walls may be in a file of their own."""
         line = np.arange(-4, 5) * 0.1
         x = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
         np.savetxt(self.at("water.csv"), np.column_stack([x, np.full(len(x), 0.13), np.full(len(x), 1e-3)]), "%.17g", ",",
@@ -660,7 +661,7 @@ class Tables(Case):
         write_gadget_binary(self.at("snap"), np.random.default_rng(5))
         convert([self.at("p.xyz"), self.at("snap")], self.at("film.pvd"))
         reader = pyvista.get_reader(self.at("film.pvd"))
-        self.assertEqual(reader.time_values, [0, 0.25, 0.5])  # the snapshot's is 0.25, too
+        self.assertEqual(reader.time_values, [0, 0.25, 0.5])  # The snapshot's time is 0.25, too.
         for i in range(3):
             step = pyvista.read(self.at(f"film_{i:04d}.vtp"))
             self.assertTrue(np.array_equal(step.points, io.read(self.at("p.xyz"), step=i).positions))
@@ -696,7 +697,7 @@ class Tables(Case):
         self.assert_refused("snap.1 is missing", self.at("snap.0"))
 
     def test_fuzz(self):
-        """Bits turned, or other numbers."""
+        """Files with flipped bits or other numbers are read or refused."""
         fuzz(self, {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 3, True),
                    "b.xyz": lambda path, r: write_xyz(path, r, 2, False), "a.dump": lambda path, r: write_lammps(path, r, 2, True),
                    "a.gadget": write_gadget_binary, "b.gadget": lambda path, r: write_gadget_binary(path, r, True, ">", True),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""mypy --strict and pyright of a user's program and of the guide's blocks: types are known, mistakes are found."""
+"""Runs mypy --strict and pyright on a user's program and on the guide's blocks: types are known, and mistakes are found."""
 import json
 import re
 import subprocess
@@ -34,11 +34,11 @@ PAGES = ("python.md", "files.md", "readers-python.md", "slices-and-derived-field
 
 
 def check(programs):
-    """{file: text} -> what mypy --strict and pyright say, as [(file, line, kind, sentence)] each."""
+    """Returns what mypy --strict and pyright say of {file: text}, each as [(file, line, kind, sentence)]."""
     with tempfile.TemporaryDirectory() as folder:
         for name, text in programs.items():
             (Path(folder) / name).write_text(text)
-        # Other packages have no types, and the guide's functions need none.
+        # Other packages have no types, and functions in the guide need none.
         words = ["--strict", "--disable-error-code=import-untyped", "--disable-error-code=no-untyped-def"]
         mypy = subprocess.run([sys.executable, "-m", "mypy", *words, *programs], cwd=folder, stdout=subprocess.PIPE, text=True)
         pyright = subprocess.run([sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--outputjson", "."], cwd=folder, stdout=subprocess.PIPE,

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions for NumPy in each version of Python that pyproject.toml names and this machine has.
+"""Tests the functions for NumPy in each version of Python that pyproject.toml names and this machine has.
 
     test_versions.py FOLDER_OF_THE_ENVIRONMENT
 
-Status 77: there is none but the one that runs this.
+Status 77: there is only the version that runs this.
 """
 import os
 import re
@@ -24,7 +24,7 @@ def versions():
 
 
 def find(version):
-    """On the PATH, or among those of pyenv; one that cannot make environments is none."""
+    """Returns the Python of this version, on the PATH or in pyenv; one that cannot make environments does not count."""
     candidates = [shutil.which("python" + version)]
     candidates += sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin/python"))
     for python in filter(None, candidates):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""PyVista and VTK of PyPI: the accessor, the filter beside the functions."""
+"""Tests PyVista and VTK from PyPI: the accessor, and the filter compared with the functions."""
 import os
 import re
 import unittest
@@ -64,7 +64,7 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 public, re.M))
         self.assertGreater(len(names), 100)
-        # The wheel's filter runs in one process; the others are what panels of the C++ plugin begin with.
+        # The wheel's filter has no ranks, and these others only serve the C++ plugin's panels.
         names -= {"GetNextBounds", "GetNextEstimate"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [], "add them to the plugin's XML, or to MarchingCorrectorsFilter.py")
@@ -75,7 +75,7 @@ class Test(unittest.TestCase):
         defaults += re.findall(r"^  vtkSPH(?:Value|Clamp|Flag)Macro\((\w+),(?: \w+,)? ([-\w.]+)[,)]", text, re.M)
         self.assertGreater(len(defaults), 50)
         for name, value in defaults:
-            if name == "NextIsoValue":  # no number where there is no input, in both
+            if name == "NextIsoValue":  # Without input both have no number.
                 continue
             if value.replace(".", "").replace("e-", "").isdigit() and hasattr(vtkMarchingCorrectors, "Get" + name):
                 self.assertEqual(getattr(vtkMarchingCorrectors(), "Get" + name)(), float(value), name)

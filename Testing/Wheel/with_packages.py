@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a test with packages that it alone needs: they go into a folder of their own.
+"""Runs a test with packages that only this test needs; they are installed into their own folder.
 
     with_packages.py "PACKAGE PACKAGE ..." TEST [ARGUMENT]...
 """

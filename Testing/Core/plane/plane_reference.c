@@ -9,8 +9,8 @@
 
 double plane_norm(mcor_sph_kernel kernel)
 {
-  /* 10 / (7 pi) over 1 / pi; 2 (2 - q)^2 / ... : so that the integral over the plane is 1, which
-   * test_core_plane checks. */
+  /* The factor that makes each kernel's integral over the plane 1, over 1 / pi: 10 / (7 pi) for the first.
+   * test_core_plane checks these integrals. */
   static const double norm[MCOR_SPH_KERNEL_COUNT] = { 1.4285714285714286, 1.6, 1,
     1.7573221757322175, 1.3333333333333333, 1.6013344453711426, 1.1636363636363636,
     1.0448979591836735, 1.0635845764083533 };
@@ -22,7 +22,8 @@ double plane_u(const plane_field* f, int64_t i, int a)
   return f->set->position[3 * i + (f->axis + 1 + a) % 3];
 }
 
-/* By weight, or by the lower eigenvalue of the symmetric matrix m (uu, uv, vv); at walls by their share, too. */
+/* Returns how far the point is inside of the trimmed surface: by the weight, or by the lower eigenvalue of the
+ * symmetric matrix m (uu, uv, vv); at walls by the solids' share, too. */
 static double plane_margin(const plane_field* f, const plane_sample* s, const double m[3])
 {
   const mcor_options* o = f->options;
@@ -35,7 +36,7 @@ static double plane_margin(const plane_field* f, const plane_sample* s, const do
   return o->field == MCOR_WEIGHT_SUM ? wall : fmin(margin, wall);
 }
 
-/* Volumes of particles are areas. */
+/* The volumes of particles are areas here. */
 plane_sample plane_evaluate(const plane_field* f, double u, double v)
 {
   const particle_set* set = f->set;

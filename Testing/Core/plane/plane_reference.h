@@ -3,9 +3,9 @@
 #ifndef plane_reference_h
 #define plane_reference_h
 
-/* The field of two dimensions and its squares, as fine as the particles are, once more: in double precision, all
- * nodes, no code of the library's. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in
- * cyclic order, are u and v. */
+/* A reference for two dimensions: the field and its squares, as fine as the particles are, in double precision, at all
+ * nodes, without code of the library. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two
+ * coordinates, in cyclic order, are u and v. */
 
 #include "core_fixture.h"
 
@@ -14,31 +14,30 @@ typedef struct plane_field
   const particle_set* set;
   const mcor_options* options;
   int axis;
-  const double* region; /* [4] or NULL: from, to along u and v, where centres of squares are */
+  const double* region; /* [4] or NULL: squares have their centres from [0] to [1] along u, from [2] to [3] along v */
 } plane_field;
 
 typedef struct plane_sample
 {
   double value, gradient[2]; /* of the field, not relative to the iso value */
-  double fluid, weight;      /* weight: of trimming */
+  double fluid, weight;      /* weight: the weight that trimming uses */
   double fluid_slope[2], weight_slope[2];
-  double margin; /* how far inside of what trimming leaves */
+  double margin; /* how far inside of the trimmed surface */
 } plane_sample;
 
 /* Coordinate u or v of a particle. */
 double plane_u(const plane_field* field, int64_t i, int a);
-/* The range of the field's values. */
+/* Returns the range of the field's values. */
 double plane_range(const plane_field* field);
-/* W of two dimensions over W of three, per smoothing length; from numbers of its own. */
+/* Returns W of two dimensions over W of three, per smoothing length, from numbers of its own. */
 double plane_norm(mcor_sph_kernel kernel);
 plane_sample plane_evaluate(const plane_field* field, double u, double v);
 
-/* plane_squares.c: compares the surface's vertices on sides of squares, of all levels, with the sides that are crossed, how lines
- * join them, and all vertices with the field; the test fails where some are missing or there are others. Returns
- * how many sides are crossed. */
+/* Compares the surface with the squares of all levels (plane_squares.c): its vertices on sides of squares with the
+ * crossed sides, how lines join them, and all vertices with the field. The test fails where a vertex is missing or one
+ * too many. Returns how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
-/* As plane_compare; checks the lines' directions, ends and normals, too. closed: they must be
- * closed. */
+/* Does what plane_compare does, and checks the lines' directions, ends and normals. closed: all lines must be closed. */
 void plane_check_lines(const plane_field* field, const mcor_surface* surface, int closed);
 
 /* Options for one iso value; lines are not trimmed. */

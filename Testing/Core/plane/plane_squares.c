@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* All squares that particles reach, of all levels: which pieces of their sides are crossed, and how lines join
- * them. */
+/* Finds for all squares that particles reach, of all levels, which pieces of their sides are crossed and how lines join
+ * the crossings. */
 
 #include "plane_reference.h"
 
@@ -14,7 +14,7 @@
 
 typedef struct plane_node
 {
-  int above, valid, close; /* close: rounding may decide */
+  int above, valid, close; /* close: rounding may decide the side */
 } plane_node;
 
 /* A piece of a square's side between two nodes on different sides. */
@@ -22,12 +22,12 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  int valid, close; /* whether a square that has it is valid */
+  int valid, close; /* valid: a square that has the edge is valid; close: rounding may decide that */
   int found;
-  int64_t next; /* where the line that begins here ends; -1 */
+  int64_t next; /* the edge where the line that begins here ends, or -1 */
 } plane_edge;
 
-/* All squares of the leaves of the oracle's lattice: bricks of 4 x 4 squares of their level in the plane z = 0. */
+/* All squares that the oracle's lattice has: bricks of 4 x 4 squares of their level in the plane z = 0. */
 typedef struct plane_squares
 {
   const plane_field* field;
@@ -36,7 +36,7 @@ typedef struct plane_squares
   plane_node* nodes;
   plane_edge* edges;
   int64_t node_count, node_capacity, edge_count, edge_capacity;
-  int64_t ambiguous, doubtful; /* squares; those where rounding may decide */
+  int64_t ambiguous, doubtful; /* ambiguous squares; squares where rounding may decide */
 } plane_squares;
 
 static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
@@ -61,7 +61,7 @@ static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
   return n;
 }
 
-/* The edge's number; a new one has no squares yet. */
+/* Returns the number of the edge between a and b. A new edge has no squares yet. */
 static int64_t plane_edge_at(
   plane_squares* s, const int64_t a[2], const int64_t b[2], int a_is_above)
 {
@@ -82,7 +82,8 @@ static int64_t plane_edge_at(
   return *place;
 }
 
-/* A square, run through with it on its left: `half` of its sides that are halved, bits below, right, above, left. */
+/* Adds a square. The walk around it keeps it on the left. half: which sides are halved, as bits (below, right, above,
+ * left). */
 static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
 {
   static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
@@ -126,7 +127,7 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
       s->edges[edge[i]].close |= close;
     }
   }
-  /* The part above is cut off: a line begins where it ends, and leads to where it begins. */
+  /* Each part above is cut off: a line begins where the walk leaves it and leads back to where the walk entered it. */
   for (int i = 0; i < count && valid; ++i)
   {
     if (edge[i] >= 0 && node[i].above)
@@ -184,7 +185,7 @@ static void plane_add_squares(plane_squares* s)
   }
 }
 
-/* Whether the field at the edge's crossing has too little fluid for a mean, so that trimming takes it. */
+/* Returns whether the field at the edge's crossing has too little fluid for a mean, so that the vertex is trimmed away. */
 static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
 {
   const mcor_options* o = s->field->options;
@@ -206,7 +207,7 @@ static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
   return p.margin < 1e-4 || (o->field != MCOR_WEIGHT_SUM && p.fluid < least + 1e-5);
 }
 
-/* The number of the edge that a point is on; -1: of none. */
+/* Returns the number of the edge that a point is on, or -1 if it is on none. */
 static int64_t plane_edge_of(plane_squares* s, double u, double v)
 {
   const double x[2] = { u / s->cube, v / s->cube };
@@ -227,7 +228,7 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
   return -1;
 }
 
-/* Whether the lines lead from edge to edge as they must where nothing is doubtful. */
+/* Checks that lines lead from edge to edge as the squares say, where nothing is doubtful. */
 static void plane_compare_lines(
   const plane_squares* s, const int64_t* of, const mcor_surface* surface)
 {

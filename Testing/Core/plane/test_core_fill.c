@@ -10,18 +10,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Facts that hold for any filled region ---- */
+/* ---- What holds for any filled region ---- */
 
 typedef struct fill_report
 {
   double area,
-    enclosed; /* of triangles; of the lines of the lowest iso value, if all are closed, else 0 */
-  double inverted; /* of triangles that run round the other way */
-  int64_t loose;   /* edges on the border that are no lines */
+    enclosed; /* area of the triangles; area that the lines of the lowest iso value enclose, 0 unless all are closed */
+  double inverted; /* area of triangles that run round in the wrong direction */
+  int64_t loose;   /* edges on the border that are not lines */
   double loose_length;
 } fill_report;
 
-/* An edge from one point to another: of a triangle of a band, or of a line (of_line) of an iso value. */
+/* An edge from one point to another: of a triangle in a band, or of an iso value's line (of_line). */
 typedef struct fill_edge
 {
   int32_t from, to;
@@ -47,7 +47,7 @@ static double fill_cross(
   return 0.5 * ((q[u] - p[u]) * (r[v] - p[v]) - (r[u] - p[u]) * (q[v] - p[v]));
 }
 
-/* Edges between the same two points. */
+/* Checks the edges between the same two points. */
 static void fill_check_edge(const plane_field* f, const mcor_surface* s, const fill_edge* edges,
   int64_t count, double least, fill_report* report)
 {
@@ -63,7 +63,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
   if (line && !sides[0] && !sides[1])
   {
-    /* Only one of equal iso values has bands beside it. */
+    /* Of equal iso values, only one has bands beside its line. */
     int times = 0;
     for (int i = 0; i < f->options->iso_count; ++i)
     {
@@ -91,9 +91,9 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
 }
 
-/* Fails unless two triangles, or one and the border, are at each edge, all round alike; all lines of the least
- * iso value are on the border, all others between the bands beside them; and there are no other edges
- * between bands. */
+/* Fails unless each edge has two triangles, or one and the border, and all triangles run round in the same direction;
+ * all lines of the lowest iso value are on the border, all other lines between the two bands beside them; and no other
+ * edge separates bands. */
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };
@@ -155,7 +155,7 @@ static fill_report fill_check(const plane_field* field, const mcor_surface* s)
   return report;
 }
 
-/* Fails unless points are where they say they are: on an iso value, on a threshold, or between. */
+/* Fails unless each point lies where its data say: on an iso value, on a threshold, or between. */
 static void fill_check_points(const plane_field* f, const mcor_surface* s)
 {
   const mcor_options* o = f->options;
@@ -193,7 +193,7 @@ static void fill_check_points(const plane_field* f, const mcor_surface* s)
   CORE_CHECK(nodes > 0, "no nodes");
 }
 
-/* The area by sampling, n x n points. */
+/* Returns the area by sampling n x n points. */
 static double fill_sample(const plane_field* f, double iso, int n)
 {
   double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
@@ -270,7 +270,7 @@ static void test_free_surface(void** state)
   }
 }
 
-/* Bands add up to what is above the least value, whatever the order of the values. */
+/* The bands' areas add up to the area above the lowest value, whatever the order of the values. */
 static void test_bands(void** state)
 {
   const double isos[7] = { 3, -60, 5.5, -20, 3, 1e9, 0 };
@@ -315,7 +315,7 @@ static void test_bands(void** state)
   }
 }
 
-/* Inside of the fluid only: by weight, by eigenvalue, at walls. */
+/* Regions end where trimming does: by weight, by eigenvalue, at walls. */
 static void test_trimming(void** state)
 {
   const double isos[3] = { -1e3, -2.2, 3.1 };
@@ -357,7 +357,7 @@ static void test_trimming(void** state)
   }
 }
 
-/* Anything: noise, walls, all options that change where lines are. Watertight. */
+/* Regions of random fields have no gaps: with noise, walls, and all options that move lines. */
 static void test_random(void** state)
 {
   uint64_t seed = 21;
@@ -394,7 +394,7 @@ static void test_random(void** state)
     area += report.area;
     inverted += report.inverted;
   }
-  /* Where noise crosses two values more than once on one edge. */
+  /* Noise may cross two values more than once on one edge. */
   CORE_CHECK(inverted < 1e-4 * area, "%g of %g is inverted", inverted, area);
 }
 
@@ -411,7 +411,7 @@ static void test_boxes(void** state)
   core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
 }
 
-/* One period is filled from side to side: with fluid everywhere, all of it. */
+/* One period is filled from side to side; where there is fluid everywhere, all of it. */
 static void test_period(void** state)
 {
   const double isos[2] = { -1e3, 2 };
@@ -429,7 +429,7 @@ static void test_period(void** state)
   CORE_CHECK(fabs(strip.area - 144) < 8, "a strip of %g", strip.area);
 }
 
-/* Seeds, order of particles, what is kept, plane: the same bits. */
+/* The bits do not depend on seeds, order of particles, kept data or the plane. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };
@@ -452,7 +452,7 @@ static void test_bits(void** state)
   }
 }
 
-/* Attributes of nodes are those of a probe there. */
+/* Attributes of nodes are those of a probe at the same place. */
 static void test_attributes(void** state)
 {
   mcor_context* context = *state;
@@ -524,7 +524,7 @@ static void test_what_is_not_filled(void** state)
   surface = core_extract(*state, &nothing, &options);
   assert_int_equal(surface.triangle_count, 0);
   mcor_free_surface(&surface);
-  options.box[0] = 100; /* beside all */
+  options.box[0] = 100; /* the box lies beside all particles */
   options.box[1] = 101;
   options.box[2] = options.box[4] = -1;
   options.box[3] = options.box[5] = 1;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: kernels, weights, what is a plane, derivatives and gauges, what is kept, bits. Lines are compared in
- * test_core_plane_lines. */
+/* Two dimensions: kernels, weights, what counts as a plane, derivatives and gauges, what is kept, bits.
+ * test_core_plane_lines compares lines. */
 
 #include "mcor_plane.h"
 #include "plane_reference.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Midpoint rule over the support's square, of the normalisation that the library has. */
+/* Each kernel, normalised as the library does, integrates to 1: midpoint rule over the square of its support. */
 static void test_kernels_integrate_to_1(void** state)
 {
   (void)state;
@@ -31,7 +31,7 @@ static void test_kernels_integrate_to_1(void** state)
   }
 }
 
-/* Inside of a lattice of particles, by given and by computed volumes. */
+/* Inside of a lattice of particles the weight is 1, by given and by computed volumes. */
 static void test_weight_is_1_inside(void** state)
 {
   mcor_context* context = *state;
@@ -65,7 +65,7 @@ static void test_weight_is_1_inside(void** state)
   }
 }
 
-/* -0 is 0, wherever the particles with it are in the order. */
+/* A coordinate of -0 counts as 0, wherever in the order the particles with it are. */
 static void test_minus_zero(void** state)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -113,7 +113,7 @@ static void test_what_is_no_plane(void** state)
   options.dimension = 2;
   set.position[5] += 1e-9;
   expect_error(*state, &input, &options, "NOT_IN_PLANE");
-  options.dimension = 0; /* thin, but uneven */
+  options.dimension = 0; /* the set is thin, but uneven */
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 3);
   mcor_free_surface(&surface);
@@ -122,7 +122,7 @@ static void test_what_is_no_plane(void** state)
   set.has_solids = 1;
   input = core_input(&set);
   expect_error(*state, &input, &options, "SOLIDS_BESIDE_PLANE|1.000000001");
-  set.position[5] = NAN; /* of a solid that plays no part */
+  set.position[5] = NAN; /* an ignored solid may be anywhere */
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 2);
   mcor_free_surface(&surface);
@@ -130,7 +130,7 @@ static void test_what_is_no_plane(void** state)
   expect_error(*state, &input, &options, "ARRAY_VALUE|particle 1");
 }
 
-/* Sides are those of the caller's axes; a flat box around the particles is one. */
+/* Sentences name the caller's axes. A flat box around the particles is a box. */
 static void test_sentences_of_sides(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, 1, 7);
@@ -153,13 +153,13 @@ static void test_sentences_of_sides(void** state)
   assert_true(whole.line_count > 0);
   assert_int_equal(core_hash(&flat), core_hash(&whole));
   mcor_free_surface(&flat);
-  options.box[2] = options.box[3] = 0.5; /* beside them */
+  options.box[2] = options.box[3] = 0.5; /* the box lies beside the particles */
   flat = core_extract(*state, &input, &options);
   assert_int_equal(flat.line_count, 0);
 }
 
-/* Walls in another plane than the fluid, also where nobody says that there are two dimensions; but not if they
- * play no part, or are in no plane. */
+/* Walls in another plane than the fluid are refused, also where the dimension is found; but not if the walls are
+ * ignored, or lie in no plane. */
 static void test_walls_in_another_plane(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, -2, 7);
@@ -191,7 +191,7 @@ static void test_walls_in_another_plane(void** state)
   assert_int_equal(surface.statistics.dimension, 3);
 }
 
-/* Exact for what is linear; the reading of a gauge is where the weight is 0.5. */
+/* Derivatives of a linear field are exact; a gauge reads the place where the weight is 0.5. */
 static void test_derivatives_and_gauges(void** state)
 {
   mcor_context* context = *state;
@@ -249,8 +249,7 @@ static void test_derivatives_and_gauges(void** state)
   }
 }
 
-/* With a smooth scalar, pairs find what complete seeds do; and what is kept serves another iso
- * value. */
+/* With a smooth scalar, pairs find what complete seeds find, and what is kept serves another iso value. */
 static void test_pairs_and_reuse(void** state)
 {
   CORE_SET set = plane_make(20, 0.2, 1, 2, -1, 4);
@@ -279,7 +278,7 @@ static void test_pairs_and_reuse(void** state)
   }
 }
 
-/* Bits do not depend on the order of the particles, nor, but for what is turned, on the plane. */
+/* Bits do not depend on the order of the particles, nor on the plane, except that coordinates change places. */
 static void test_bits(void** state)
 {
   const double iso = 0.4;

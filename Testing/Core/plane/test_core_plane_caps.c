@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps of two dimensions: lines along the sides of periods and boxes, where it is filled beside these. */
+/* Caps of two dimensions: lines along the sides of periods and boxes, where there is fluid beside the side. */
 
 #include "plane_reference.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A call, and where its caps are on the plane's two axes; infinite where there are none. */
+/* A call, and the places of its caps on the plane's two axes; infinite where there is no cap. */
 typedef struct caps_case
 {
   const particle_set* set;
@@ -23,7 +23,7 @@ static double caps_at(const caps_case* c, const mcor_surface* s, int32_t p, int 
   return s->points[3 * (int64_t)p + (c->axis + 1 + a) % 3];
 }
 
-/* The side that two points are on; -1: none. */
+/* Returns the side that two points are on, or -1. */
 static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, int32_t q)
 {
   for (int i = 0; i < 4; ++i)
@@ -37,7 +37,7 @@ static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, in
   return -1;
 }
 
-/* Length along side i, with what is inside on the left. */
+/* Returns the length along side i; positive if the inside is on the left. */
 static double caps_length(const caps_case* c, const mcor_surface* s, int i, int32_t p, int32_t q)
 {
   const int along = 1 - i / 2;
@@ -45,7 +45,7 @@ static double caps_length(const caps_case* c, const mcor_surface* s, int i, int3
   return (i % 2 == along) == 1 ? forward : -forward;
 }
 
-/* Measures how much is filled along each side, from triangles. */
+/* Measures, from triangles, how much of each side is filled. */
 static void caps_filled(const caps_case* c, const mcor_surface* s, double length[4])
 {
   for (int64_t t = 0; t < 3 * s->triangle_count; ++t)
@@ -77,7 +77,7 @@ static void caps_lines(const caps_case* c, const mcor_surface* s, double length[
   }
 }
 
-/* Sides of the cells of a box, or of the period. */
+/* Finds the sides: of the cells of a box, or of the period. */
 static void caps_place(caps_case* c, const mcor_surface* s)
 {
   const mcor_options* o = &c->options;
@@ -95,8 +95,8 @@ static void caps_place(caps_case* c, const mcor_surface* s)
   }
 }
 
-/* Without caps the lines are the same points before those of caps; caps are as long as what is filled is along
- * sides; where nothing is trimmed, they close the lines around the filled area. */
+/* Checks that the lines without caps come first and are unchanged; that caps are as long as the filled part of sides;
+ * and that, where nothing is trimmed, caps close the lines around the filled area. */
 static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
 {
   const mcor_input input = core_input(c->set);
@@ -156,7 +156,7 @@ static void set_sides(double sides[6], int axis, double u0, double u1, double v0
   }
 }
 
-/* Caps of periods along both axes or one, of boxes, and of boxes in a period. */
+/* Caps of periods along one axis or both, of boxes, and of boxes in a period. */
 static void test_sides(void** state)
 {
   double all = 0;
@@ -189,14 +189,14 @@ static void test_sides(void** state)
       c.options.box[2 * axis + 1] = INFINITY;
     }
     c.options.capping = where == 1 || where == 2 ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
-    /* In a whole period there is fluid everywhere; else the edge of the fluid ends lines of a scalar. */
+    /* A whole period has fluid everywhere; otherwise lines of a scalar end at the edge of the fluid. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
   }
   CORE_CHECK(all > 36 * 5, "caps of %g", all);
 }
 
-/* Cut where trimming ends: by weight, by eigenvalue, at walls. */
+/* Caps end where trimming ends the fluid: by weight, by eigenvalue, at walls. */
 static void test_trimmed_sides(void** state)
 {
   const double iso = -1e3;
@@ -224,7 +224,7 @@ static void test_trimmed_sides(void** state)
   }
 }
 
-/* Several iso values have caps of their own; boxes side by side, those of the whole. */
+/* Each of several iso values has its own caps, and boxes side by side have the caps of the whole. */
 static void test_values_and_order(void** state)
 {
   const double isos[2] = { 0.9, 0.6 };
@@ -270,7 +270,7 @@ static void test_what_is_not_capped(void** state)
     "CAPPING_WITH_FILLED");
   options.filled = 0;
   options.field = MCOR_WEIGHT_SUM;
-  surface = core_extract(*state, &input, &options); /* nothing to close */
+  surface = core_extract(*state, &input, &options); /* there is nothing to close */
   assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles == 0);
   mcor_free_surface(&surface);
   options.capping = MCOR_CAP_BOX;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Lines of two dimensions against a reference of all squares. */
+/* Compares lines of two dimensions with a reference of all squares. */
 
 #include "plane_reference.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Compares lines of particles that the field's set stands for. */
+/* Extracts the lines of these particles and compares them with the reference's, whose set is field->set. */
 static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
 {
@@ -28,7 +28,7 @@ static int64_t compare_set(
   return compare(context, &input, &field, closed);
 }
 
-/* W in the plane is plane_norm h times the oracle's, which is that of three dimensions. */
+/* The oracle's W is that of three dimensions; W in the plane is plane_norm h times as large. */
 static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
 {
   oracle_compute_volumes(set, (oracle_kernel)kernel, 2, NULL, NULL);
@@ -38,8 +38,8 @@ static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
   }
 }
 
-/* Anything: all kernels, fields and precisions, noise, walls in all ways, computed volumes, all options that change
- * where lines are. */
+/* Random cases: all kernels, fields and precisions, noise, walls of all kinds, computed volumes, all options that move
+ * lines. */
 static void test_random_lines(void** state)
 {
   const double shares[3] = { 0, 0.5, 0.8 };
@@ -86,7 +86,7 @@ static void test_random_lines(void** state)
     }
     input.ignore_solids = round % 8 == 1;
     const bool ends = set.has_solids && options.field == MCOR_WEIGHT_SUM &&
-      options.wall_share > 0 && !input.ignore_solids; /* a free surface, at walls */
+      options.wall_share > 0 && !input.ignore_solids; /* the free surface ends at walls */
     const bool fluid_alone =
       set.has_solids && (input.ignore_solids || (options.field == MCOR_WEIGHT_SUM && !ends));
     const plane_field field = { fluid_alone ? &fluid : &set, &options, axis, NULL };
@@ -94,7 +94,7 @@ static void test_random_lines(void** state)
   }
 }
 
-/* A smoothing length that is estimated, of particles that are about one apart. */
+/* The smoothing length is estimated from particles that are about one apart. */
 static void test_estimated_length(void** state)
 {
   const double iso = 0.5;
@@ -116,7 +116,7 @@ static void test_estimated_length(void** state)
   CORE_CHECK(compare(*state, &input, &field, 1) > 60, "few edges");
 }
 
-/* The set and its images around it. */
+/* Returns the set and its images around it. */
 static particle_set with_images(const particle_set* set, int axis, double period)
 {
   particle_set all = particle_set_make(9 * set->count);
@@ -135,8 +135,7 @@ static particle_set with_images(const particle_set* set, int axis, double period
   return all;
 }
 
-/* Squares of several sizes: particles whose smoothing lengths grow along u, or that are mixed. Free surfaces are
- * closed across levels. */
+/* Squares of several sizes: smoothing lengths grow along u, or are mixed. Free surfaces are closed across levels. */
 static void test_adaptive_lines(void** state)
 {
   uint64_t seed = 21;
@@ -182,8 +181,7 @@ static void test_adaptive_lines(void** state)
   assert_true(deep > 10);
 }
 
-/* Squares of one size and of several in periods, and in boxes of these: the reference has all images. Caps are no part
- * of it. */
+/* Squares of one size and of several in periods, and in boxes of a period. The reference has all images, but no caps. */
 static void test_periods(void** state)
 {
   const double period = 32, ends[2] = { -16, 16 };
@@ -235,7 +233,7 @@ static void test_periods(void** state)
     const plane_field field = { &all, &options, axis, region };
     if (!both)
     {
-      all.count = 3 * set.count; /* along u */
+      all.count = 3 * set.count; /* the images along u */
       for (int64_t i = 0; i < all.count; ++i)
       {
         all.position[3 * i + (axis + 2) % 3] += period;
@@ -251,7 +249,7 @@ static void test_periods(void** state)
   assert_true(several > 10);
 }
 
-/* A point, and particles on a line, are in a plane if the caller says so. */
+/* One point, and particles on a line, are two-dimensional if the caller says so. */
 static void test_points_and_rows(void** state)
 {
   const double iso = 0.1;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The boundary eigenvalue: the eigenvalue solver alone, and arrays and trimmed surfaces against sums in double
+/* The boundary eigenvalue: the eigenvalue solver alone; then arrays and trimmed surfaces, compared with sums in double
  * precision on the host. */
 
 #include "core_fixture.h"
@@ -24,15 +24,15 @@ static const char source[] =
   "    out[4 * i + 1 + a] = MCOR_GET(e[a], MCOR_LANES - 1);\n"
   "}\n";
 
-/* xx yy zz xy yz zx */
+/* Each row is xx yy zz xy yz zx. */
 static const double matrices[][6] = { { 0, 0, 0, 0, 0, 0 }, { 1, 1, 1, 0, 0, 0 },
   { 3, 1, 2, 0, 0, 0 }, { 2, 2, 2, 1, 1, 1 }, { 2, 2, 2, -1, -1, -1 }, { 1, 1, 1, 1, 1, 1 },
   { 1, 1, 5, 1e-7, 0, 0 }, { 1, 1, 1, 1e-8, 1e-9, 1e-10 }, { 1e-20, 2e-20, 3e-20, 1e-20, 0, 0 },
   { 0, 0, 0, 1e-25, 1e-30, 1e-25 }, { 0, 0, 0, 1, 0, 0 }, { 1e6, 1, 1e-6, 1, 1, 1 },
   { -1, 0.5, 2, 0.3, -0.7, 0.1 }, { 0.9, 1.1, 0.5, 0.01, 0.02, -0.03 }, { 4, 9, 1, 6, 3, 2 } };
 
-/* m e = value e with |e| = 1, and m - value without a negative eigenvalue. Entries so small that
- * their squares vanish in single precision are as good as 0. */
+/* Checks that m e = value e with |e| = 1, and that m - value has no negative eigenvalue. Entries whose squares vanish
+ * in single precision count as 0. */
 static void check_eigen(const double m[6], const double found[4], double tolerance)
 {
   const double full[3][3] = { { m[0], m[3], m[5] }, { m[3], m[1], m[4] }, { m[5], m[4], m[2] } };
@@ -104,13 +104,13 @@ static void test_eigenvalues(void** state)
   }
 }
 
-/* The array, on request whatever trims, has the reference's values; where the eigenvalue trims, Newton's steps by its
- * gradient end at the threshold, all but a few. */
+/* The array, which is there on request whatever trims, has the reference's values. Where the eigenvalue trims, nearly
+ * all Newton steps along its gradient end at the threshold. */
 static void check_surface(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, mcor_field field_kind)
 {
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
-  /* Each variant is a program to build. */
+  /* Each combination needs its own device program, so there are few. */
   set.has_solids = kernel == MCOR_CUBIC_SPLINE && field_kind == MCOR_SHEPARD;
   for (int64_t j = 0; j < set.count; ++j)
   {
@@ -124,7 +124,7 @@ static void check_surface(
   options.sph_kernel = kernel;
   options.precision = precision;
   options.field = field_kind;
-  int64_t points[2], of_flag[4] = { 0 }; /* by the weight and by the eigenvalue */
+  int64_t points[2], of_flag[4] = { 0 }; /* of_flag: how many points have each flag */
   for (int by_eigenvalue = 0; by_eigenvalue < 2; ++by_eigenvalue)
   {
     options.boundary_detection =

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps at the sides of periods and boxes close the surface, and leave its own points and triangles as they are. */
+/* Caps at the sides of periods and boxes close the surface, and leave its own points and triangles unchanged. */
 
 #include "core_parts.h"
 #include "core_period.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fails unless the surface without caps is the beginning of the one with caps, which are the rest of it. */
+/* Fails unless the surface with caps begins with the surface without. */
 static void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
 {
   const size_t points = (size_t)open->point_count, triangles = (size_t)open->triangle_count;
@@ -22,8 +22,8 @@ static void cap_check_prefix(const mcor_surface* open, const mcor_surface* close
   assert_true(closed->statistics.residual_max == open->statistics.residual_max);
 }
 
-/* Fails unless the volume is that between `planes` where the field is above the iso value: the oracle's, at random
- * places. */
+/* Fails unless the volume is that of the places between `planes` where the oracle's field is above the iso value,
+ * sampled at random. */
 static void cap_check_volume(const mcor_surface* closed, const particle_set* set,
   const mcor_options* options, const double planes[6])
 {
@@ -54,20 +54,20 @@ static void cap_check_volume(const mcor_surface* closed, const particle_set* set
     "volume %g instead of %g +- %g", closed->statistics.volume, expected, error);
 }
 
-/* ---- At sides ---- */
+/* ---- Caps at sides ---- */
 
 typedef struct cap_case
 {
   mcor_sph_kernel kernel;
   mcor_field field;
   double iso;
-  int open;                     /* bits: axes that have no period */
-  double threshold, eigenvalue; /* of vertices */
+  int open;                     /* bits: axes without a period */
+  double threshold, eigenvalue; /* options.vertex_threshold, options.eigenvalue_threshold */
   mcor_topology topology;
   mcor_type precision;
 } cap_case;
 
-/* Points of caps alone are on planes, with the oracle's values; their normals point out. */
+/* Checks that points of caps alone are on planes and have the oracle's values, and that their normals point outwards. */
 static void check_points(const particle_set* all, const mcor_options* options,
   const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {
@@ -92,7 +92,8 @@ static void check_points(const particle_set* all, const mcor_options* options,
   }
 }
 
-/* Along each axis as many triangles, and as large ones, face up as down: caps of a period are alike. */
+/* Checks that along each axis as many triangles, of the same total area, face up as down: a period's two caps are
+ * alike. */
 static void check_alike(const mcor_surface* open, const mcor_surface* s)
 {
   double area[3][2] = { { 0 } };
@@ -121,7 +122,7 @@ static void check_alike(const mcor_surface* open, const mcor_surface* s)
   }
 }
 
-/* Whether trimming, or a lack of weight, ends the surface at a point. */
+/* Returns whether the surface ends at a point, by trimming or for lack of weight. */
 static int ends_at(const mcor_surface* s, int32_t p)
 {
   return s->boundary_flag[p] % 8 != 0 || s->weight_sum[p] < 0.5f;
@@ -143,7 +144,7 @@ static void check_caps(
   options.capping = capping;
   CORE_SURFACE closed = core_extract(context, &input, &options);
   CORE_SET all = core_add_images(set, options.periodic);
-  for (int i = 0; i < 6; ++i) /* sides of the cells of a box, else of a period, else infinite */
+  for (int i = 0; i < 6; ++i) /* the sides of a box's cells, or of a period; else infinite */
   {
     const double edge = closed.statistics.cube_edges[i / 2], *period = options.periodic + i / 2 * 2;
     const double begin = ceil(period[0] / edge - 0.5) * edge, box = options.box[i];
@@ -166,7 +167,7 @@ static void check_caps(
     "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
   if (is_closed)
   {
-    for (int i = 0; i < 6; ++i) /* beyond that there is nothing */
+    for (int i = 0; i < 6; ++i) /* there is nothing beyond a side */
     {
       planes[i] = isinf(planes[i]) ? (i % 2 ? 13 : -10) : planes[i];
     }
@@ -178,7 +179,7 @@ static void check_caps(
   }
 }
 
-/* Cubes of one edge, and with an edge for each axis. */
+/* Periods with cubes of one edge, and with a different edge along each axis. */
 static void test_periods(void** state)
 {
   static const cap_case cases[] = {
@@ -221,8 +222,8 @@ static void test_periods(void** state)
   }
 }
 
-/* Fluid of a lattice, and holes in it; in boxes, alone and in a period. A box within fluid alone has the volume of its
- * cells. */
+/* The fluid is a lattice with holes in it; boxes are alone and in a period. A box that lies within the fluid has the
+ * volume of its cells. */
 static void test_boxes(void** state)
 {
   static const double iso = 0.5, period[6] = { -8, 8, 0, 0, 0, 0 };
@@ -250,7 +251,7 @@ static void test_boxes(void** state)
     memcpy(options.periodic, period, i % 2 ? sizeof period : 0);
     for (int64_t j = 0; j < set.count; ++j)
     {
-      set.volume[j] = i < 6 ? 1 : 1000; /* holes, too, are fluid */
+      set.volume[j] = i < 6 ? 1 : 1000; /* the holes have fluid, too */
     }
     check_caps(*state, &set, options, 1);
   }

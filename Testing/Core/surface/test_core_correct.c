@@ -1,29 +1,29 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Correction: every particle counts, what is reported, limits, poles. That vertices stay on their edges and are within
- * the tolerance, in fields of any kind, is what the oracle holds. */
+/* Correction: every particle counts, reported numbers, limits, poles. The oracle checks that vertices stay on their
+ * edges and are within the tolerance, in fields of any kind. */
 
 #include "core_fixture.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Nearly constant on both sides of a jump: steep at the surface, flat beside it. */
+/* A field that is nearly constant on both sides of a jump: steep at the surface, flat beside it. */
 static double steep(const double x[3])
 {
   return tanh(20 * (x[0] + 0.3 * x[1]));
 }
 
-/* Every other particle above: many kinks and crossings. */
+/* A field in which about every other particle is above: many kinks and crossings. */
 static double rough(const double x[3])
 {
   return sin(50 * x[0] + 31 * x[1] + 77 * x[2]);
 }
 
-/* In double precision the residual shows any particle that is left out, even at its kernel's rim: of
- * coarse cubes, whose vertices move far from where gathering began, and of kernels of all sizes; each
- * mirrored, too, so that what moves up moves down. */
+/* In double precision the residual reveals any particle that was left out, even at its kernel's rim. Cubes are coarse,
+ * so that vertices move far from where neighbours were gathered; kernels have all sizes; each set is mirrored, too, so
+ * that vertices move both ways. */
 static void test_every_particle_counts(void** state)
 {
   static const struct
@@ -68,8 +68,8 @@ static void test_every_particle_counts(void** state)
   }
 }
 
-/* The reported residuals and lengths are those of the points, and what rounded positions and sums may add; true ones
- * are not greater. */
+/* The reported residuals and lengths are those of the points. They include what rounded positions and sums may add, so
+ * that the true ones are not greater. */
 static void test_reported_numbers(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
@@ -122,7 +122,7 @@ static void test_reported_numbers(void** state)
   CORE_CHECK(preview.statistics.correction_max == 0, "a preview corrects nothing");
 }
 
-/* More steps never make the worst residual larger; the limit is never passed. */
+/* More steps never make the worst residual larger, and the limit is never exceeded. */
 static void test_iteration_limit(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, steep);
@@ -149,7 +149,7 @@ static void test_iteration_limit(void** state)
   CORE_CHECK(last < 1e-5, "residual %g in the end", last);
 }
 
-/* A looser tolerance is kept, too, and costs fewer evaluations. */
+/* A looser tolerance is also met, and costs fewer evaluations. */
 static void test_tolerance(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
@@ -176,8 +176,8 @@ static double core_waves(const double x[3])
   return sin(1.3 * x[0]) + cos(0.9 * x[1]) + 0.7 * sin(1.1 * x[2]);
 }
 
-/* Half of the particles are solid, so that the fluid's weight, with a kernel that has negative lobes,
- * passes 0 where that of both is about 1: a mean then has a pole, which is no place of the surface. */
+/* Half of the particles are solid, and the kernel has negative lobes, so the fluid's weight passes 0 where the weight
+ * of both is about 1. There the mean has a pole, which must not become a part of the surface. */
 static void check_poles(mcor_context* context, uint64_t seed, double spread, int level_limit)
 {
   CORE_SET set = core_make_block(12, 0.45, seed, core_waves);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Normals by triangles, attributes and nearest particles; the oracle compares normals by the field, and gradients. */
+/* Normals by triangles, attributes and nearest particles. The oracle compares normals by the field, and gradients. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -14,7 +14,7 @@ static double length_of(const double x[3])
   return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Normals by triangles: the sum of the cross products around each point, made unit length. */
+/* Checks normals by triangles: the sum of the cross products around each point, scaled to length 1. */
 static void check_triangle_normals(const mcor_surface* surface)
 {
   CORE_FREED double* sums = oracle_allocate(surface->point_count, 3 * sizeof(double));
@@ -48,7 +48,7 @@ static void check_triangle_normals(const mcor_surface* surface)
   }
 }
 
-/* Checks normals likewise; they look outwards, too. */
+/* Normals by triangles are the sums of cross products, and point outwards. */
 static void test_triangle_normals(void** state)
 {
   CORE_SET set = core_make_block(10, 0.1, 3, core_ball);
@@ -82,8 +82,8 @@ static void test_triangle_normals(void** state)
     "arrays that nobody asked for");
 }
 
-/* Attributes: a constant, a linear function, a vector, more components than one batch holds, and
- * a single-precision array; all against the double-precision Shepard mean. */
+/* Attributes: a constant, a linear function, a vector, more components than one round takes, and a single-precision
+ * array; all are compared with the mean in double precision. */
 static void check_attributes(mcor_context* context, int solids)
 {
   particle_set set = core_make_block(10, 0.2, 3, core_ball);
@@ -146,7 +146,7 @@ static void test_attributes(void** state)
   check_attributes(*state, 1);
 }
 
-/* The nearest fluid particle by brute force; h_ratio: largest over smallest smoothing length. */
+/* Compares the nearest fluid particle with a search of all particles. h_ratio: largest over smallest smoothing length. */
 static void check_nearest(mcor_context* context, double h_ratio, int solids)
 {
   CORE_SET set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
@@ -194,7 +194,7 @@ static void test_nearest(void** state)
   check_nearest(*state, 4, 0);
 }
 
-/* The greatest terms are found wherever they are among slices. */
+/* The greatest terms are found, whichever slices they are in. */
 static void test_greatest_terms(void** state)
 {
   (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming: thresholds, flags, limits. The oracle compares what is cut. */
+/* Trimming: thresholds, flags, limits. The oracle compares which vertices are cut away. */
 
 #include "core_fixture.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Thresholds of 0 trim nothing, high ones everything; in between the surface shrinks. Where it ends, points are
+/* A threshold of 0 trims nothing, a high one everything; in between the surface shrinks. Points where it ends are
  * flagged. */
 static void test_thresholds(void** state)
 {
@@ -39,7 +39,7 @@ static void test_thresholds(void** state)
   assert_int_equal(surface.triangle_count, 0);
 }
 
-/* Vertices of the trim boundary are counted on top of those of the surface. */
+/* Vertices of the trimmed border count on top of the surface's own. */
 static void test_vertex_limit(void** state)
 {
   mcor_context* context = *state;

@@ -47,7 +47,8 @@ static void mesh_measure_triangle(
       (int)triangle[0], (int)triangle[1], (int)triangle[2]);
     return;
   }
-  /* Relative to one point of the mesh, so that an offset does not cost digits. */
+  /* Coordinates are taken relative to one point of the mesh, so that a large offset does not cost
+   * digits. */
   double corner[3][3];
   for (int c = 0; c < 3; ++c)
   {
@@ -162,7 +163,7 @@ static int64_t mesh_corner(const int32_t* triangles, int64_t t, int32_t point)
   return 3 * t + (triangles[3 * t] == point ? 0 : triangles[3 * t + 1] == point ? 1 : 2);
 }
 
-/* Walks over the groups of sides that share an edge. */
+/* Walks over the sides that share an edge, one group after the other. */
 static void mesh_check_edges(
   const int32_t* triangles, mesh_report* report, int64_t* corner_parent, int64_t* parent)
 {
@@ -217,7 +218,7 @@ static void mesh_check_fans(
     {
       mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX,
         "point %d, triangles %" PRId64 " and %" PRId64, (int)triangles[c], *at / 3, c / 3);
-      *at = -2; /* so that each point counts once */
+      *at = -2; /* marks the point as counted */
     }
     else if (*at == -1)
     {
@@ -250,7 +251,7 @@ static int mesh_compare_triples(const void* x, const void* y)
   return (p[3] > q[3]) - (p[3] < q[3]);
 }
 
-/* quads: [count][4], a triple and the number of its owner. */
+/* Finds equal triples. quads: [count][4], a triple and the number of its owner. */
 static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, mesh_report* report)
 {
   qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);

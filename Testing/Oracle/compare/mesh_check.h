@@ -3,8 +3,8 @@
 #ifndef mesh_check_h
 #define mesh_check_h
 
-/* Is a triangle mesh an oriented manifold with boundary? Counts every kind of fault and names the
- * first item of each kind. */
+/* Checks whether a triangle mesh is an oriented manifold with boundary. Every kind of fault is
+ * counted, and the first item of each kind is named. */
 
 #include <stdint.h>
 
@@ -39,26 +39,27 @@ extern "C"
   {
     int64_t faults[MESH_FAULT_COUNT];
     char first[MESH_FAULT_COUNT][96]; /* "" or a description of the first fault of the kind */
-    int64_t points, triangles, edges; /* edges: undirected, different */
-    int64_t boundary_edges;           /* edges of one triangle */
-    int64_t components;               /* of triangles connected over edges */
+    int64_t points, triangles, edges; /* edges: each undirected edge counts once */
+    int64_t boundary_edges;           /* edges with one triangle */
+    int64_t components;               /* parts of triangles that are connected over edges */
     int64_t euler;                    /* used points - edges + triangles */
     double area;
-    double slimmest; /* least area of a triangle over the square of its longest side */
-    double volume;   /* of what the outward oriented triangles enclose; needs no boundary */
+    double slimmest; /* the least of area over the square of the longest side */
+    double volume;   /* the volume that outward oriented triangles enclose; it means something only
+                      * without a boundary */
     /* All triangle sides, sorted by (a, b, triangle); [3 * triangles]. */
     mesh_edge* side;
     int64_t side_count;
     int64_t* component; /* [triangles], 0 .. components - 1 */
   } mesh_report;
 
-  /* points: [point_count][3]; triangles: [triangle_count][3]. If there are bad
-   * indices or coordinates nothing else is checked. Free the report with mesh_free_report. */
+  /* points: [point_count][3]; triangles: [triangle_count][3]. After bad indices or coordinates
+   * nothing else is checked. Free the report with mesh_free_report. */
   void mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
     int64_t triangle_count, mesh_report* report);
   void mesh_free_report(mesh_report* report);
 
-  /* Number of triangles that have the edge; that have it in this direction. */
+  /* Returns how many triangles have the edge; how many have it in this direction. */
   int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b);
   int64_t mesh_count_directed(const mesh_report* report, int32_t from, int32_t to);
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which edge of the lattice each vertex lies on, and whether the mesh joins them on faces as it must.
- * Here an edge is its number in oracle_lattice. */
+/* Finds the edge of the lattice that each vertex lies on, and checks that the mesh joins the vertices on faces as it
+ * must. An edge is named by its number in oracle_lattice. */
 
 #include "oracle_compare_internal.h"
 
@@ -16,7 +16,7 @@ enum
   COMPARE_CANDIDATES = 16
 };
 
-/* Two valid cells that touch only in the edge. */
+/* Returns whether two valid cells touch only in this edge. */
 static int compare_pinched(const lattice_edge* edge)
 {
   return edge->quadrants == 6 || edge->quadrants == 9;
@@ -38,8 +38,8 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Crossed edges without a vertex that a point may lie on, its ends included. Returns how many;
- * *axis: the one along which it is no node, or -1; -2: it is on no line of the lattice. */
+/* Finds the crossed edges, still without a vertex, on which a point may lie, ends included. Returns how many. *axis:
+ * the axis of the edge inside which the point lies; -1: it lies on a node; -2: it lies on no line of the lattice. */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {
@@ -104,14 +104,14 @@ static int compare_within_rounding(const compare_state* state, const lattice_nod
     oracle_rounding(&reference->field, p, reference->unit);
 }
 
-/* A vertex that no open edge is left for lies on a node, or on an edge of any size. */
+/* The place of a vertex without an unmatched crossed edge: a node, or an edge of any size. */
 typedef struct compare_place
 {
-  int taken; /* a crossed edge that has its vertices */
+  int taken; /* a crossed edge here has its vertices already */
   int
-    crossed; /* an edge with ends on both sides, and rounding decides whether a cell at it is valid */
-  int close;    /* a value that is close to iso */
-  int rounding; /* a value within the bound on rounding */
+    crossed; /* an edge here has ends on both sides, and rounding decides whether a cell at it is valid */
+  int close;    /* a value here is close to iso */
+  int rounding; /* a value here is within the bound on rounding */
 } compare_place;
 
 static compare_place compare_find_place(const compare_state* state, const double point[3], int axis)
@@ -149,8 +149,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Whether a flagged vertex where no crossing is expected is a cut: not if the crossing there is up
- * to rounding, unless its weight says so. */
+/* Returns whether a flagged vertex where no crossing is expected is a cut. It is not where rounding decides about a
+ * crossing there, unless its weight is the threshold. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;
@@ -165,7 +165,7 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
     surface->boundary_flag[v] == 2;
 }
 
-/* A vertex that no open edge is left for: a cut; a second one on its edge; one too many. */
+/* Judges a vertex without an unmatched crossed edge: it is a cut, a second one on its edge, or one too many. */
 static void compare_leave(compare_state* state, int64_t v, int axis)
 {
   const double* point = &state->surface->points[3 * v];
@@ -183,7 +183,7 @@ static void compare_leave(compare_state* state, int64_t v, int axis)
       (long long)v, point[0], point[1], point[2]);
     return;
   }
-  /* Numbers from edge_count on: on edges that are not crossed. */
+  /* Numbers from edge_count on mean edges that are not crossed. */
   state->vertex_edge[v] = 3 * state->reference->lattice.edge_count + (axis < 0 ? 0 : axis);
   if (!place.taken && (place.crossed || place.close))
   {
@@ -201,7 +201,8 @@ static void compare_leave(compare_state* state, int64_t v, int axis)
   }
 }
 
-/* First vertices with one place to be, as long as there are any, then those with two, and so on. */
+/* Assigns vertices to edges: first vertices that fit one edge only, as long as there are any, then those that fit two,
+ * and so on. */
 static void compare_assign(compare_state* state)
 {
   const int64_t count = state->surface->point_count;
@@ -296,7 +297,7 @@ static void compare_missing(compare_state* state, int64_t* present, int64_t* abs
 
 /* ---- faces ---- */
 
-/* Segments or sides of triangles, counted by the edges that they lead from and to. */
+/* Counts a segment, or a triangle's side, under the two edges that it joins. */
 static int64_t compare_count(oracle_map* map, int64_t from, int64_t to, int more)
 {
   const int64_t at[3] = { from, to, 0 };
@@ -314,7 +315,7 @@ static int64_t compare_edge_of(const compare_state* state, int32_t vertex)
   return edge >= 0 && edge / 3 < state->reference->lattice.edge_count ? edge / 3 : -1;
 }
 
-/* Returns the value that the map of pairs has for two edges; -1: none. */
+/* Returns the value that the map has for a pair of edges, or -1. */
 static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
 {
   const int64_t pair[3] = { a < b ? a : b, a < b ? b : a, 0 };
@@ -322,7 +323,7 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Every segment is a side of one triangle for each cell that has it, in its direction. */
+/* Checks that every segment is a side of one triangle for each cell that has it, in the right direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
@@ -344,8 +345,8 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   {
     const int64_t from = lattice->segments[s].from;
     const int64_t to = lattice->segments[s].to;
-    /* Not where rounding decides. With the paper's seeds a component may be missing though the crossings of a
-     * face have vertices: those of another component that it touches in pinched edges. */
+    /* Where rounding decides, nothing is checked. With the paper's seeds a component may be missing although a face's
+     * crossings have vertices: they may belong to another component that touches it in pinched edges. */
     const int may_lack = state->options->seeds == MCOR_PAIRS &&
       compare_pinched(&lattice->edges[from]) && compare_pinched(&lattice->edges[to]);
     if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || may_lack ||
@@ -363,7 +364,7 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   }
 }
 
-/* A side of one triangle must be a cut, or a segment with a cell on one side only. */
+/* Checks that a side with one triangle is a cut, or a segment with a cell on one side only. */
 static void compare_boundary(compare_state* state, oracle_map* wanted)
 {
   const mesh_report* mesh = state->mesh;
@@ -382,7 +383,7 @@ static void compare_boundary(compare_state* state, oracle_map* wanted)
     int explained = a < 0 && b < 0;
     if (a >= 0 && b >= 0)
     {
-      /* Whichever way rounding joins a face, both of its cells do. */
+      /* Rounding may join the face either way, but both of its cells the same way. */
       const oracle_lattice* lattice = &state->reference->lattice;
       const int64_t either = compare_pair(&lattice->either, a, b);
       const int64_t cells =
@@ -423,7 +424,8 @@ void compare_edges(compare_state* state, int64_t* present, int64_t* absent)
   {
     result->unsettled += !lattice->cells[c].certain;
   }
-  /* A tunnel of loops of a and b sides has a + b triangles; the loops alone, a - 2 and b - 2. */
+  /* The triangle counts: a tunnel between loops of a and b sides has a + b triangles; the loops alone have a - 2 and b
+   * - 2. */
   const int64_t triangles = lattice->triangle_count + 4 * state->surface->statistics.tunnels;
   if (!state->trimmed && state->options->seeds != MCOR_PAIRS &&
     lattice->doubts.count + lattice->either.count == 0 && result->unsettled == 0 &&

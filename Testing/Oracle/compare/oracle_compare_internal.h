@@ -3,8 +3,8 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* oracle_compare.c calls what compares edges (oracle_compare_edges.c) and vertices and triangles (_mesh.c), and has what
- * these share; they do not call each other. */
+/* What oracle_compare.c, oracle_compare_edges.c and oracle_compare_mesh.c share. The first calls the other two, which
+ * do not call each other. */
 
 #include "oracle_compare.h"
 
@@ -22,10 +22,10 @@ typedef struct compare_state
   const mesh_report* mesh;
   int trimmed;
   oracle_comparison* result;
-  /* [point_count], an edge of the lattice (3 * number + axis) or COMPARE_*. */
+  /* [point_count]: an edge of the lattice (3 * number + axis), or COMPARE_*. */
   int64_t* vertex_edge;
-  /* [edge_count] of the lattice, a point or -1. A pinched edge has a second vertex, as
-   * each of its two cells has a fan of its own. */
+  /* [edge_count] of the lattice: a point or -1. A pinched edge has a second vertex, because the triangles of its two
+   * cells do not meet there. */
   int64_t *edge_vertex, *second_vertex;
   double* gradient;    /* [point_count][3], by the oracle */
   double* vertex_cube; /* [point_count], length of the vertex's edge */
@@ -33,23 +33,24 @@ typedef struct compare_state
 
 /* ---- oracle_compare.c ---- */
 
-/* How far a point is inside of what trimming leaves: of the threshold of the trimming weight or the
- * boundary eigenvalue; of where the surface ends at solids, in the unit of the weight; of both. */
+/* How far a point is inside of the trimmed surface. First: inside of the threshold of the trimming weight or the
+ * boundary eigenvalue. Second: inside of where the surface ends at solids, in the unit of the weight. Third: inside of
+ * both. */
 double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 double compare_wall_margin(const compare_state* state, const oracle_sample* sample);
 double compare_fluid_margin(const compare_state* state, const oracle_sample* sample);
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
-/* Whether any of the places where the field passes iso on an edge is trimmed away. */
+/* Returns whether trimming cuts away any of the places on an edge where the field passes iso. */
 int compare_rightly_trimmed(
   const compare_state* state, const double start[3], int axis, double length);
-/* The first fault is kept in words. */
+/* Keeps the first fault's words. */
 void compare_note(compare_state* state, const char* format, ...);
 
 /* ---- oracle_compare_edges.c: which edge each vertex lies on, what that leaves out, how triangles join them ---- */
 
-/* present, absent: of each component; counted up. */
+/* Counts, for each component, the edges with a vertex and those without. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */

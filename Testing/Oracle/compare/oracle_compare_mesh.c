@@ -10,8 +10,8 @@
 
 /* ---- vertices ---- */
 
-/* Distance to the surface f = iso, in cubes: by the gradient, or, where that is small, the smallest
- * step along the edge that brackets a crossing. */
+/* Returns the distance to the surface f = iso in cubes: by the gradient or, where that is small, by
+ * the smallest step along the edge that brackets a crossing. */
 static double compare_distance(
   const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {
@@ -35,7 +35,7 @@ static double compare_distance(
       distance = step;
     }
   }
-  return isnan(distance) ? 0.0 : distance; /* 0 / 0: exactly on a flat spot */
+  return isnan(distance) ? 0.0 : distance; /* 0 / 0: the point is exactly on a flat place */
 }
 
 static void compare_normal(compare_state* state, int64_t v, const oracle_sample* sample)
@@ -108,7 +108,8 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* The margin that trimming goes by, with its gradient, that of the eigenvalue by differences. */
+/* Returns the margin that trimming uses, with its gradient; the eigenvalue's gradient is found by
+ * differences. */
 static double compare_trim_gradient(const compare_state* state, const double point[3],
   const oracle_sample* sample, double gradient[3])
 {
@@ -146,8 +147,8 @@ static double compare_trim_gradient(const compare_state* state, const double poi
   return margin;
 }
 
-/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold (or
- * the eigenvalue is), within one cube. */
+/* Returns 1 if damped least-norm Newton steps lead from the point, within one cube, to a place
+ * where f = iso and the weight (or the eigenvalue) is the threshold. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;
@@ -220,7 +221,7 @@ static void compare_trim_vertex(
   }
 }
 
-/* A vertex on a lattice edge. */
+/* Checks a vertex on a lattice edge. */
 static void compare_edge_vertex(
   compare_state* state, int64_t v, const oracle_sample* sample, double residual)
 {
@@ -262,7 +263,7 @@ void compare_vertices(compare_state* state)
     if (state->vertex_edge[v] == COMPARE_TRIM_VERTEX)
     {
       compare_trim_vertex(state, v, &sample, residual);
-      /* A linear cut is off the surface: its normal need not be that of the surface. */
+      /* A linear cut lies beside the surface, so its normal need not be the surface's. */
       on_surface = state->surface->boundary_flag[v] != 2;
     }
     else if (state->vertex_edge[v] >= 0)

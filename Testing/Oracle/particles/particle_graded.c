@@ -12,7 +12,7 @@ static double length_of(const double x[3])
   return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* A ball of particles, jittered. */
+/* Adds a ball of particles that are moved at random from a lattice. */
 static void graded_drop(particle_set* set, const double centre[3], double radius, uint64_t* state)
 {
   const int64_t n = 10;
@@ -46,7 +46,7 @@ particle_set particle_set_drops(double ratio)
   const int drops = 5;
   for (int drop = 0; drop < drops; ++drop)
   {
-    /* Each one beside the larger one before it, close enough for their weights to meet. */
+    /* Each drop lies beside the larger one before it, close enough for their weights to meet. */
     const double radius = pow(ratio, -(double)drop / (drops - 1));
     const double before = drop > 0 ? pow(ratio, -(double)(drop - 1) / (drops - 1)) : 0.0;
     const double turn = 0.7 * drop;
@@ -65,7 +65,7 @@ particle_set particle_set_medium(double ratio)
   const double fineness = 0.3; /* spacing / distance from the origin */
   const double least = 1.0 / ratio;
   uint64_t state = 12;
-  /* Blocks around the origin, each but the first without the one before it. */
+  /* Adds blocks around the origin; each one leaves out the block before it. */
   for (double size = least; size < 1.6; size *= 2.0)
   {
     const int64_t n = 2 * (int64_t)ceil(1.0 / fineness);
@@ -83,7 +83,8 @@ particle_set particle_set_medium(double ratio)
       }
       if (largest > 0.5 * size || size == least)
       {
-        /* A sphere from near the origin to far away; its distance relative to that of the origin. */
+        /* The scalar is 0 on a sphere from near the origin to far away; it is a distance from the
+         * sphere relative to the distance from the origin. */
         const double r = length_of(x);
         const double from[3] = { x[0] - 0.7 - 0.5 * least, x[1], x[2] };
         const double scalar = (length_of(from) - 0.7) / (r + least);
@@ -94,7 +95,8 @@ particle_set particle_set_medium(double ratio)
   return set;
 }
 
-/* Particles of a box, on a lattice, jittered; their number along an axis is made whole. */
+/* Adds the particles of a box, moved at random from a lattice; their number along an axis is
+ * rounded. */
 static void graded_block(particle_set* set, const double low[3], const double high[3],
   double spacing, int solid, uint64_t* state)
 {

@@ -21,7 +21,7 @@ static void random_scalar(particle_set* set, int64_t j, int sort, uint64_t* stat
     case 1:
       set->scalar[j] = 2.0 * random_unit(state) - 1.0;
       break;
-    case 2: /* few values, iso values among them */
+    case 2: /* a few values; iso values are among them */
       set->scalar[j] = (double)random_below(state, 3) - 1.0;
       break;
     default: /* outliers */
@@ -30,7 +30,7 @@ static void random_scalar(particle_set* set, int64_t j, int sort, uint64_t* stat
   }
 }
 
-/* One block of particles, a lattice that may be jittered or shot full of holes. */
+/* Adds one block of particles: a lattice, perhaps moved at random or full of holes. */
 static void random_block(particle_set* set, int64_t capacity, uint64_t* state)
 {
   const double spacing = 0.05 + 0.15 * random_unit(state);
@@ -83,7 +83,7 @@ particle_set particle_set_random(uint64_t seed)
       set.has_solids = set.has_solids || solid;
     }
   }
-  if (set.count > 1 && random_below(&state, 5) == 0) /* two at one place */
+  if (set.count > 1 && random_below(&state, 5) == 0) /* two particles lie in one place */
   {
     memcpy(&set.position[3], set.position, 3 * sizeof(double));
   }

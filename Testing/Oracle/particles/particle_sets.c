@@ -71,7 +71,7 @@ static double scalar_gyroid(const double x[3])
     sin(s * x[2]) * cos(s * x[0]);
 }
 
-/* Saddles everywhere: most crossed cells have a face with four crossings. */
+/* A scalar with saddles everywhere: most crossed cells have a face with four crossings. */
 static double scalar_saddle(const double x[3])
 {
   const double s = 14.0;
@@ -118,8 +118,8 @@ static int in_puddle(const double x[3])
 
 /* ---- the sets ---- */
 
-/* Single particles with nothing in reach, heavy enough for a surface of their own, two pairs, and
- * single high values within fluid. */
+/* Adds single particles that reach no other one, heavy enough for their own surfaces, two pairs,
+ * and single high values within fluid. */
 static void add_blobs(particle_set* set)
 {
   const double lone[7][3] = { { 2.0, 0.1, 0.2 }, { 2.03, 1.07, -0.3 }, { 2.5, 2.5, 2.5 },
@@ -134,7 +134,7 @@ static void add_blobs(particle_set* set)
   }
 }
 
-/* A shallow puddle with a wavy surface on a floor and against one wall of solid particles. */
+/* Adds solids: a floor and one wall under and beside a shallow puddle with a wavy surface. */
 static void add_walls(particle_set* set)
 {
   const particle_block floor_block = { { 1.8, 1.4, 0.12 }, { 0.0, 0.0, -0.06 }, 0.06, 1.3, 0.0, 6,
@@ -147,12 +147,13 @@ static void add_walls(particle_set* set)
   for (int64_t j = fluid; j < set->count; ++j)
   {
     set->solid[j] = 1;
-    set->scalar[j] = 1000.0; /* must not be seen in any value or range */
+    set->scalar[j] = 1000.0; /* a solid's scalar must not show in any value or range */
   }
   set->has_solids = 1;
 }
 
-/* Cells are halved until they are small enough for their distance from the centre. */
+/* Adds particles in cells that are halved until they are small enough for their distance from the
+ * centre. */
 static void set_refine(
   particle_set* set, const double center[3], double size, double finest, uint64_t* state)
 {

@@ -3,12 +3,12 @@
 #ifndef particle_sets_h
 #define particle_sets_h
 
-/* Analytic particle sets for tests. The same name always gives the same particles. */
+/* Particle sets from formulas, for tests. The same name always gives the same particles. */
 
 #include "mcor.h"
 #include "oracle.h"
 
-/* A block of a jittered lattice: cells of the given spacing centred in [-size/2, size/2]. */
+/* A block of a lattice, moved at random by `jitter`: cells of `spacing` whose centres are in [-size/2, size/2]. */
 typedef struct particle_block
 {
   double size[3];
@@ -28,24 +28,24 @@ typedef struct particle_set_entry
   mcor_field field; /* the one that the set was made for */
   particle_block blocks[2];
   double finest;                     /* above 0: cells from this size to 1/4 */
-  void (*change)(particle_set* set); /* NULL, or what goes on from there */
+  void (*change)(particle_set* set); /* called last; may be NULL */
 } particle_set_entry;
 
 const particle_set_entry* particle_set_find(const char* name);
 particle_set particle_set_of(const particle_set_entry* entry);
 
-/* Particles without any plan: blocks and clouds, with or without jitter, equal or very different
- * smoothing lengths, some solid, some at one place; scalars smooth, random or of few values. */
+/* Returns random particles: blocks and clouds, moved at random or not, with equal or very different smoothing lengths,
+ * some solid, some in one place; scalars are smooth, random or of few values. */
 particle_set particle_set_random(uint64_t seed);
 
-/* Five drops that touch, and a medium that is the finer the nearer to the origin, with the sphere
- * scalar = 0 from there to far away; smoothing lengths differ by the ratio. */
+/* Return particles whose smoothing lengths differ by the ratio: five drops that touch; and a medium that is finer
+ * nearer to the origin, where scalar = 0 is a sphere from there to far away. */
 particle_set particle_set_drops(double ratio);
 particle_set particle_set_medium(double ratio);
-/* A coarse and a fine block of fluid, side by side on a floor of solids of a smoothing length of its own. */
+/* Returns a coarse and a fine block of fluid side by side, on a floor of solids with a smoothing length of their own. */
 particle_set particle_set_basin(double ratio);
 
-/* Arrays of doubles and sets as input of the core; borrowed. */
+/* Return arrays of doubles, or a set, as input of the core; they are borrowed. */
 mcor_array core_array(const double* data, int components);
 mcor_input core_input(const particle_set* set);
 

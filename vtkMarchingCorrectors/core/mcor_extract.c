@@ -84,7 +84,7 @@ static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* inp
     MCOR_SAY(FILLED_IN_SPACE));
   MCOR_FAIL_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(PAIRS_WITH_LEVELS), context->lattice.levels);
-  const bool has_particles = context->grid.count > 0; /* that reach the box */
+  const bool has_particles = context->grid.count > 0; /* the particles that reach the box */
   if (has_particles && options->capping)
   {
     MCOR_TRY(mcor_check_caps(context));
@@ -124,7 +124,7 @@ static mcor_status mcor_extract_body(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
 {
   mcor_surface* surface = result;
-  mcor_free_surface(surface); /* left by a failed attempt */
+  mcor_free_surface(surface); /* a failed attempt may have left data here */
   const mcor_status status = mcor_extract_all(context, input, options, surface);
   mcor_end_box(context);
   if (options->capping || options->filled)

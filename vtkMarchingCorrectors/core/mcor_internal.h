@@ -225,20 +225,19 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
   mcor_release_each(context, (mcor_buffer*)(s), sizeof *(s) / sizeof(mcor_buffer))
 void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
 
-/* mcor_ranks.c. Turns the result of a function of options.ranks into a status. */
+/* mcor_ranks.c. Turns what a function of options.ranks returns into a status. */
 mcor_status mcor_heard(mcor_context* context, int failed);
-/* Exchange between ranks; a process alone has all values already. */
+/* Reduce numbers over all ranks; a single process has all values already. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
-/* Gathers the records of all ranks, valid until the next gathering; alone, they are the
- * caller's. */
+/* Gathers the records of all ranks; they are valid until the next gathering. A single process gets its own. */
 mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count,
   size_t width, const void** all, int64_t* all_count);
 
-/* mcor_statistics.c. Reports what runs from one fraction of the call to another; the report may
- * cancel it. */
+/* mcor_statistics.c. Begins a report of progress from one fraction of the call to another; the report may cancel the
+ * call. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
 /* Called between two launches, or steps of a loop of the host: reports progress if it is time
  * to, a bit nearer to the end. */
@@ -249,10 +248,10 @@ mcor_status mcor_observe_call(mcor_context* context, bool compiles);
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(
-  const mcor_context* context); /* of positions on the device, at most, along each axis */
+  const mcor_context* context); /* the most by which positions on the device are rounded, along each axis */
 
-/* mcor_reuse.c. Finds what of the last call still holds; whether the caller's version stands for
- * the same particles as then. */
+/* mcor_reuse.c. Finds which results of the last call still hold; whether the caller's version means the same particles
+ * as then. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
@@ -319,7 +318,7 @@ mcor_status mcor_correct(mcor_context* context);
 /* Evaluates the boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
-/* Whether the mesh is trimmed; the quantity by which, at the vertices on lattice edges, and its
+/* Returns whether the mesh is trimmed; the quantity that trimming compares, at the vertices on lattice edges; its
  * threshold. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
@@ -328,7 +327,7 @@ double mcor_trim_threshold(const mcor_context* context);
 /* Finds the edge between two vertices among those that are cut, mesh.cut_edges; -1: it is not
  * cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
-double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
+double mcor_least_fluid(const mcor_context* context); /* the least weight of the fluid itself at a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
 mcor_status mcor_list_components(
@@ -338,7 +337,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
-/* all: vertices that no triangle uses, too. */
+/* all: also vertices that no triangle uses. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
 /* mcor_surface.c. Prepares the surface's attributes: finds those to leave out, and the
@@ -383,7 +382,7 @@ static inline uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int n
   const mcor_rung* rung = &lattice->rungs[node[3] >> MCOR_LEVEL_SHIFT];
   return mcor_brick_key(rung, brick) << 6 | (uint64_t)inner;
 }
-/* mcor_area.c. Whether the gradient gives no normal; the other function gives such points one. */
+/* mcor_area.c. Whether the gradient gives no normal. The second function makes normals for such points. */
 static inline bool mcor_lacks_normal(const float normal[3])
 {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;

@@ -21,8 +21,9 @@ extern "C"
   {
     double largest;     /* absolute value */
     double low, high;   /* range; low > high without fluid particles */
-    int varies;         /* 0: all values are the same, those of solids included */
-    int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
+    int varies;         /* 0: all values, also at solids, are the same */
+    int64_t not_finite; /* the first particle at which its attribute is not finite, as attribute_not_finite in
+                         * mcor_surface */
   } mcor_global_component;
 
   /* The plane in which all particles lie, in two dimensions. */
@@ -37,24 +38,24 @@ extern "C"
   {
     int64_t fluid_count, solid_count;
     double low[3], high[3];          /* of positions minus and plus scaled support radii */
-    double x_low[3], x_high[3];      /* of the positions of fluid particles */
-    double h_min, h_max;             /* of fluid particles */
-    double support_min, support_max; /* scaled support radius of all particles that take part */
+    double x_low[3], x_high[3];      /* range of the positions of fluid particles */
+    double h_min, h_max;             /* range of the smoothing lengths of fluid particles */
+    double support_min, support_max; /* the greatest scaled support radius of all particles that take part */
     double h_estimate;               /* 0: not asked for */
-    double widening_min, widening_max; /* factors of fluid particles; 0: there are none */
-    int64_t widening_sum;            /* of these, times 2^23 */
+    double widening_min, widening_max; /* range of the factors of fluid particles; 0: there are none */
+    int64_t widening_sum;            /* sum of these factors, times 2^23 */
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
     double scalar_min, scalar_max;                /* over fluid particles */
     int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */
     double cube;        /* cube size, or the longest of its edges; ignored where it is given */
-    double edge[3];     /* along x, y, z; the same */
-    double wall_share;  /* if the options ask for it; 0: not yet measured */
+    double edge[3];     /* edges of the cubes along x, y, z; likewise */
+    double wall_share;  /* the wall share, if the options ask for it; 0: not measured */
     mcor_plane plane;
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
     int64_t far_count, far_first;         /* far_particles and far_first of mcor_statistics */
     double far_place[3];
     int
-      cut; /* the lattice is around a box or points alone, since it does not fit around all particles */
+      cut; /* the lattice surrounds only the box or the points, because one around all particles would be too large */
     double cut_high[3]; /* where the box or points end then; `high` lies beyond */
   } mcor_measure;
 

@@ -64,7 +64,7 @@ static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
   same = same && ((scope) == KEEPS || a->member == b->member);
 #define BOUNDS(member, scope, property) same = same && mcor_same_bounds(a->member, b->member);
 #include "mcor_options.def"
-  /* Whether as much is needed of the particles and images that reach a part. */
+  /* Whether this call needs the same particles and images around its part as the last one. */
   const bool part = mcor_has_box(a) || !mcor_same_bounds(a->periodic, none);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
@@ -77,7 +77,7 @@ void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor
 {
   const mcor_input* last = &context->kept.input;
   const bool particles = mcor_same_particles(input, last);
-  /* Globals, but for their components: nothing that is kept depends on them. */
+  /* Compares globals without their components, because nothing that is kept depends on those. */
   const mcor_globals none = { 0 };
   const mcor_globals *a = &context->kept.globals, *b = options->globals ? options->globals : &none;
   const mcor_measure *m = &a->measured, *n = &b->measured;

@@ -40,7 +40,7 @@ typedef struct mcor_space
   int axes;             /* 3, or 2 */
   int flat;             /* axes that cells lack; kernels take it as `plane` */
   int brick_nodes;      /* in a plane, those of the lowest layer */
-  int region_depth;     /* of mcor_seed_regions */
+  int region_depth;     /* the depth that mcor_seed_regions takes */
   double ball;          /* volume of a ball of radius 1, or area of a disc */
   const char* evaluate; /* the kernel for nodes */
 } mcor_space;
@@ -56,17 +56,17 @@ typedef struct mcor_sample
 #define MCOR_SAMPLES 256
 typedef struct mcor_sample_list
 {
-  int count, most;              /* of these; at most MCOR_SAMPLES */
+  int count, most;              /* number of samples, at most MCOR_SAMPLES */
   mcor_sample of[MCOR_SAMPLES]; /* in the order of hashes */
 } mcor_sample_list;
 
-/* Particles on their way to the search grid. */
+/* Particles on their way from the input to the search grid. */
 typedef struct mcor_stage_data
 {
-  mcor_buffer x, y, z, inv_h, size, level; /* of the particles, in input order */
-  mcor_buffer values;                      /* real: of one component, in input order */
-  mcor_buffer density;                     /* where volumes are computed */
-  mcor_buffer flags, keys;                 /* while coincident particles are sought */
+  mcor_buffer x, y, z, inv_h, size, level; /* of each particle, in input order */
+  mcor_buffer values;                      /* real: values of one component, in input order */
+  mcor_buffer density;                     /* masses, while volumes are computed */
+  mcor_buffer flags, keys;                 /* in use while coincident particles are sought */
   mcor_buffer found;                       /* int: what a kernel has found in any particle */
 } mcor_stage_data;
 
@@ -81,7 +81,8 @@ typedef struct mcor_grid
   mcor_buffer value;
   int view;               /* kernels count in cells of this level of adaptive cubes */
   int most_in_cell;       /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
-  mcor_buffer side_flags; /* uchar per chunk of particles, for this iso value; see mcor_seed.cl */
+  mcor_buffer side_flags; /* uchar for each run of particles, for this iso value: the sides of their
+                           * values, see mcor_seed.cl */
   bool has_solids;
 } mcor_grid;
 
@@ -98,23 +99,25 @@ typedef struct mcor_brick_data
 /* [III-B] Blocks where there may be surface, of all levels, and the bricks that exist in them. */
 typedef struct mcor_bricks
 {
-  mcor_buffer rungs; /* mcor_rung: of each level, and the end */
-  int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
+  mcor_buffer rungs; /* mcor_rung: where each level's blocks begin, and the end */
+  /* number of blocks of each level */
+  int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2];
   mcor_buffer block_keys, block_buckets;                                /* by level, z, y, x */
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer leaves, split, beside;  /* likewise; with several levels, see mcor_leaf_compare */
-  mcor_buffer seed_bits, seeds;       /* bricks as in bits; ulong, cells by slot */
+  mcor_buffer leaves, split, beside;  /* uint [block_count][16]; only with several levels, see
+                                       * mcor_leaf_compare */
+  mcor_buffer seed_bits, seeds;       /* seed bricks, as in `bits`; ulong, seed cells by slot */
   mcor_brick_data now;
-  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
-  mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
+  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* where each level's slots begin */
+  mcor_buffer cells;          /* ulong: cells that may be used, all or none of a brick */
   mcor_buffer plain, leaf_of; /* ulong; int, of adaptive cubes: see mcor_leaf_cells */
   mcor_buffer neighbours;     /* see mcor_brick_neighbours */
   mcor_buffer need;           /* see mcor_brick_need */
-  mcor_buffer bit_counts;     /* of mcor_count_bits */
+  mcor_buffer bit_counts;     /* counts for mcor_count_bits */
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
-  mcor_buffer regions;                               /* int: those to examine */
+  mcor_buffer regions;                               /* int: the regions to examine */
   mcor_buffer found; /* int: what a kernel found in any brick, or how many regions of each level */
 } mcor_bricks;
 
@@ -125,18 +128,21 @@ typedef struct mcor_mesh
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count; /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int
-    vertex_count; /* these, then those of the trim boundary, and from cap_first on those of caps */
+    vertex_count; /* first the vertices on lattice edges, then those on the trim boundary, and from
+                   * cap_first on those of caps */
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer curvature; /* real [vertex_count][2] */
-  mcor_buffer means;     /* real [vertex_count][attributes.count] */
+  mcor_buffer means;     /* real [vertex_count][attributes.count]: means of attributes */
   mcor_buffer
     cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */
   mcor_buffer triangles;
-  mcor_buffer scanned;                           /* of the output, see mcor_is_output */
-  int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
+  mcor_buffer scanned;                           /* numbers of vertices in the output, see
+                                                  * mcor_is_output */
+  int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first vertex of each level; first trim vertex of
+                                                  * each level */
 } mcor_mesh;
 
 /* A set of bricks of one level of adaptive cubes. Clusters are 4^3 of them, aligned to multiples of
@@ -144,7 +150,7 @@ typedef struct mcor_mesh
 typedef struct mcor_brick_set
 {
   mcor_table clusters;
-  size_t count; /* of bricks */
+  size_t count; /* number of bricks */
 } mcor_brick_set;
 
 /* Leaves of adaptive cubes, in blocks; see mcor_tree.h. */
@@ -157,7 +163,7 @@ typedef struct mcor_tree
   int period[MCOR_TREE_LEVEL_LIMIT + 2][3], period_first[MCOR_TREE_LEVEL_LIMIT + 2][3];
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   int leaf_count;
-  int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
+  int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* number of blocks of each level */
   uint64_t* block_keys;                                    /* [block_count], ascending */
   cl_uint *leaves, *is_split;                              /* bits [block_count][16] */
 } mcor_tree;
@@ -165,12 +171,13 @@ typedef struct mcor_tree
 /* Leaves that are marched, and what their slots need; see mcor_leaf.c. */
 typedef struct mcor_adaptive
 {
-  int count;                   /* leaves where there may be surface */
-  mcor_buffer chosen, scanned; /* bits of these, by block; int: their counts */
-  mcor_buffer cells, finer; /* int4, uint: of these, in order; where their neighbours are finer */
+  int count;                   /* number of leaves that may have surface */
+  mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many come before */
+  mcor_buffer cells, finer; /* int4, uint: the listed leaves, in order; which bricks around each are
+                             * finer */
   mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
   mcor_buffer mixed;        /* uchar: whether they have nodes on both sides */
-  mcor_buffer proofs;       /* uchar, of slots: states */
+  mcor_buffer proofs;       /* uchar: state of each slot */
   mcor_buffer quadrants;    /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;         /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
@@ -178,13 +185,14 @@ typedef struct mcor_adaptive
 /* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
-  /* ulong, by a brick's number in its block: by pairs; by now; when last looked at */
+  /* One bit per brick of a block (ulong, by the brick's number). marked: a pair lies in it.
+   * reached: growth has come so far. grown: `reached` at the last look. */
   mcor_buffer marked, reached, grown;
-  mcor_buffer domain; /* ulong, by slot: where growth may go */
+  mcor_buffer domain; /* ulong, by slot: cells where growth may go */
   mcor_buffer found;  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
-/* Points, as nodes and offsets, and the field there. */
+/* Points, as nodes and offsets, and the field at them. */
 typedef struct mcor_field_points
 {
   mcor_buffer node, offset, value, gradient, weight;
@@ -204,8 +212,7 @@ typedef struct mcor_points
   mcor_buffer flags, groups;
 } mcor_points;
 
-/* Points that are evaluated in sorted order, as nodes and offsets; in_: in the order in which
- * they came. */
+/* Points that are evaluated in sorted order, as nodes and offsets; names with in_: in input order. */
 typedef struct mcor_point_batch
 {
   mcor_buffer keys, order, in_node, in_offset, node, offset;
@@ -217,9 +224,10 @@ typedef struct mcor_trim_data
 {
   mcor_buffer eigenvalue;       /* real, at vertices; the vertex threshold may apply to it */
   mcor_buffer margin;           /* real, at vertices; see mcor_trim_margin */
-  mcor_buffer remaining, cuts;  /* per batch of triangles */
-  mcor_buffer keys, index;      /* of cut edges */
-  mcor_buffer triangles, cells; /* what trimming leaves, until the mesh and the box take it */
+  mcor_buffer remaining, cuts;  /* counts for each batch of triangles */
+  mcor_buffer keys, index;      /* keys of cut edges */
+  mcor_buffer triangles, cells; /* triangles that trimming leaves, until the mesh and the box take
+                                 * them */
 } mcor_trim_data;
 
 /* A sort has these, as large as the particles; flags, order: of mcor_unique. */
@@ -233,38 +241,39 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
-  double low, high;    /* over fluid particles, for a probe: bounds of the means */
+  double low, high;    /* range over fluid particles, for a probe: its means lie within */
 } mcor_component;
 
-/* The components that vary, and which of them are on the device. */
+/* The components of attributes that vary, and which of them the device holds. */
 typedef struct mcor_attributes
 {
   mcor_component* varying; /* [varying_count] */
   int varying_count;
   int first, count;
   mcor_buffer sorted;  /* real [count][grid.count] */
-  uint64_t kept;       /* a probe's attributes_version for which everything here holds; or 0 */
-  mcor_buffer nearest; /* int, particle per vertex */
+  uint64_t kept;       /* the attributes_version of a probe for which everything here holds, or 0 */
+  mcor_buffer nearest; /* int: the particle nearest to each vertex */
 } mcor_attributes;
 
 /* Which box counts a vertex; 0: none. */
 enum
 {
   MCOR_OWN = 1,
-  MCOR_ANOTHERS = 2 /* another rank */
+  MCOR_ANOTHERS = 2 /* counted by another rank */
 };
 
 /* The cells that a call owns, see mcor_box.c. */
 typedef struct mcor_box
 {
-  /* is_part: not all cells of the lattice are owned, or there is a period; is_empty: none is. */
+  /* is_part: there are cells that this call does not own, or a period; is_empty: it owns none */
   bool is_part, is_empty;
-  int ring;               /* cells around the owned ones that are examined, too */
+  int ring;               /* width of the ring of cells that are examined around the owned ones */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
   int
-    halves[6]; /* with adaptive cubes: from and to along x, y, z, in halves of the smallest cubes */
+    halves[6]; /* the owned cells' box with adaptive cubes: from and to along x, y, z, in halves of
+                * the smallest cubes */
   bool of_points;  /* the box of a probe's points, which is `points`: x from, to, y ... */
-  bool has_points; /* `points` is known */
+  bool has_points; /* whether `points` is known */
   double points[6];
   int whole_first[3], whole_last[3], whole_halves[6]; /* the cells that any rank owns */
   mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
@@ -276,30 +285,31 @@ typedef struct mcor_box
 typedef struct mcor_iso
 {
   int number; /* index in options.iso_values; behind the last one while filling adds points */
-  double value, relative; /* the caller's; relative to A0, as on the device */
+  double value, relative; /* the iso value of the caller; relative to A0, as the device has it */
 } mcor_iso;
 
 /* The call under way; options are NULL between calls. */
 typedef struct mcor_run
 {
   const mcor_options* options;
-  bool uses_solids; /* solid particles must be on the device */
+  bool uses_solids; /* whether solid particles must be on the device */
   double widest; /* factor of the lengths of sums at particles, see mcor_widen.c; 0: no such sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
-  struct mcor_far* far; /* particles to leave out for that reason; NULL: none */
-  struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; NULL */
+  struct mcor_far* far; /* particles that are left out because of that; NULL: none */
+  struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; or NULL */
   mcor_statistics* statistics;
   mcor_iso iso;
   mcor_phase phase;
   double phase_begin, phase_built; /* phase_built: cl.build_seconds when the phase began */
   const char* doing;               /* what runs, as reported last */
   double fraction,
-    fraction_end;     /* reported last, also by a failed attempt; at the end of what runs */
-  double report_time; /* of the last report */
-  bool building_told; /* building was the last that was reported */
+    fraction_end;     /* fraction reported last, even by a failed attempt; fraction at the end of
+                       * the present work */
+  double report_time; /* time of the last report */
+  bool building_told; /* whether the last report was about building */
   double correction_count, correction_sum, correction_squares;
-  int64_t evaluations_counted; /* of vertices_corrected */
-  int64_t normals_lacking;     /* points without a normal so far */
+  int64_t evaluations_counted; /* how many of vertices_corrected are counted */
+  int64_t normals_lacking;     /* number of points without a normal so far */
 } mcor_run;
 
 /* The particles of the last call, and which of its results hold; see mcor_reuse.c. */
@@ -307,18 +317,18 @@ typedef struct mcor_kept
 {
   mcor_input input;
   mcor_options options;
-  mcor_globals globals; /* as given, without arrays; 0: none were given */
+  mcor_globals globals; /* the globals of that call, without arrays; 0: none were given */
   uint64_t splits;      /* hash of the globals' split bricks */
-  bool uses_solids;     /* solid particles are on the device */
+  bool uses_solids;     /* whether solid particles are on the device */
   bool grid, value;
-  bool nodes; /* bricks hold node values of the current scalar */
+  bool nodes; /* whether bricks hold node values of the current scalar */
 } mcor_kept;
 
 struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
   mcor_says code;
-  char error[4096], told[4096]; /* the last failure with slots, and with these filled */
+  char error[4096], told[4096]; /* the last failure: with slots, and with filled slots */
   mcor_run run;
 
   /* The device, and what it holds for any particles. */
@@ -327,14 +337,14 @@ struct mcor_context
   mcor_buffer scan_sums;
   mcor_sort_data sort;
   double report_interval; /* seconds between progress reports, at least */
-  int probe_batch;        /* points; 0 before the first probe */
+  int probe_batch;        /* points of a probe's batch; 0 before the first probe */
 
   /* The particles. */
   mcor_kept kept;
-  mcor_sample_list samples[2]; /* of the measured fluid, and of solids */
+  mcor_sample_list samples[2]; /* number of fluid particles measured, and of solids */
   mcor_measure measure;
   mcor_lattice lattice;
-  mcor_plane plane; /* of the call under way, and its space */
+  mcor_plane plane; /* volume factor and space of the present call */
   mcor_space space;
   mcor_box box;
   mcor_stage_data stage;

@@ -13,7 +13,7 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
   const mcor_options* options = context->run.options;
   context->run.doing = doing;
   context->run.fraction =
-    fmax(fraction, context->run.fraction); /* a second attempt may have reported more */
+    fmax(fraction, context->run.fraction); /* a second attempt reports no less than the first did */
   context->run.fraction_end = end;
   context->run.report_time = mcor_seconds();
   context->run.building_told = false;
@@ -59,7 +59,7 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
 {
   MCOR_TRY(mcor_finish(context));
   const double now = mcor_seconds();
-  const double built = context->cl.build_seconds; /* the phase's seconds leave it out */
+  const double built = context->cl.build_seconds; /* time spent building is not part of the phase's seconds */
   context->run.statistics->seconds[context->run.phase] +=
     now - context->run.phase_begin - (built - context->run.phase_built);
   context->run.phase = phase;

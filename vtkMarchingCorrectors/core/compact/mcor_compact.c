@@ -69,7 +69,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
     const bool is_last = v == bunches->march_count;
     if (!is_last && mcor_is_merged(bunches, bunches->first[v]) && !bunches->held[v])
     {
-      continue; /* listed at its bunch's node */
+      continue; /* a merged vertex is listed at its bunch's node */
     }
     const uint64_t key =
       is_last ? UINT64_MAX : mcor_order_key(bunches, mcor_marched_node(bunches, v));
@@ -88,14 +88,14 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* Vertices that are being appended to the mesh, and corrected on lines from their starts: the means
- * of bunches if these are not given. */
+/* Vertices that are being appended to the mesh. They are corrected on lines that begin at `starts`,
+ * or at the means of bunches if there are no starts. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
-  const double (*starts)[3]; /* from the nodes, in edges */
+  const double (*starts)[3]; /* in edges, counted from the nodes */
   cl_int* node;
-  uint8_t* data; /* real [][4]: offsets of starts */
+  uint8_t* data; /* real [][4]: where the lines begin, as offsets */
 } mcor_adding;
 
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
@@ -168,7 +168,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches, const double (*starts)[3], 
   MCOR_THEN(
     status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL));
   MCOR_THEN(status, mcor_extend_vertices(context, (int)o, (int)(o + n)));
-  for (size_t i = 0; i < 3; ++i) /* so far, cuts and caps may have none */
+  for (size_t i = 0; i < 3; ++i) /* cuts and caps may have no entries so far */
   {
     const size_t old = o * widths[i], size = of_edges[i]->size;
     MCOR_THEN(
@@ -200,7 +200,8 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
     }
   }
   qsort(sorted, (size_t)bunches->sorted_count, sizeof *sorted, mcor_compare_bunches);
-  for (int i = 2; i < bunches->sorted_count; ++i) /* a node has keys for two; others stay apart */
+  for (int i = 2; i < bunches->sorted_count; ++i) /* a node has keys for two merged vertices; others
+                                                   * stay apart */
   {
     if (sorted[i].key == sorted[i - 2].key)
     {
@@ -325,7 +326,8 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   free(from);
   MCOR_TRY(status);
   mcor_note_places(bunches, 0, march_count, mesh->level_first[0]);
-  const int shift = march_count - bunches->march_count; /* of cuts and caps, which follow */
+  const int shift = march_count - bunches->march_count; /* for the vertices of cuts and caps, which
+                                                         * come last */
   for (int i = march_count; i < count; ++i)
   {
     bunches->place[i - shift] = i;
@@ -358,7 +360,7 @@ typedef struct mcor_filing
   int64_t first[MCOR_SLICES], count[MCOR_SLICES]; /* of the triangles that are left */
 } mcor_filing;
 
-/* Moves the triangles of a slice that are left to its beginning. */
+/* Moves a slice's remaining triangles to the slice's beginning. */
 static void mcor_file_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_filing* filing = data;
@@ -425,7 +427,7 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
     size_t bytes;
   } const parts[] = { { (void**)&b->state, n * sizeof *b->state },
     { (void**)&b->wide, n * sizeof *b->wide }, { (void**)&b->leans, n * sizeof *b->leans },
-    { (void**)&b->held, n * sizeof *b->held }, /* so far all zero */
+    { (void**)&b->held, n * sizeof *b->held }, /* all zero at first */
     { (void**)&b->key, n * sizeof *b->key }, { (void**)&b->first, n * sizeof *b->first },
     { (void**)&b->next, n * sizeof *b->next }, { (void**)&b->star, n * sizeof *b->star },
     { (void**)&b->before, 3 * triangles * sizeof *b->before },

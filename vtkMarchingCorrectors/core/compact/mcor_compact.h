@@ -33,10 +33,10 @@ mcor_status mcor_compact(mcor_context* context);
 enum
 {
   MCOR_BUNCH_APART,   /* its vertices stay */
-  MCOR_BUNCH_CLASHES, /* must not be merged along with some other one */
-  MCOR_BUNCH_FRESH,   /* taken apart in this round */
+  MCOR_BUNCH_CLASHES, /* may be merged only if another bunch stays apart */
+  MCOR_BUNCH_FRESH,   /* was taken apart in this round */
   MCOR_BUNCH_MERGED,  /* this and the following states are merged */
-  MCOR_BUNCH_LEANING, /* must be taken apart if a bunch beside it is */
+  MCOR_BUNCH_LEANING, /* must be taken apart if a neighbour is */
   MCOR_BUNCH_BAD      /* is to be taken apart */
 };
 
@@ -50,31 +50,32 @@ typedef struct mcor_bunches
   mcor_context* context;
   int corners; /* different corners of a triangle: 2 if it stands for a line */
   int march_count, vertex_count, triangle_count; /* of the mesh before merging */
-  int cut_count;                                 /* vertices of cuts */
-  int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
-  uint8_t* memory;                               /* of the arrays that follow */
+  int cut_count;                                 /* number of cut vertices */
+  int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* the mesh's level_first[1] */
+  uint8_t* memory;                               /* elements of the arrays below */
   cl_int* node;                                  /* [vertex_count][4] */
   cl_ulong* cut;                                 /* [cut_count]: its cut_edges */
   void *ends, *offset;   /* real [march_count][2]; real [vertex_count][4] */
   cl_int* triangles;     /* [triangle_count][3] */
   cl_ulong* cells;       /* [triangle_count], if mcor_follows_cells */
-  uint64_t* key;         /* [vertex_count]: lattice node of a vertex */
-  int32_t *first, *next; /* [vertex_count]: first vertex of the bunch; next one, or -1 */
+  uint64_t* key;         /* [vertex_count]: the lattice node that the vertex belongs to */
+  int32_t *first, *next; /* [vertex_count]: the bunch's first vertex; the bunch's next vertex, or -1 */
   int32_t *star,
-    *before; /* by bunch: corner of its last triangle; by corner: that of the one before, or -1 */
+    *before; /* by bunch: a corner of its last triangle; by corner: a corner of the triangle before,
+              * or -1 */
   atomic_uchar* state; /* [vertex_count], by bunch */
-  uint8_t* leans;      /* [vertex_count], by bunch: whether one that is not sure can be merged */
+  uint8_t* leans;      /* [vertex_count], by bunch: a bunch that is not sure can be merged */
   struct mcor_sorted_bunch*
     sorted; /* bunches that were merged at first, in the order of vertices */
   int sorted_count;
-  mcor_point* points; /* [point_room]: vertices of the mesh, point_count so far */
+  mcor_point* points; /* [point_room]: the mesh's vertices; point_count of them exist */
   int point_count;
   int64_t point_room;
-  int round;          /* of taking apart */
-  atomic_int bad;     /* whether it has found a bunch to take apart */
+  int round;          /* number of the round in which bunches are taken apart */
+  atomic_int bad;     /* whether this round has found a bunch to take apart */
   int32_t* now;       /* [vertex_count]: place of a vertex in the mesh, see mcor_place_of */
-  atomic_uchar* wide; /* [vertex_count]: whether it has the widest angle of a sliver */
-  uint8_t* held;      /* [vertex_count]: keys of cuts need the vertex, even if it is merged */
+  atomic_uchar* wide; /* [vertex_count]: whether the vertex is the widest corner of a sliver */
+  uint8_t* held;      /* [vertex_count]: keys of cuts refer to the vertex, even if it is merged */
   /* [2 vertex_count]: vertices of the mesh in order: v, or -1 - first of a merged bunch;
    * [vertex_count]: place of a vertex, and, by first vertex, of a merged bunch. */
   int32_t *order, *place, *merged_place;

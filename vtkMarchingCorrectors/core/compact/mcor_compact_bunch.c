@@ -30,7 +30,7 @@
 
 /* ---- Nodes ---- */
 
-/* Sides of periods and of caps, on which vertices stay. node: along the axis. */
+/* Vertices stay that lie on the side of a period or cap. node: the coordinate along the axis. */
 typedef struct mcor_frozen
 {
   const mcor_bunches* bunches;
@@ -145,7 +145,7 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    first[v] = first[first[v]]; /* the one before is already first */
+    first[v] = first[first[v]]; /* the vertex before is already the bunch's first */
   }
   for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
   {
@@ -317,7 +317,7 @@ static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
     mcor_fan fan, merged;
     if (bunches->first[v] != v || bunches->next[v] < 0 || !mcor_read_fan(bunches, v, &fan))
     {
-      continue; /* it stays apart */
+      continue; /* this bunch stays apart */
     }
     mcor_merge_fan(bunches, true, &fan, &merged);
     mcor_set_state(bunches, v,
@@ -329,7 +329,7 @@ static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Merges those of the other bunches that can be. */
+/* Merges bunches that are not sure, as far as they can be. */
 static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: merged bunches that turn triangles over, and vertices of slivers, which start
- * anew. */
+/* Compact contours: finds merged bunches that turn triangles over, and moves vertices of slivers. */
 
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
@@ -16,7 +15,7 @@
 struct mcor_point
 {
   double at[3], uphill[3]; /* uphill: unit gradient, 0 if there is none */
-  double linear;           /* above 0: it did not reach the surface */
+  double linear;           /* above 0: the vertex did not reach the surface */
 };
 
 typedef struct mcor_placing
@@ -193,7 +192,7 @@ static int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, bunches->first[v]) ? bunches->first[v] : v;
 }
 
-/* Finds the corners of a triangle. Returns whether it is left, and v is one of them. */
+/* Finds the corners of a triangle. Returns whether the triangle is left and has the corner v. */
 static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, int32_t of[3])
 {
   const cl_int* corner = bunches->triangles + 3 * t;
@@ -310,7 +309,7 @@ mcor_status mcor_move_slivers(mcor_bunches* bunches)
     return MCOR_OK;
   }
   double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
-  int32_t* before = bunches->order + bunches->vertex_count; /* behind those that move */
+  int32_t* before = bunches->order + bunches->vertex_count; /* stands behind the vertices that move */
   int count = 0;
   mcor_status status = mcor_allocated(bunches->context, starts);
   MCOR_THEN(status, mcor_update_points(bunches));

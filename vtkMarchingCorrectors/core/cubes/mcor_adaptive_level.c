@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* Launches a heavy kernel with the search grid, its `own` arguments, and `more`. */
+/* Launches a heavy kernel with the search grid, the arguments `own`, and the arguments `more`. */
 static mcor_status mcor_launch_joined(mcor_context* context, const char* name, size_t items,
   const mcor_arg own[3], const mcor_arg* more, size_t count)
 {
@@ -44,7 +44,8 @@ mcor_status mcor_launch_at_vertices(
   {
     const int level = i / 2, boundary = i % 2;
     const int begin = boundary ? mesh->march_count : 0;
-    const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with vertices of caps */
+    /* caps have vertices here, too */
+    const int end = boundary ? mesh->vertex_count : mesh->march_count;
     const int* of_levels = mesh->level_first[boundary];
     const int first = level > 0 ? of_levels[level] : begin;
     const int last = level + 1 < context->lattice.levels ? of_levels[level + 1] : end;

@@ -151,7 +151,7 @@ mcor_status mcor_march(mcor_context* context)
   {
     return MCOR_OK;
   }
-  if (!mcor_uses_pairs(context)) /* whose growth has found them */
+  if (!mcor_uses_pairs(context)) /* growth from the pairs has found these cells */
   {
     MCOR_TRY(mcor_find_neighbours(context));
   }

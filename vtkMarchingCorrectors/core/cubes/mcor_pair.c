@@ -26,7 +26,8 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   mcor_pairs* pairs = &context->pairs;
   const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
   const int particles =
-    context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* particles of an item */
+    /* how many particles one work-item takes */
+    context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes);
   MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY,
     (context->grid.count + particles - 1) / particles, MCOR_GRID_ARGS(context),

@@ -5,8 +5,8 @@
 
 #include "mcor_adaptive.h"
 
-/* Makes room for the samples that sample_base counts, lets `locate` place them, and evaluates
- * them, level by level, as slots are sorted. */
+/* Makes room for the samples that sample_base counts, calls `locate` to place them, and evaluates
+ * them level by level, because slots are sorted by level. */
 static mcor_status mcor_evaluate_samples(
   mcor_context* context, const char* locate, int* sample_count)
 {

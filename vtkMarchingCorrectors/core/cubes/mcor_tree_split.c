@@ -74,7 +74,7 @@ typedef struct mcor_tree_job
   const mcor_context* context;
   const mcor_input* input;
   const mcor_tree* tree;
-  bool homes;   /* particles split their homes alone: the bricks that they are in */
+  bool homes;   /* a particle splits only its home, the brick that it is in */
   double reach; /* support radius of h = 1, in cubes */
   bool is_cube; /* the support is a cube */
   /* Edges of a level's bricks, in cubes, and their inverses. */
@@ -112,8 +112,8 @@ static uint64_t mcor_reached_bricks(
   return bricks;
 }
 
-/* Adds to the set the bricks that a particle reaches and that the tree does not know to be split.
- * *all becomes whether the tree knows all that the particle may reach. */
+/* Adds to the set the bricks that a particle reaches, unless the tree knows already that they are
+ * split. *all becomes whether the tree knows this of all bricks that the particle may reach. */
 static bool mcor_split_reached(
   const mcor_tree_job* job, const mcor_splitter* p, mcor_brick_set* set, bool* all)
 {
@@ -141,8 +141,8 @@ static bool mcor_split_reached(
   return made;
 }
 
-/* Splits bricks by a particle. done: keys of homes around which all bricks are split, each in one
- * place. Particles there that reach no farther are skipped, as most are. */
+/* Splits the bricks that one particle reaches. done: homes (by key, each at one place) whose whole
+ * neighbourhood is split already. A particle there that reaches no farther is skipped, as most are. */
 static bool mcor_split_by_particle(
   mcor_tree_job* job, int slice, mcor_splitter* p, uint64_t done[MCOR_BLOCK_BRICKS])
 {

@@ -41,9 +41,9 @@ typedef struct mcor_build
 /* Programs are built, and kernels compiled, when they are first needed. */
 typedef enum mcor_program
 {
-  MCOR_PROGRAM_LATTICE,  /* one for all SPH kernels and fields, with and without solids */
-  MCOR_PROGRAM_FIELD,    /* surfaces of this build */
-  MCOR_PROGRAM_PROBE,    /* mcor_probe and mcor_derive */
+  MCOR_PROGRAM_LATTICE,  /* compiled once for all SPH kernels and fields, with and without solids */
+  MCOR_PROGRAM_FIELD,    /* for surfaces of this build */
+  MCOR_PROGRAM_PROBE,    /* for mcor_probe and mcor_derive */
   MCOR_PROGRAM_COUNT
 } mcor_program;
 
@@ -53,7 +53,8 @@ typedef struct mcor_kernel
   cl_kernel kernel;
   mcor_program program;
   bool launched[2]
-               [2]; /* [first item is 0, is not][few work-groups, many]: drivers compile for each */
+               [2]; /* [first item is 0, or not][few work-groups, or many]: drivers compile a kernel
+                     * for each case */
   double part;      /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
 
@@ -65,18 +66,19 @@ typedef struct mcor_cl
 {
   cl_platform_id platform;
   cl_device_id device;
-  cl_device_id share; /* the device, if it is a part of another one; else NULL */
+  cl_device_id share; /* the device, if it is a share of another one; else NULL */
   cl_context context;
   struct mcor_pool* pool;              /* threads of the built-in device; else NULL */
-  cl_command_queue queue, timed_queue; /* timed: for first launches */
+  cl_command_queue queue, timed_queue; /* a queue that measures times, for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
-  mcor_build build;     /* the variant that the programs are */
+  mcor_build build;     /* the variant for which the programs are built */
   mcor_kernel* kernels; /* kernels made so far */
   int kernel_count;
   int64_t kernel_room;
   int device_number, units;       /* number in the list of devices; compute units */
-  int place, count;               /* this process' number, and how many share the devices */
-  bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
+  int place, count;               /* number of this process, and how many processes share the
+                                   * devices */
+  bool is_default, is_replaced;   /* no device was named, and the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
   bool is_apart;                  /* memory is not the host's, see mcor_locked */
   bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
@@ -85,16 +87,16 @@ typedef struct mcor_cl
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit;               /* bytes of device_memory that the call under way may use */
-  int64_t bytes, bytes_peak;           /* in all buffers, kept ones included */
+  int64_t bytes, bytes_peak;           /* bytes in all buffers, kept ones included */
   mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
   int kept_count;
   mcor_locked locked[MCOR_LOCKED_LIMIT];
   int64_t kept_bytes, used_peak,
-    used_before; /* used_peak: bytes without kept buffers; used_before: that of the last call */
-  double build_seconds;   /* in the call under way */
-  mcor_observer observer; /* of the call under way; NULL: none */
-  double terms;           /* terms in the sum at a point, about; for mcor_enqueue_cut */
-  bool compiles; /* the driver compiles at a kernel's first launch: the last one took long */
+    used_before; /* The most bytes used, without kept buffers: in this call, in the last call. */
+  double build_seconds;   /* bytes that the present call uses */
+  mcor_observer observer; /* progress of the present call; NULL: none */
+  double terms;           /* about the number of terms in the sum at a point, for mcor_enqueue_cut */
+  bool compiles; /* the last first launch of a kernel took long, so the driver compiles then */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -142,11 +144,11 @@ typedef enum mcor_load
 /* From this number of work-items on, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
-/* Opens a device by name or number; NULL or "": that of the variable MCOR_DEVICE, or else the
- * default. */
+/* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
+ * names, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Called before a call. If no device was named and the open one lacks the build, opens the best
- * one that has it. release: frees everything on the device before. */
+/* Called before each call. If no device was named and the open one lacks the build, opens the best
+ * device that has it. release: frees everything on the old device first. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
@@ -180,14 +182,15 @@ typedef struct mcor_mapping
 } mcor_mapping;
 /* Maps the buffers in order, up to the first failure. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
-/* Unmaps all that are mapped. Returns `status`; if that is MCOR_OK, the first failure. */
+/* Unmaps all of the buffers that are mapped. Returns `status` or, if that is MCOR_OK, the first
+ * failure. */
 mcor_status mcor_unmap_all(
   mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
-/* Fills bytes [first, last) alone. */
+/* Fills only the bytes [first, last). */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
-/* Replaces one buffer by another, which is then empty. */
+/* Gives one buffer's memory to another one; the first is then empty. */
 void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to);
 /* Makes room for `bytes`, keeping the first `old`. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);

@@ -109,7 +109,7 @@ void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count
 static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size_t bytes)
 {
   mcor_cl* cl = &context->cl;
-  const size_t size = (bytes + 255) / 256 * 256 + 256; /* never empty */
+  const size_t size = (bytes + 255) / 256 * 256 + 256; /* a buffer is never empty */
   mcor_release(context, buffer);
   /* Takes the smallest kept buffer with enough room, unless it is far too large. */
   int best = -1;
@@ -144,7 +144,7 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   buffer->size = size;
   cl->bytes += (int64_t)size;
   cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
-  if (cl->is_cpu && size >= MCOR_LARGE_ARRAY) /* buffers are memory of the host */
+  if (cl->is_cpu && size >= MCOR_LARGE_ARRAY) /* here buffers are memory of the host */
   {
     void* memory;
     MCOR_TRY(mcor_map(context, buffer, size, true, &memory));

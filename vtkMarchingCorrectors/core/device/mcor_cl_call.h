@@ -3,7 +3,8 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* For the files mcor_cl_*.c alone, which call OpenCL; also what is known of some drivers. */
+/* Only for the files mcor_cl_*.c, which call OpenCL. It also says what is special about some
+ * drivers. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"
@@ -35,7 +36,7 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 /* If the device is PoCL, adds to the error sentence which of its files may be the cause. */
 void mcor_blame_files(mcor_context* context);
 
-/* The platform whose first device is the default. */
+/* Returns the platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
 /* Returns a variable of the environment that only tests set; other builds do not read it. */
@@ -62,7 +63,7 @@ static inline bool mcor_is_native(const mcor_cl* cl)
 /* mcor_cl_program.c */
 /* Builds a program unless it is built. */
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);
-/* Drops all programs and their kernels, or those alone that depend on the variant. */
+/* Drops all programs and their kernels, or only the ones that depend on the variant. */
 void mcor_drop_programs(mcor_cl* cl, bool all);
 
 #endif

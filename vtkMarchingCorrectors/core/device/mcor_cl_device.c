@@ -16,7 +16,7 @@
 typedef struct mcor_device_list
 {
   int count;
-  bool drivers_fail; /* they were not listed: they would end the process */
+  bool drivers_fail; /* these drivers were not listed, because they would end the process */
   cl_platform_id platforms[MCOR_DEVICE_LIMIT];
   cl_device_id devices[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
@@ -77,7 +77,7 @@ static void mcor_write_devices(
     char device[128], platform[128];
     mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
     const bool same =
-      strncmp(device, platform, strlen(platform)) == 0; /* true of the built-in one */
+      strncmp(device, platform, strlen(platform)) == 0; /* true for the built-in device */
     length += (size_t)snprintf(text + length, room - length, "%s%d: %s%s%s%s",
       i > 0 ? separator : "", i, device, same ? "" : " (", same ? "" : platform, same ? "" : ")");
   }
@@ -403,7 +403,7 @@ mcor_status mcor_settle_device(
 {
   mcor_cl* cl = &context->cl;
   const mcor_cl before = *cl;
-  const bool is_open = cl->timed_queue != NULL; /* false where the last change of devices failed */
+  const bool is_open = cl->timed_queue != NULL; /* false if the last change of devices failed */
   if (!cl->is_default ||
     (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
   {

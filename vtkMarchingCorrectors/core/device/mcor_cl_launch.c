@@ -55,7 +55,8 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
   {
     kernel->program = (mcor_program)p;
-    if (is_probe != (p == MCOR_PROGRAM_PROBE)) /* need not be built to look */
+    if (is_probe != (p == MCOR_PROGRAM_PROBE)) /* a program need not be built to know whether it has
+                                                * the kernel */
     {
       continue;
     }
@@ -117,7 +118,7 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
  * not made larger, since the next work-items may have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
 #define MCOR_FIRST_SHARE                                                                           \
-  32 /* the first part, as long as a kernel's time is unknown: the limit over this */
+  32 /* the first part, while a kernel's time is unknown, has the limit divided by this */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel anew at its first
@@ -197,7 +198,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   }
   if (load == MCOR_HEAVY && cl->observer)
   {
-    MCOR_TRY(mcor_finish(context)); /* so that its time does not include earlier launches */
+    MCOR_TRY(mcor_finish(context)); /* the time must not include earlier launches */
   }
   MCOR_TRY(mcor_ask(context, false));
   mcor_kernel* kernel = NULL;

@@ -55,7 +55,7 @@ struct _cl_command_queue
 struct _cl_mem
 {
   const cl_icd_dispatch* table;
-  char* data; /* behind this struct */
+  char* data; /* the bytes follow this struct */
 };
 
 struct _cl_program

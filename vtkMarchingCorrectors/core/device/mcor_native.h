@@ -26,7 +26,7 @@ typedef enum mcor_instructions
 typedef void mcor_native_run(unsigned number, void* const* arguments, size_t first, size_t last);
 typedef struct mcor_native_program
 {
-  /* As mcor_program_options writes them, from "-DMCOR_PROGRAM" on; NULL ends the list. */
+  /* The options as mcor_program_options writes them, from "-DMCOR_PROGRAM" on. NULL ends the list. */
   const char* options;
   mcor_instructions instructions;
   mcor_native_run* run;

@@ -12,7 +12,7 @@
 
 #include <CL/cl_icd.h>
 
-/* clGetPlatformIDs; headers differ in the name of its type. */
+/* The type of clGetPlatformIDs, whose name differs between headers. */
 typedef cl_int(CL_API_CALL* mcor_list_platforms)(cl_uint, cl_platform_id*, cl_uint*);
 
 cl_int CL_API_CALL mcor_clGetPlatformIDs(cl_uint room, cl_platform_id* platforms, cl_uint* count);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define MCOR_LOOP_THREADS 16 /* of a loop of the host without the built-in device, at most */
+#define MCOR_LOOP_THREADS 16 /* the most threads for a loop of the host without the built-in device */
 
 int mcor_limit_threads(int usable)
 {
@@ -101,11 +101,12 @@ mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, 
   fenv_t environment;
   fegetenv(&environment);
   fesetenv(FE_DFL_ENV);
-  if (shared && pool->process != (long)getpid()) /* the first loop of this process */
+  if (shared && pool->process != (long)getpid()) /* this is the process' first loop */
   {
     free(pool->all);
     pool->all = malloc((size_t)pool->threads * sizeof *pool->all);
-    pool->threads = pool->all ? pool->threads : 1; /* the calling one alone if memory ran out */
+    pool->threads = pool->all ? pool->threads : 1; /* only the calling thread is left if memory ran
+                                                    * out */
     pool->process = (long)getpid();
     pool->count = pool->active = 0;
     pool->round = 0;

@@ -3,8 +3,8 @@
 #ifndef mcor_parallel_h
 #define mcor_parallel_h
 
-/* Loops in several threads: those of the host, on all processors that the calling thread may
- * use, and the launches of the built-in device. */
+/* Loops in several threads: loops of the host, on all processors that the calling thread may use,
+ * and launches on the built-in device. */
 
 #include "mcor.h"
 
@@ -49,20 +49,20 @@ int mcor_limit_threads(int usable);
 /* Elements [first, last) of a loop without slices. */
 typedef void mcor_pool_body(void* data, size_t first, size_t last);
 
-/* Threads that sleep until there is a loop to share with the thread that runs it; made as loops
- * need them. All zero but for `threads`: none is made yet. */
+/* Threads that sleep until there is a loop to share with the thread that runs it. They are created
+ * when a loop needs them; all zero but for `threads`: none exists yet. */
 typedef struct mcor_pool
 {
-  int threads;    /* at most, the calling one included */
-  int count;      /* made so far */
+  int threads;    /* the most threads, the calling one included */
+  int count;      /* how many exist */
   pthread_t* all; /* [threads - 1] */
-  long process; /* the process that made them (a process made by fork has none of them); 0: none */
-  pthread_mutex_t lock; /* protects what follows */
+  long process; /* the process that created them (a process made by fork has none of them); 0: none */
+  pthread_mutex_t lock; /* protects the members below */
   pthread_cond_t wake, done;
   bool open, ends; /* open: there is a loop to join; ends: the threads must end */
   unsigned round;  /* counts the loops */
   int active;      /* threads in the loop */
-  /* The loop. */
+  /* What the present loop does. */
   mcor_pool_body* body;
   void* data;
   atomic_size_t next;

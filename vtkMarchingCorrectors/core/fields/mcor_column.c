@@ -8,16 +8,16 @@
 
 #include <stdlib.h>
 
-/* Cells from the centre to the end of the support, where pixels are not much smaller than h, and
- * where they are. Errors fall with at least the third power: at h = 3 pixels they are about 1e-8 of
- * the greatest value, at 50 below 1e-6. */
+/* Cells of the table from the centre to the end of the support: for pixels not much smaller than h,
+ * and for much smaller ones. Errors fall with at least the third power: at h = 3 pixels they are
+ * about 1e-8 of the greatest value, at 50 below 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
 #define MCOR_PROFILE 2048
-/* Where any kernel has another polynomial, in h. */
+/* Places, in h, where any kernel changes to another polynomial. */
 #define MCOR_KINK 0.5
-#define MCOR_KINKS 16 /* along a line of sight through a tensor kernel, at most */
+#define MCOR_KINKS 16 /* most pieces of a line of sight through a tensor kernel */
 
 /* Gauss quadrature from 0 to 1: of a cell, and of one piece of a line of sight, where it is exact
  * for products of three cubic polynomials. */
@@ -38,10 +38,11 @@ typedef struct mcor_column_job
   bool is_plane, is_tensor, is_aligned;
   const double (*axes)[3];
   double support;
-  double profile[MCOR_PROFILE + 4]; /* column density, from one step before the centre on */
+  double profile[MCOR_PROFILE + 4]; /* column density at the places along the axis, beginning one
+                                     * step before the centre */
   mcor_column* column;
-  double* sums;   /* [places along x][cells + 1]: of the density along y */
-  double* values; /* the same: the density */
+  double* sums;   /* [places along x][cells + 1]: integral of the density along y */
+  double* values; /* [places along x][cells + 1]: the density */
 } mcor_column_job;
 
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
@@ -270,7 +271,7 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at)
 {
   const double sign = column->is_odd && at < 0 ? -1 : 1;
-  const double share = sign * at / column->reach[axis]; /* -1 to 1, of what is odd 0 to 1 */
+  const double share = sign * at / column->reach[axis]; /* from -1 to 1; from 0 to 1 if E is odd */
   const double t = column->cells *
     (column->is_radial   ? sqrt(share)
         : column->is_odd ? share

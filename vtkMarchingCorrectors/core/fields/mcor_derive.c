@@ -33,7 +33,7 @@ typedef struct mcor_derive_run
   mcor_buffer arrays;     /* fix [varying_count][grid.count], sorted */
   mcor_point_batch batch; /* of particles */
   mcor_buffer moments, slopes;
-  void *orders, *moment, *slope; /* views of the batch's order, and of these */
+  void *orders, *moment, *slope; /* views of the batch's `order`, and of moments and slopes */
   int first, count;              /* sorted particles in the batch */
   int inside;                    /* particles of the batch whose gradients are wanted */
   cl_int* particles; /* [grid.count] index on the device, in input order, of each sorted particle */
@@ -85,7 +85,8 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, run->moment, 9 * i + k);
     }
-    if (context->space.axes == 2) /* keeps the condition of two axes where the third is empty */
+    if (context->space.axes == 2) /* with the third axis empty, this keeps the condition of the
+                                   * other two */
     {
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));

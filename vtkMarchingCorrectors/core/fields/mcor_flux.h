@@ -39,7 +39,8 @@ typedef struct mcor_flux_section
 {
   double area;           /* of the whole section, with and without fluid */
   int64_t reached;       /* 1: particles reach the section */
-  double speed, density; /* greatest ones seen, or the floors of the job if greater */
+  double speed, density; /* the greatest speed and density seen, or the job's floors if these are
+                          * greater */
   double unit[MCOR_FLUX_SUMS];
   int64_t sum[MCOR_FLUX_SUMS];
 } mcor_flux_section;
@@ -48,12 +49,12 @@ typedef struct mcor_flux_section
 typedef struct mcor_flux_piece
 {
   int64_t patch;
-  int64_t whole;       /* of the part of a cut piece that is in fluid: the number of that piece */
-  int depth;           /* divisions since the piece of its cell */
+  int64_t whole;       /* for the part of a cut piece that is in fluid: the number of the cut piece */
+  int depth;           /* how often the cell's piece was divided to make this one */
   bool unclear;        /* the level may cross it in a way that its corners do not show */
   double corner[3][2]; /* u, v */
-  double area;         /* of the cell's piece that this one came from */
-  double sum[MCOR_FLUX_SUMS]; /* over the part in fluid */
+  double area;         /* area of the cell's first piece */
+  double sum[MCOR_FLUX_SUMS]; /* integrals over the part in fluid */
 } mcor_flux_piece;
 
 typedef MCOR_LIST(mcor_flux_piece) mcor_flux_pieces;
@@ -77,22 +78,23 @@ typedef struct mcor_flux_cut
 #define MCOR_FLUX_POINTS 7
 typedef struct mcor_flux_form
 {
-  int corners, points, parts;     /* parts: that a piece is divided into */
-  double share[MCOR_FLUX_POINTS]; /* of the samples in an integral */
+  int corners, points, parts;     /* parts into which a piece is divided */
+  double share[MCOR_FLUX_POINTS]; /* number of samples in an integral */
   int part[4][3];                 /* the samples that are the corners of each part */
 } mcor_flux_form;
 
 /* Samples of a batch. */
 typedef struct mcor_flux_field
 {
-  double (*at)[3]; /* [MCOR_GAUGE_BATCH]: u, v and number of the patch; the others follow it */
+  double (*at)[3]; /* Where each sample is: u, v, patch number. The arrays below use the same index. */
   double *weight, *velocity, *density;
   double* values[2]; /* velocity and density, as the probe takes them */
 } mcor_flux_field;
 
 typedef struct mcor_flux_job
 {
-  mcor_gauge_job edges; /* first; finds crossings on edges of pieces, its run evaluates the field */
+  mcor_gauge_job edges; /* must be first; finds crossings on edges of pieces, and its run evaluates
+                         * the field */
   const mcor_section* sections;
   int64_t section_count;
   mcor_fluxes* fluxes;
@@ -100,7 +102,7 @@ typedef struct mcor_flux_job
   const mcor_plane* plane;
   int across; /* the caller's axis across the plane */
   const mcor_flux_form* form;
-  int velocity_components; /* of the velocity, the input's first attribute */
+  int velocity_components; /* components of the velocity, the input's first attribute */
   bool has_density;
   double smoothing_length; /* the smallest scaled smoothing length */
   double speed_floor, density_floor;
@@ -108,8 +110,8 @@ typedef struct mcor_flux_job
   MCOR_LIST(mcor_patch) patches;
   MCOR_LIST(mcor_flux_cell) cells;
   mcor_findings around; /* ranges along x, y, z that hold all patches */
-  /* Work space: pieces, their parts, and what of those lies in fluid; cuts; lines that the level
-   * crosses, in parameters, one for each of the changed parts of `edges`. */
+  /* Work space: pieces, their parts, and the parts of cut pieces that lie in fluid; cuts; the lines
+   * that the level crosses, in parameters, one for each of the changed parts of `edges`. */
   mcor_flux_field field;
   mcor_flux_pieces pieces, parts, inside;
   MCOR_LIST(mcor_flux_cut) cuts;
@@ -126,7 +128,7 @@ double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
 mcor_status mcor_list_flux_cells(mcor_flux_job* job);
 
 /* mcor_flux_piece.c */
-extern const mcor_flux_form mcor_flux_forms[2]; /* of triangles, of lines */
+extern const mcor_flux_form mcor_flux_forms[2]; /* for triangles, for lines */
 /* Evaluates the field at samples [0, count). */
 mcor_status mcor_sample_flux(mcor_flux_job* job, int count);
 double mcor_speed_along(const mcor_flux_job* job, int64_t sample, const double direction[3]);

@@ -69,7 +69,8 @@ static mcor_status mcor_orient_triangles(
   }
   qsort(edges, (size_t)point_count, sizeof *edges, mcor_compare_flux_edges);
   bool closed = point_count % 2 == 0;
-  for (int64_t i = 0; i + 1 < point_count && closed; i += 2) /* each edge once each way */
+  /* each edge occurs once in each direction */
+  for (int64_t i = 0; i + 1 < point_count && closed; i += 2)
   {
     closed = !edges[i].turned && edges[i + 1].turned &&
       mcor_compare_numbers(edges[i].ends[0], edges[i + 1].ends[0], 6) == 0;
@@ -444,7 +445,7 @@ mcor_status mcor_list_flux_cells(mcor_flux_job* job)
   }
   for (int a = 0; a < 3; ++a)
   {
-    const bool periodic = lattice->period[a] > 0; /* along a period, particles are everywhere */
+    const bool periodic = lattice->period[a] > 0; /* there are particles all along a period */
     reach.low[a] = periodic ? -INFINITY : context->measure.low[a] - lattice->cube;
     reach.high[a] = periodic ? INFINITY : context->measure.high[a] + lattice->cube;
     if (box && !periodic)

@@ -100,13 +100,14 @@ static mcor_status mcor_append_crossed(mcor_flux_job* job, const double from[3],
   return MCOR_OK;
 }
 
-/* Finds where the level crosses the lines so far. The changed parts stay for mcor_crossing_at. */
+/* Finds where the level crosses the lines appended so far. The changed parts are kept for
+ * mcor_crossing_at. */
 static mcor_status mcor_solve_lines(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
   const int arrays = context->attributes.count;
   job->edges.lines = job->lines.of;
-  context->attributes.count = 0; /* crossings need weights alone */
+  context->attributes.count = 0; /* crossings depend only on the weight sums */
   const mcor_status status = mcor_solve_crossings(&job->edges, MCOR_FLUX_SOLVE_ROUNDS, true);
   context->attributes.count = arrays;
   return status;

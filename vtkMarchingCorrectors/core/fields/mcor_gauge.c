@@ -179,7 +179,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     const double high = m->high[a] + margin - line->from[a];
     if (context->lattice.period[a] > 0)
     {
-      continue; /* along a period, particles are everywhere */
+      continue; /* there are particles all along a period */
     }
     if (way == 0)
     {
@@ -195,7 +195,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   }
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
-  const bool whole_is_countable = steps < 4e15; /* doubles can then tell places on it apart */
+  const bool whole_is_countable = steps < 4e15; /* so that doubles can tell places on the line apart */
   MCOR_FAIL_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
     MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES), mcor_label_gauge(line->name, number).text,
     (whole_is_countable ? last - first : steps) + 1, context->measure.h_min,
@@ -214,7 +214,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 
 /* ---- readings ---- */
 
-/* Makes the reading of a line from its crossings, which are places before and lengths after. */
+/* Makes the reading of a line from its crossings, and turns these from places into lengths. */
 static void mcor_read_line(
   const mcor_gauge_line* line, bool full, mcor_gauge_reading* r, double* crossings)
 {

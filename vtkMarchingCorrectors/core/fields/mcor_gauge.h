@@ -28,7 +28,7 @@ typedef struct mcor_gauge_samples
   int64_t begin; /* first sample of the whole line */
 } mcor_gauge_samples;
 
-/* A place on a line. As a record it is a crossing, or one of these instead. */
+/* A place on a line. As a record it is a crossing, or instead one of the facts below. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_place

@@ -13,10 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_MOST_PIXELS 32768 /* along a side */
-#define MCOR_MOST_PERIODS 2    /* longer supports have too many images */
-#define MCOR_MOST_IMAGES 16    /* of a period in a box, along an axis */
-#define MCOR_MOST_LENGTHS 1e6  /* of an image without a box, in the largest smoothing length */
+#define MCOR_MOST_PIXELS 32768 /* along the longer side */
+#define MCOR_MOST_PERIODS 2    /* in periods; longer supports would have too many images */
+#define MCOR_MOST_IMAGES 16    /* the most images of a period in a box, along an axis */
+#define MCOR_MOST_LENGTHS 1e6  /* the longest side of an image without a box, in the largest
+                                * smoothing length */
 
 /* ---- the image ---- */
 
@@ -142,7 +143,7 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
     MCOR_FAIL_IF(is_periodic && high[6] * support > MCOR_MOST_PERIODS * job->period[a], context,
       MCOR_INVALID_ARGUMENT, MCOR_SAY(PERIOD_TOO_SHORT), 'x' + axis, job->period[a],
       high[6] * support);
-    const bool is_across = a >= context->space.axes; /* the plane */
+    const bool is_across = a >= context->space.axes; /* in two dimensions the image is the plane */
     for (int i = 2 * a; i < 2 * a + 2; ++i)
     {
       const double given = i % 2 ? to : from, end = i % 2 ? INFINITY : -INFINITY;
@@ -202,7 +203,8 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
   const bool computes = needs_volume && mcor_needs_density(input) && !job->places_only;
   if (!computes && !input->estimate_smoothing_length)
   {
-    mcor_check_reuse(context, input, options); /* kept data may be of other particles */
+    mcor_check_reuse(context, input, options); /* data kept from earlier calls may belong to other
+                                                * particles */
     return MCOR_OK;
   }
   mcor_bound_by_box(context, options);

@@ -19,11 +19,11 @@
  * rectangles side by side add up to 1 exactly, but for rounding. */
 typedef struct mcor_column
 {
-  bool is_radial;  /* as all kernels but products are */
-  bool is_odd;     /* E is odd in x and y: tabulated from the centre on */
-  int cells;       /* along x, and along y */
-  double reach[2]; /* of the kernel along x and y */
-  double highest;  /* column density at the centre, the greatest */
+  bool is_radial;  /* the kernel depends on the distance alone, as all but tensor kernels do */
+  bool is_odd;     /* E is odd in x and y, so the table begins at the centre */
+  int cells;       /* number of cells along x, and along y */
+  double reach[2]; /* reach of the kernel along x and y */
+  double highest;  /* column density at the centre, which is the greatest */
   double* nodes;   /* [cells + 1][cells + 1][4], y first: E, dE/dx, dE/dy, d2E/dxdy, in cells */
 } mcor_column;
 
@@ -57,15 +57,15 @@ typedef struct mcor_splat
 {
   double at[2];          /* from the corner, in pixels */
   double pixel[2];       /* side of a pixel, in h */
-  double amount[2];      /* V A, or V B A and V B */
-  int first[2], last[2]; /* pixels that it reaches */
+  double amount[2];      /* V A; or, for a mean, V B A and V B */
+  int first[2], last[2]; /* first and last pixel that the particle reaches */
 } mcor_splat;
 
 /* Work space of one thread that spreads particles. */
 typedef struct mcor_brush
 {
   mcor_column_side* sides;
-  double* corners[2]; /* at the row's lower and upper side */
+  double* corners[2]; /* values of E at the row's lower and upper side */
 } mcor_brush;
 
 typedef struct mcor_project_job
@@ -74,29 +74,29 @@ typedef struct mcor_project_job
   const mcor_input* input;
   const mcor_view* view;
   mcor_projection* out;
-  double axes[3][3]; /* out->axes, turned as the particles are */
-  bool is_aligned;   /* the axes are along those of the particles */
-  bool places_only;  /* no values are wanted */
-  double box[6];     /* turned; sides that are not given are infinite */
-  double period[3];  /* 0: open */
+  double axes[3][3]; /* out->axes, in the axes of the turned particles */
+  bool is_aligned;   /* the image's axes are those of the particles */
+  bool places_only;  /* only the image's frame is wanted */
+  double box[6];     /* the box in turned axes; sides that are not given are infinite */
+  double period[3];  /* periods; 0: open */
   double* volumes;   /* computed volumes; else NULL */
   double h_scale;
   mcor_column column;
-  int channels; /* 2: a mean */
+  int channels; /* 2 for a mean, else 1 */
   /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine. */
   double unit[2][2];
   double* sums;           /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
   int64_t* splats_before; /* [blocks + 1] */
-  int64_t first_block;    /* first of the blocks spread together */
+  int64_t first_block;    /* first of the blocks that are spread together */
   mcor_splat* splats;
   int bands, first_row[MCOR_SLICES + 1], *band_of_row;
-  int64_t* listed; /* indices of the splats that reach each band */
+  int64_t* listed; /* for each band: indices of the splats that reach it */
   int64_t first_listed[MCOR_SLICES + 1];
   mcor_brush brushes[MCOR_SLICES];
   mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;
 
-/* The particles of a chunk that count. */
+/* The particles of a chunk that add to the image. */
 typedef struct mcor_project_chunk
 {
   int count;

@@ -41,7 +41,7 @@
  * second on it is fully widened. A thread has 2 in space, a sheet 6; in the plane a line has 2. */
 #define MCOR_CROWD_FROM 2.2
 #define MCOR_CROWD_TO 4.5
-#define MCOR_CROWD_IN_PLANE 0.31 /* multiplies both in the plane */
+#define MCOR_CROWD_IN_PLANE 0.31 /* in the plane both numbers are multiplied by this */
 
 /* ---- The device ---- */
 
@@ -53,11 +53,11 @@ typedef struct mcor_widen_run
   double widest, iso;
   mcor_buffer sizes, factor, limited, wanted, list, outside;
   mcor_point_batch batch;
-  /* Whether a sorted particle is in the box, and no periodic image; NULL: all are. */
+  /* Whether a sorted particle is in the box and no periodic image; NULL: all are. */
   cl_int* originals;
-  void *order, *weight, *inv_h; /* views, as are these, but NULL if only volumes are wanted */
+  void *order, *weight, *inv_h; /* views, as are the members below; NULL if only volumes are wanted */
   void *factors, *is_outside;
-  int64_t left[MCOR_SLICES]; /* particles outside */
+  int64_t left[MCOR_SLICES]; /* number of widened particles outside */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
@@ -143,7 +143,7 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* The factors where there are any, and volumes. */
+/* Factors, if they are wanted, and volumes. */
 static mcor_status mcor_deliver_factors(
   mcor_context* context, const mcor_input* input, mcor_widen_run* run)
 {
@@ -206,7 +206,7 @@ static mcor_status mcor_run_widen(
     out->factor[i] = 1;
     if (out->volume)
     {
-      out->volume[i] = 1; /* stays for particles that are not on the device; never read */
+      out->volume[i] = 1; /* a value for particles that are not on the device; nobody reads it */
     }
   }
   context->kept.grid = context->kept.value = context->kept.nodes = false;

@@ -103,7 +103,7 @@ static mcor_status mcor_reserve_padded(
 typedef struct mcor_key_sort
 {
   const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;
-  int by_value, most; /* particles in a group */
+  int by_value, most; /* how many particles the group has */
 } mcor_key_sort;
 
 #define MCOR_SORT_ARGS(c, s)                                                                       \
@@ -277,7 +277,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   mcor_status status = mcor_stage(&staging);
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15));
   grid->count = staging.count;
-  context->attributes.kept = 0; /* in another order */
+  context->attributes.kept = 0; /* kept attributes are in another order */
   MCOR_THEN(status, staging.count > 0 ? mcor_sort_particles(context, &staging) : MCOR_OK);
   MCOR_TRY(mcor_unmap_all(context, staging.views, staging.view_count, status));
   if (staging.count > 0 && mcor_needs_density(input))

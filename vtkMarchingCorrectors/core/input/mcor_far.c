@@ -18,13 +18,13 @@
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
-/* The distance from a probe's points. */
+/* How far particles may be from a probe's points. */
 #define MCOR_POINTS_SLACK 0.5
-/* Cubes of the grid around a region. */
+/* How many cubes of the grid lie around a region. */
 #define MCOR_REGION_MARGIN 16
 
-/* Sums: particles in use; absent ones from now on; fluid that stays. The first absent one is the
- * `first`, and the range is that of the reach of what stays. */
+/* Sums: particles in use; particles that become absent; fluid that stays. `first` is the first
+ * absent one, and the range is what the staying particles' supports reach. */
 enum
 {
   MCOR_USED,
@@ -38,11 +38,13 @@ typedef struct mcor_far_job
   const mcor_input* input;
   mcor_far* far;
   bool open[3];        /* axes without a period */
-  double reach, slack; /* per smoothing length: support radius, and what a particle needs beyond */
+  double reach, slack; /* per smoothing length: the support radius, and how much farther a particle
+                        * is needed */
   double radius;       /* the least distance at which a particle still counts */
   double centre[3],
     half; /* without a region: the grid's middle, and how far it may go from there */
-  mcor_findings slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
+  mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
+                                           * this rank. */
 } mcor_far_job;
 
 static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
@@ -92,8 +94,8 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles
- * there are made of. */
+/* Around a box or points: keeps all particles that reach them, and those that volumes, pairs and
+ * nearest particles there need. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;
@@ -103,7 +105,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
     const double largest = job->all.most[0];
     const double volumes =
       mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
-    /* Particles that reach there with widened lengths, the mean around them, and sums there. */
+    /* Keeps also particles that reach there with widened lengths, and those that the mean of the
+     * factors and the sums there need. */
     const double around = (volumes + largest) * (1 + 2 * context->run.widest);
     job->radius = largest > 0 ? around + 2 * context->measure.h_min : 0;
     return mcor_mark_far(context, job);
@@ -121,7 +124,7 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   return MCOR_OK;
 }
 
-/* Around the middle of a sample of the fluid. */
+/* Keeps what is around the middle of a sample of the fluid. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, bool* good)
 {
   const mcor_sample_list* samples = &context->samples[0];
@@ -145,7 +148,7 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
   {
     return MCOR_OK;
   }
-  /* The place is that of a rank whose first one has the least number of all. */
+  /* The place comes from the rank whose first far particle has the least number. */
   MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &far->first, 1));
   bool is_mine = own == far->first;
   for (int a = 0; a < 3; ++a)
@@ -191,7 +194,7 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   }
   if (!good)
   {
-    return MCOR_OUT_OF_CAPACITY; /* its sentence is there */
+    return MCOR_OUT_OF_CAPACITY; /* the sentence is set already */
   }
   context->error[0] = '\0';
   context->kept.grid = context->kept.value = context->kept.nodes = false;

@@ -19,7 +19,8 @@ typedef struct mcor_spread_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_spread_job;
 
-/* Whether all particles are where the fluid has been so far; written to be vectorised. */
+/* Whether all particles of a chunk have the coordinate that all fluid before them has. The loop is
+ * written so that compilers vectorise it. */
 static bool mcor_is_all_at(const double* x, int count, double low, double high)
 {
   int off = low != high;
@@ -153,7 +154,7 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
   const mcor_findings* spread, const mcor_plane* plane, bool* rounding)
 {
   const mcor_array* positions = &input->positions;
-  int64_t counts[3] = { 0 }; /* particles; samples, and those with a twin */
+  int64_t counts[3] = { 0 }; /* particles; sampled ones; sampled ones with a twin */
   for (int64_t i = 0; i < input->count; ++i)
   {
     counts[0] += mcor_is_present(input, i);
@@ -225,7 +226,8 @@ static mcor_status mcor_look_for_plane(
   mcor_set_plane(context, rounding ? (mcor_plane){ 0 } : plane);
   const bool some = spread.least[0] <= spread.most[0] || spread.least[3] <= spread.most[3];
   int planes = 0;
-  bool apart = false; /* fluid in one plane and solids in another: meant as two dimensions */
+  bool apart = false; /* the fluid lies in one plane and the solids in another, so two dimensions
+                       * were meant */
   for (int a = 0; a < 3; ++a)
   {
     const bool in_plane = spread.least[a] == spread.most[a];
@@ -240,7 +242,7 @@ mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat)
 {
   *flat = (mcor_flat){ .input = *input, .options = *options };
-  flat->input.positions.components = 3; /* whatever the caller says */
+  flat->input.positions.components = 3; /* a plane is found, whatever dimension the caller asked for */
   MCOR_TRY(mcor_look_for_plane(context, &flat->input, options));
   flat->options.dimension = context->space.axes;
   return MCOR_OK;

@@ -59,7 +59,7 @@ static mcor_status mcor_measure_all(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_globals* globals = data;
-  mcor_free_globals(globals); /* left by a failed attempt */
+  mcor_free_globals(globals); /* a failed attempt may have left data here */
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->kept.uses_solids = context->run.uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
@@ -97,7 +97,7 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   own.globals = NULL;
   const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
-  own.ranks = options->ranks; /* mcor_evaluate_without_scalar leaves it out */
+  own.ranks = options->ranks; /* mcor_evaluate_without_scalar leaves the scalar out */
   mcor_statistics statistics = { 0 };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);

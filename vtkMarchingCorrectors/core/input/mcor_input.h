@@ -90,10 +90,10 @@ static inline const char* mcor_array_name(const mcor_array* array, const char* r
 }
 
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
-/* Reads all three coordinates of at most MCOR_CHUNK particles. */
+/* Reads all coordinates of the next particles, at most MCOR_CHUNK. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
-/* Places of a chunk of particles, their smoothing lengths, and the lengths of their kernels. */
+/* A chunk of particles: places, smoothing lengths, lengths of their kernels. */
 typedef struct mcor_places
 {
   int count;
@@ -106,7 +106,7 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
  * finite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* Results of a loop, or of one of its slices: ranges (empty ones have least > most), sums of whole
+/* What a loop, or a slice of it, finds: ranges (an empty one has least > most), sums of whole
  * numbers, and the least of some indices. */
 #define MCOR_RANGES 13
 typedef struct mcor_findings
@@ -147,10 +147,10 @@ double mcor_largest(
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
-  uint8_t* solid; /* [count], freed by the caller; takes the place of the input's */
-  bool is_cut;    /* the lattice is that of a region: of a box, or of a probe's points */
+  uint8_t* solid; /* [count], freed by the caller; replaces the input's array */
+  bool is_cut;    /* the lattice is one around a region: a box, or a probe's points */
   double region[6];
-  int64_t count, first; /* absent ones, and the first of them */
+  int64_t count, first; /* number of absent particles, and the first of them */
   double place[3];
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
@@ -180,7 +180,7 @@ size_t mcor_count_components(const mcor_input* input);
 mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 
-/* About the median of the scalar of fluid particles, which is measured before. */
+/* Returns a value near the median of the scalar of fluid particles, measured earlier. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
 /* mcor_neighbour_sums.c. Returns w(q), without the norm; of a tensor kernel, for one axis. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
@@ -204,7 +204,7 @@ double mcor_median_of(double* values, int count);
 /* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
-/* Lengths of the kernels of particles that have these smoothing lengths. */
+/* Computes the lengths of the kernels from smoothing lengths. */
 void mcor_widen_lengths(
   const mcor_input* input, int64_t first, int count, const double* h, double* out);
 

@@ -12,11 +12,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- Neighbours ---- how many a fluid particle has, and how near the nearest one is. A few
- * watched particles suffice to notice smoothing lengths that cannot be meant. A watch is shown all
- * positions while these are measured, and at its end fills in the measure's neighbours, spacing,
- * filled and h_median. If the watched particles lie in a plane that is tilted in space, it is also
- * seen whether all others do. */
+/* ---- Neighbours: how many a fluid particle has, and how near the nearest one is. ---- A few
+ * watched particles suffice to notice wrong smoothing lengths. A watch sees all positions while
+ * they are measured, and at its end sets the measure's neighbours, spacing, filled and h_median. If
+ * the watched particles lie in a plane that is tilted in space, it also finds whether all others
+ * do. */
 
 #define MCOR_WATCHED 32 /* bits of a mask */
 #define MCOR_WATCH_CELLS 64
@@ -32,8 +32,8 @@ typedef struct mcor_watch
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
   double normal[3];                          /* 0: they do not lie in a plane */
-  /* Distances along the normal from the first one: the greatest, and the greatest of their
-   * negatives. */
+  /* Distances along the normal from the first watched particle: the greatest, and the greatest with
+   * the sign reversed. */
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
 
@@ -47,7 +47,8 @@ static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 
 /* ---- A plane that is tilted in space ---- */
 
-/* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
+/* In smoothing lengths: the greatest extent along the normal for which the particles lie in a
+ * plane, and the least extent within it. */
 #define MCOR_THIN 0.1
 #define MCOR_BROAD 8
 
@@ -232,12 +233,12 @@ enum
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
 
-  MCOR_FLUID = 0, /* particles: sum k is that of part k of a chunk */
+  MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
   MCOR_FACTOR_SUM = 2
 };
 
-/* Greatest contribution of one factor to their sum. */
+/* The most that one factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
 /* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes
@@ -313,7 +314,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
              is_widened = mcor_is_given(&input->widening);
   mcor_findings r = mcor_no_findings();
-  mcor_places part[2]; /* fluid, solids */
+  mcor_places part[2]; /* the chunk's fluid, then its solids */
   double value[MCOR_CHUNK];
   for (int count; (count = mcor_read_places(context, input, first, last, part)) > 0; first += count)
   {
@@ -432,7 +433,7 @@ mcor_status mcor_measure_input(
   return mcor_measure_lattice(context, options);
 }
 
-/* A smoothing length that differs from the median by this factor is named in the error. */
+/* An error sentence names a smoothing length that differs from the median by this factor. */
 #define MCOR_OUTLIER 100
 
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input)

@@ -1,11 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values in the middle. The median of the scalar is what values are relative to on the device; a
- * default iso value serves those who name none; and there is the median of a few numbers.
- * Medians of particles are found by counting values in bins, then counting again within the bin
- * that holds the median. The result depends neither on the order of the particles nor on how
- * ranks share them. */
+/* Values in the middle: the median of the scalar, relative to which the device has its values; a
+ * default iso value; and the median of a few numbers. Medians of particles are found by counting
+ * values in bins, then counting again within the bin that holds the median. The result depends
+ * neither on the order of the particles nor on how ranks share them. */
 
 #include "mcor_input.h"
 
@@ -18,10 +17,10 @@
 
 #define MCOR_THREE_DECADES 1000.0
 
-/* A share of the span of most values. */
+/* A value nearer to an end of the range than this share of it counts as at the end. */
 #define MCOR_NEAR_END 0.01
 
-/* A range of more decades begins with values that rounding has left of 0. */
+/* If a range spans more decades than this, its lowest values are what rounding has left of 0. */
 #define MCOR_MANY_DECADES 1e6
 
 typedef struct mcor_bin_job
@@ -70,7 +69,7 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
 static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks, mcor_bin_job* job)
 {
   int slices;
-  mcor_fill_bins(job, 0, 0, 0); /* without particles no slice does */
+  mcor_fill_bins(job, 0, 0, 0); /* no slice fills the bins if there are no particles */
   MCOR_TRY(
     mcor_parallel_run(context, job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job, &slices));
   for (int n = MCOR_BINS; n < slices * MCOR_BINS; ++n)
@@ -139,7 +138,7 @@ static bool mcor_choose_iso(
 {
   double found[2] = { INFINITY, -INFINITY }, value[5];
   int64_t count = 0;
-  job->low = -INFINITY; /* the last bin holds all */
+  job->low = -INFINITY; /* the last bin holds all of the values */
   job->high = INFINITY;
   if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
   {
@@ -151,7 +150,7 @@ static bool mcor_choose_iso(
     found[0] = fmin(found[0], job->least[0][b]);
     found[1] = fmax(found[1], -job->minus[0][b]);
   }
-  /* Narrows bins until one holds a single value: of all but 2 % at each end, 5 %, and the median. */
+  /* Narrows bins until each holds one value: the values 2 % and 5 % from each end, and the median. */
   const int64_t numbers[5] = { count / 50, count - 1 - count / 50, count / 20,
     count - 1 - count / 20, (count - 1) / 2 };
   for (int i = 0; i < 5; ++i)

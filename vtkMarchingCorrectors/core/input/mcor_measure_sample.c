@@ -52,7 +52,7 @@ typedef struct mcor_sampling
 {
   const mcor_context* context;
   const mcor_input* input;
-  mcor_sample_list found[MCOR_SLICES][2]; /* as in the context */
+  mcor_sample_list found[MCOR_SLICES][2]; /* as in the context's samples */
 } mcor_sampling;
 
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
@@ -160,11 +160,12 @@ typedef struct mcor_spacing
 {
   const mcor_input* input;
   double scale;             /* a power of 2 that brings all coordinates below 1 */
-  mcor_sample_list samples; /* of fluid and solids */
-  mcor_neighbours nearest[MCOR_SAMPLES], merged[MCOR_SAMPLES]; /* of this rank, of all */
+  mcor_sample_list samples; /* numbers of fluid and solid particles */
+  /* samples of this rank, samples of all */
+  mcor_neighbours nearest[MCOR_SAMPLES], merged[MCOR_SAMPLES];
 } mcor_spacing;
 
-/* Finds, for each sample of a slice, the nearest of this rank's particles. */
+/* Finds the nearest of this rank's particles for each sample of a slice. */
 static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spacing* job = data;
@@ -173,7 +174,7 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   for (int64_t begin = 0; begin < job->input->count; begin += MCOR_CHUNK)
   {
     const int read = mcor_chunk_of(job->input->count - begin);
-    int count = 0; /* of present, finite particles, which move to the front */
+    int count = 0; /* only present, finite particles count; they move to the front */
     mcor_read_positions(job->input, begin, read, x);
     for (int i = 0; i < read; ++i)
     {
@@ -270,7 +271,7 @@ static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, d
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate)
 {
-  mcor_spacing* job = calloc(1, sizeof *job); /* too large for the stack of some threads */
+  mcor_spacing* job = calloc(1, sizeof *job); /* too large for the stacks of some threads */
   MCOR_TRY(mcor_allocated(context, job));
   job->input = input;
   job->samples = context->samples[0];

@@ -36,7 +36,7 @@ typedef struct mcor_wall_measure
   double reach;     /* the largest support radius */
   double mass_max;
   mcor_wall_sample sample[MCOR_SAMPLES];
-  int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
+  int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* weight of the fluid, of the solids */
 } mcor_wall_measure;
 
 static void mcor_wall_add(
@@ -76,8 +76,8 @@ static void mcor_wall_add(
                                           : mcor_w_of(kernel, sqrt(mcor_dot(d, d)) * inv_h);
     if (w != 0 && weight == 0)
     {
-      /* Shares do not depend on the unit of volumes, so masses do where volumes are yet to be
-       * computed; nor on the norm, nor on that of two dimensions. */
+      /* Shares depend neither on the unit of volumes, so masses serve where volumes are not known
+       * yet, nor on the kernel's norm. */
       const int axes = wall->context->space.axes;
       const bool is_mass = mcor_needs_density(wall->input);
       mcor_read_size(wall->input, i, 1, &weight);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The names under which particle files hold what a run needs, and the period that they tell. */
+/* The names that solvers give to the arrays that a run needs, and to the period. */
 
 #include "mcor.h"
 
@@ -67,7 +67,7 @@ int mcor_find_fluid_value(const char* name, double low, double high, double* flu
     *fluid = mcor_is_same_name(name, "isfluid");
     return 1;
   }
-  /* DualSPHysics: fixed, moving and floating bodies, fluid. */
+  /* DualSPHysics' types: fixed, moving and floating bodies, fluid. */
   if (low >= 0 && low < 3 && high == 3 && mcor_is_same_name(name, "type"))
   {
     *fluid = 3;
@@ -110,7 +110,7 @@ static const mcor_layout mcor_layouts[] = { { "DualSPHysics", { "rhop", "idp" } 
   { "SPH-EXA", { "h", "mass", "vx", "vz" } }, { "SPH-EXA", { "h", "m", "vx", "vz" } },
   { "Phantom", { "h", "vx", "vy", "vz" } } };
 
-/* Whether one of the names, each on a line of its own, is the usual one. */
+/* Whether one of the names, which stand one on a line, is this usual name. */
 static bool mcor_lists_name(const char* names, const char* usual)
 {
   for (const char* name = names; *name;)
@@ -210,7 +210,7 @@ int mcor_find_period(const mcor_field_data* arrays, int count, double period[6],
   }
   const double* type = mcor_find_values(arrays, count, "boundarytype", 3, &type_at);
   bounds = mcor_find_values(arrays, count, "box", 6, which);
-  for (int side = 0; side < 6; ++side) /* 0: open, 1: periodic, 2: fixed */
+  for (int side = 0; side < 6; ++side) /* SPH-EXA's boundary types; 0: open, 1: periodic, 2: fixed */
   {
     period[side] = bounds && type && type[side / 2] == 1 ? bounds[side] : 0;
   }

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums over each particle's neighbours for particles that lack what the method begins with:
- * smoothing lengths by neighbours, and densities from masses. On the host, in double precision,
- * with neighbours from a tree of boxes over particles along a Morton curve, as smoothing lengths
- * are not known, or vary by any factor. The order of every sum is that along the curve, so that it
- * depends neither on the order of the input nor on threads. */
+/* Sums over each particle's neighbours, for particles that lack what a surface needs: smoothing
+ * lengths by neighbours, and densities from masses. They run on the host, in double precision. A
+ * tree of boxes over particles along a Morton curve finds neighbours, because smoothing lengths are
+ * unknown, or vary by any factor. Each sum goes along the curve, so it depends neither on the order
+ * of the input nor on threads. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
@@ -19,16 +19,17 @@
 
 #define MCOR_LEAF 8 /* particles */
 #define MCOR_LENGTH_STEPS 60
-#define MCOR_LENGTH_ERROR 1e-7 /* of a length; of the extent, the least length */
-/* The extent reaches at most so many widths of the middle half of the particles beyond that half:
- * one particle that has left all others far behind would leave no digits for them. */
+#define MCOR_LENGTH_ERROR 1e-7 /* accuracy of a length; least length, as a share of the extent */
+/* The extent goes at most this many widths of the particles' middle half beyond that half.
+ * Otherwise one particle far away would leave no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
-#define MCOR_WIDTH_SAMPLE 4096 /* particles, about */
+#define MCOR_WIDTH_SAMPLE 4096 /* about how many particles a leaf has */
 
 typedef struct mcor_neighbour
 {
   double x[3], mass;
-  uint64_t place[3]; /* along the curve: 62 bits of the extent, so that none is too far away */
+  uint64_t place[3]; /* place along the curve: 62 bits of the extent; a particle outside counts as
+                      * at its end */
   int64_t source;
 } mcor_neighbour;
 
@@ -36,13 +37,14 @@ typedef struct mcor_neighbour_job
 {
   const mcor_input* input;
   const mcor_options* options;
-  double eta; /* to the power of the dimension; 0: densities are summed */
+  double eta; /* eta to the power of the dimension; 0: densities are summed */
   int axes;
   double norm, support;
   double period[3];       /* 0: open */
-  double extent;          /* the greatest, of a period, too, without what is far away */
-  int64_t count, wanted;  /* particles that are present; the first ones of the input, asked for */
-  int64_t leaves;         /* a power of 2 */
+  double extent;          /* the greatest extent, of a period, too; what is far away does not count */
+  int64_t count, wanted;  /* how many particles are present; how many of the input's first ones get
+                           * a result */
+  int64_t leaves;         /* a power of 2 that scales coordinates */
   mcor_neighbour* sorted; /* [count] */
   double (*box)[6]; /* [2 * leaves]: low and high of x, y, z; node n has children 2 n, 2 n + 1 */
   double* out;      /* [wanted], in input order */
@@ -82,9 +84,9 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
   return most == 0 ? 0 : p[axis] < q[axis] ? -1 : 1;
 }
 
-/* Particles at one place, as all are that lie beyond a corner of the extent, are compared along the
- * curve of their coordinates' bits, which grow as the numbers do. Those left have any order that
- * does not depend on that of the input. */
+/* Particles at one place (all that lie beyond a corner of the extent are) are compared along the
+ * curve of their coordinates' bits, which grow as the numbers do. The rest have any order that does
+ * not depend on the input's. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -184,12 +186,12 @@ static void mcor_make_boxes(mcor_neighbour_job* job)
 
 typedef struct mcor_near
 {
-  double square, mass; /* of the distance */
+  double square, mass; /* square of the distance */
 } mcor_near;
 
 typedef struct mcor_neighbour_list
 {
-  double h; /* within the support of this length, at least; 0: not listed yet */
+  double h; /* the list holds at least the support of this length; 0: it is empty */
   MCOR_LIST(mcor_near) near;
   bool failed;
 } mcor_neighbour_list;
@@ -254,7 +256,8 @@ static void mcor_list_neighbours(
   }
 }
 
-/* sum_j W h^d, with masses where densities are summed, from a list that is not much longer. */
+/* Returns sum_j W h^d, with masses where densities are summed, from a list that is little longer
+ * than the support. */
 static double mcor_sum_at(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
@@ -272,12 +275,13 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* Solves for the smoothing length at a place by false position, halved where that does not help. */
+/* Solves for the smoothing length at a place by false position, and by bisection where that does
+ * not help. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
-  /* Begins with about the distance of near particles: of those some places before and behind along
-   * the curve, the nearer one, as the curve jumps. */
+  /* The first guess is about the distance of near particles: some places before and behind along
+   * the curve, the nearer of the two, because the curve jumps. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {
@@ -302,7 +306,8 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
     low *= 0.8;
     below = mcor_sum_at(job, x, low, list) - job->eta;
   }
-  if (above <= 0 || below >= 0) /* all that there is does not suffice; so many are at one place */
+  if (above <= 0 || below >= 0) /* the longest length does not suffice, or too many particles are at
+                                 * one place */
   {
     return above <= 0 ? high : low;
   }
@@ -349,7 +354,7 @@ static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
   free(list.near.of);
 }
 
-/* Makes the particles that are present, positions within the period, and their tree. */
+/* Makes the tree of the present particles, with positions within the period. */
 static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_job* job)
 {
   const mcor_input* input = job->input;
@@ -430,7 +435,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   return MCOR_OK;
 }
 
-/* In a context that opens no device, but has the sentence. job.eta: 0 for densities. */
+/* Runs in a context without a device, which keeps the sentence. job.eta is 0 for densities. */
 static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor_message* why)
 {
   mcor_context* context = calloc(1, sizeof *context);

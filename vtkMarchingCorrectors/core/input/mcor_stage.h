@@ -10,8 +10,8 @@
 typedef struct mcor_stage_slice
 {
   int64_t used, to; /* images; where they begin */
-  int64_t heavy;    /* the first particle whose weight is too large; -1: none */
-  bool changed;     /* not as measured: another thread writes to the arrays */
+  int64_t heavy;    /* the first particle whose weight is too large, or -1 */
+  bool changed;     /* values differ from the measured ones: another thread writes to the arrays */
   double largest_weight;
   double farthest; /* the largest reach, in cubes, of the particles that reach the box */
 } mcor_stage_slice;
@@ -27,7 +27,7 @@ typedef struct mcor_staging
   void* x[3];                           /* fix */
   void *inv_h, *size;                   /* real; size: volume, mass or 1, negative for solids */
   void* level;                          /* uint8_t */
-  mcor_mapping views[MCOR_STAGE_VIEWS]; /* of these six, once there are any */
+  mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of these six, once there are any */
   int view_count;
   double size_scale;     /* see mcor_size_scale */
   double h_max;          /* the largest support that was measured, with rounding */

@@ -45,7 +45,7 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   {
     return 0.0;
   }
-  /* Lengths are in units of the smoothing length, or of the support radius as a multiple of it. */
+  /* Lengths are smoothing lengths, or support radii in multiples of them. */
   const bool is_plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
   /* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where cubes are larger. */
   const bool has_box = mcor_has_box(options) != 0;
@@ -60,7 +60,8 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
     for (int a = 0; a < 3 && counts && has_box; ++a)
     {
       const double x = mcor_array_at(&positions, i, a), *side = options->box + 2 * a;
-      counts = x >= side[0] && (x < side[1] || x == side[0]); /* a flat box holds flat particles */
+      /* a flat box holds particles in its plane */
+      counts = x >= side[0] && (x < side[1] || x == side[0]);
     }
     double h = mcor_length_at(input, i);
     for (int level = 0; level < levels && h >= 2.0 * least; ++level)

@@ -194,7 +194,8 @@ mcor_status mcor_void_cubes(mcor_context* context)
 mcor_status mcor_void_bricks(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  return !context->box.is_part || mcor_is_adaptive(&context->lattice) /* leaves are in it */
+  /* leaves were chosen within the box */
+  return !context->box.is_part || mcor_is_adaptive(&context->lattice)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
@@ -273,10 +274,10 @@ int mcor_list_images(
   {
     const double low = box->low[a] - reach - at[a], high = box->high[a] + reach - at[a];
     const double period = box->period[a];
-    /* Not finite where another thread writes to the arrays meanwhile. */
+    /* A value is not finite here only if another thread writes to the arrays. */
     const bool wraps = period > 0 && isfinite(low) && isfinite(high);
     const bool is_near = wraps || (period <= 0 && low <= 0 && high >= 0);
-    images->first[a] = wraps ? (int)ceil(low / period) : 0; /* else 0 is the only one */
+    images->first[a] = wraps ? (int)ceil(low / period) : 0; /* otherwise 0 is the only image */
     images->last[a] = wraps ? (int)floor(high / period) : 0;
     const int along = is_near ? images->last[a] - images->first[a] + 1 : 0;
     count *= along > 0 ? along : 0;
@@ -309,8 +310,8 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
   return period > 0 ? rounded - floor((rounded - first) / period) * period : fixed;
 }
 
-/* Returns where the field is evaluated, in cubes from the lattice's origin; numbers that single
- * precision has, where it is evaluated anywhere. */
+/* Returns where the field is evaluated, in cubes from the lattice's origin, in numbers that single
+ * precision can hold. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;

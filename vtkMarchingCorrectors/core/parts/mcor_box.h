@@ -17,13 +17,13 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 /* Finds the cells that the call owns; the lattice is known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* For staging: where particles, or their images at whole periods, matter; in cubes from the
+/* Where particles, or their images whole periods away, are needed; for staging. In cubes from the
  * lattice's origin. */
 typedef struct mcor_reach_box
 {
   double low[3], high[3];     /* where the field is evaluated */
   double support;             /* support radius / smoothing length */
-  double radius;              /* the least support radius to count with; set later */
+  double radius;              /* the least support radius to assume; set later */
   double unit;                /* 2^-fix_bits */
   int top, ring;              /* top: highest level of adaptive cubes */
   double period[3], first[3]; /* period: 0: open; the others: where one begins */
@@ -38,8 +38,8 @@ typedef struct mcor_images
   int first[3], last[3];
 } mcor_images;
 
-/* Returns how near to the box a particle must be to matter, by its kernel's length and its level of
- * adaptive cubes. */
+/* Returns how near to the box a particle must be to be needed, from its kernel's length and its
+ * level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
 /* Finds the cells of the particles at which sums are wanted; returns false where all are. Of a
  * particle's images only that in the period counts, or that on its upper side where the lower one
@@ -61,20 +61,19 @@ int mcor_list_images(
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
 
-/* Kernel arguments of MCOR_BOX_PARAMS: the owned cells, then those with their particles at hand,
- * or so many more on the lower and upper sides. */
+/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and so many more on
+ * their lower and upper sides. */
 #define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* The cells around the owned ones that are examined, too, are box.ring; and those that caps are
- * made for. */
+/* box.ring: how many cells around the owned ones are examined, too; and how many caps are made for. */
 #define MCOR_BOX_RING 1
 int mcor_ring_of(const mcor_options* options); /* with a box */
 /* How far from a box a particle matters beyond its support, in cubes of its level. */
 double mcor_box_slack(const mcor_options* options);
-/* The ring with adaptive cubes, in cells of each level. Two of a wide one for each, as a way there
- * may lead through larger ones. */
+/* The ring with adaptive cubes, in cells of each level. A wide ring counts double, because the way
+ * there may lead through larger cells. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;

@@ -11,10 +11,10 @@
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line
 {
-  double iso, value; /* iso: relative to A0, as on the device; value: the caller's */
+  double iso, value; /* iso: relative to A0, as the device has it; value: the caller's iso value */
   int iso_number;
   int vertex_count, cut_count;
-  mcor_table edges;        /* vertices by lattice edge */
+  mcor_table edges;        /* the line's vertices by lattice edge */
   mcor_table joined;       /* lowest nodes of ambiguous squares that join their nodes above */
   double *offset, *margin; /* [vertex_count]: place along the edge; trim margin */
   cl_ulong* cuts;          /* [cut_count], see mcor_trim.cl; ascending */
@@ -33,10 +33,10 @@ typedef struct mcor_filling
 {
   mcor_fill_line* lines; /* [line_count], ascending by iso value, without repetitions */
   int line_count;
-  mcor_cap_nodes nodes; /* of the plane, as those of a cap's side, seen from above */
+  mcor_cap_nodes nodes; /* the nodes of the plane, kept like those of a cap's side seen from above */
   double* value;        /* [nodes.node_count] */
   int32_t* band;        /* [nodes.node_count]: number of levels that the node reaches */
-  int32_t* number;      /* points of the surface, of nodes, then of cuts; -1: none */
+  int32_t* number;      /* points of the surface at nodes, then at cuts; -1: none */
   mcor_cap_job cap;     /* vertices: points where trimming ends the region */
   MCOR_LIST(mcor_fill_triangle) triangles;
 } mcor_filling;

@@ -15,13 +15,13 @@
  * to the next one. */
 typedef struct mcor_fill_corner
 {
-  mcor_cap_corner corner; /* the first member; vertex: as a corner of mcor_fill_triangle */
-  int level;              /* the line's; -1: a node */
-  bool begins_line;       /* in the polygon under way, a line leads to the next corner */
+  mcor_cap_corner corner; /* must be the first member; vertex: a corner of mcor_fill_triangle */
+  int level;              /* level of the line; -1: the corner is a node */
+  bool begins_line;       /* in the present polygon, a line leads to the next corner */
   int32_t vertex;
-  bool falls; /* the border goes from above the line to below */
-  int band;   /* the part's */
-  bool done;  /* a polygon has it */
+  bool falls; /* here the border goes from above the line to below it */
+  int band;   /* band of this part of the border */
+  bool done;  /* a polygon has this part */
   /* The part is number `part` on the edge of this lower node. */
   cl_int node[3];
   int axis, part;
@@ -36,7 +36,7 @@ typedef struct mcor_fill_job
   cl_int node[2];           /* the lowest node */
   mcor_fill_corner* border; /* [4 + 4 * line_count] */
   int count;
-  int band; /* of the polygon under way */
+  int band; /* corners of the present polygon */
 } mcor_fill_job;
 
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
@@ -74,7 +74,7 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       .axis = s & 1,
       .part = s < 2 ? i : parts - i
     };
-    if (i > 0) /* a line's vertex */
+    if (i > 0) /* this corner is a line's vertex */
     {
       corner->level = last < first ? first - i : first + i - 1;
       const mcor_fill_line* line = &fill->lines[corner->level];

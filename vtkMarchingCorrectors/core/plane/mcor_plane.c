@@ -20,9 +20,9 @@ typedef struct mcor_flatten_job
 {
   const mcor_plane* plane;
   mcor_array positions;
-  float* floats;   /* where they go if they are in single precision, else NULL */
-  double* doubles; /* where they go otherwise; points always do */
-  bool are_points; /* which may lie off the plane */
+  float* floats;   /* where single-precision values go, else NULL */
+  double* doubles; /* where other values go; points always go here */
+  bool are_points; /* points may lie off the plane */
 } mcor_flatten_job;
 
 static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)
@@ -90,18 +90,18 @@ mcor_status mcor_flatten(
   mcor_options* o = &flat->options;
   MCOR_FAIL_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(CAPPING_WITH_FILLED));
-  if (options->filled) /* pairs may miss lines that a region ends at */
+  if (options->filled) /* pairs might miss lines that bound a filled region */
   {
     o->seeds = MCOR_COMPLETE;
     o->level_limit = 0;
     o->outputs |= MCOR_OUT_ISO_VALUE;
   }
   mcor_flatten_sides(plane, options->box, o->box);
-  for (int i = 0; i < 6; ++i) /* a period across the plane means nothing */
+  for (int i = 0; i < 6; ++i) /* a period across the plane has no meaning */
   {
     o->periodic[i] = i < 4 ? options->periodic[2 * mcor_plane_axis(plane, i / 2) + i % 2] : 0;
   }
-  o->outputs &= ~(unsigned)MCOR_OUT_GAUSS_CURVATURE; /* lines have none */
+  o->outputs &= ~(unsigned)MCOR_OUT_GAUSS_CURVATURE; /* lines have none of these */
   if (options->globals)
   {
     flat->globals = *options->globals;

@@ -15,7 +15,7 @@
 typedef struct mcor_line_ends
 {
   int32_t next, last;
-  bool done; /* the line that begins here is in a polyline */
+  bool done; /* the line that begins here is already in a polyline */
 } mcor_line_ends;
 
 /* Lines by their points. */
@@ -57,7 +57,8 @@ static mcor_status mcor_read_joining(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2] && mcor_is_line(t)) /* no second half of a quad that stands for a line */
+    if (t[0] != t[2] && mcor_is_line(t)) /* this is not the second half of a quad that stands for a
+                                          * line */
     {
       mcor_join_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
     }
@@ -204,7 +205,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
   for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
   {
-    float* n = surface->normals + 3 * i; /* in filled regions that of the plane */
+    float* n = surface->normals + 3 * i; /* in filled regions the normal is the plane's */
     n[0] = filled ? 0 : n[0];
     n[1] = filled ? 0 : n[1];
     n[2] = filled;

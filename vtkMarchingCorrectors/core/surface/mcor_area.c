@@ -24,7 +24,7 @@ static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
   return x ^ (x >> 31);
 }
 
-/* Adds a triangle's area, and its volume about the origin. */
+/* Adds a triangle's area, and the volume between it and the origin. */
 static inline void mcor_measure_triangle(
   const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
 {
@@ -53,7 +53,7 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Sums of each slice of the triangles, as exact as the sums over parts. */
+/* Sums of a slice of the triangles, exact like the sums over parts. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;
@@ -65,7 +65,7 @@ typedef struct mcor_measure_job
 static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measure_job* job = data;
-  double areas = 0, volumes = 0; /* the largest */
+  double areas = 0, volumes = 0; /* the largest term */
   for (int64_t t = first; t < last; ++t)
   {
     double area, volume;

@@ -97,7 +97,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* The means of the vertices that go to the output. */
+/* The means at the vertices that go to the output. */
 typedef struct mcor_means
 {
   const mcor_context* context;

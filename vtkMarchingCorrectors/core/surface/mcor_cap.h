@@ -23,7 +23,7 @@ static inline uint64_t mcor_cap_key(const cl_int node[3])
 
 /* ---- mcor_cap_points.c: the field at points ---- */
 
-/* Points at which the field is wanted, in batches of so many, and what it is there. */
+/* A batch of points at which the field is wanted, and the field there. */
 #define MCOR_CAP_BATCH (1 << 18)
 typedef struct mcor_cap_points mcor_cap_points;
 typedef void (*mcor_take_cap_point)(
@@ -56,10 +56,10 @@ bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* point
 typedef struct mcor_cap_vertex
 {
   cl_int node[3];
-  int32_t band, number; /* of a filled region; number: the one that triangles use */
+  int32_t band, number; /* in a filled region: its band, and the number that triangles use */
   double offset[3];
-  uint64_t key[2]; /* of a cap: the first square that met it, and its turn there */
-  uint8_t flag;    /* the surface's: MCOR_CAP_FLAG; of cuts 2, or 1 where they are exact */
+  uint64_t key[2]; /* in a cap: the first square that met it, and its turn there */
+  uint8_t flag;    /* the surface's flag: MCOR_CAP_FLAG; for cuts 2, or 1 where they are exact */
 } mcor_cap_vertex;
 
 /* Appends vertices to the mesh, and evaluates the field there. */
@@ -111,9 +111,10 @@ static inline int mcor_corner_v(int k)
  * of a brick. */
 typedef struct mcor_cap_brick
 {
-  uint64_t key; /* the first member: by the side's second axis, then the first; of its first cell */
+  uint64_t key; /* must be the first member; place along the side's second axis, then the first, of
+                 * its first cell */
   cl_int at[3]; /* in bricks */
-  int32_t up[8]; /* numbers of itself and the bricks up from it, bits x, y, z; 0: none */
+  int32_t up[8]; /* numbers of this brick and of the bricks up from it, bits x, y, z; 0: none */
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
@@ -127,12 +128,13 @@ typedef struct mcor_cap_brick
 typedef struct mcor_cap_nodes
 {
   int axis, upper;  /* upper: of the two sides, the higher one */
-  int plane, inner; /* numbers along the axis: of the side's nodes, and of those one further in */
+  int plane, inner; /* coordinates along the axis: of the side's nodes, and of the nodes one further
+                     * in */
   int across[2];    /* the other two axes, so that across[0], across[1], axis are right-handed */
   int range[3][2];  /* first and last node along each axis */
   mcor_table index; /* numbers of bricks by place */
-  MCOR_LIST(mcor_cap_brick) bricks; /* those on the side come first */
-  int64_t side_count, node_count;   /* bricks and nodes on the side */
+  MCOR_LIST(mcor_cap_brick) bricks; /* bricks on the side come first */
+  int64_t side_count, node_count;   /* numbers of bricks and nodes on the side */
   double* margin;                   /* [node_count], trim margins of nodes above */
 } mcor_cap_nodes;
 

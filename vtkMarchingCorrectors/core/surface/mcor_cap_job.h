@@ -40,14 +40,14 @@ typedef struct mcor_cap_job
   mcor_table edges[3];
   mcor_table nodes, cuts;
   MCOR_LIST(mcor_cap_vertex) vertices;
-  MCOR_LIST(mcor_cap_line) lines; /* of cuts that are placed exactly, in a plane */
+  MCOR_LIST(mcor_cap_line) lines; /* cuts in a plane that must be placed exactly */
   MCOR_LIST(mcor_cap_triangle) triangles;
   /* Squares of triangles, numbered behind all cells, see mcor_triangle_cell.c. */
   MCOR_LIST(cl_ulong) cells;
   int64_t owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
-  cl_ulong number;                      /* its number */
-  uint64_t lookups;                     /* how often it has looked up a vertex */
+  cl_ulong number;                      /* the square's number */
+  uint64_t lookups;                     /* how many vertices it has looked up */
   /* Views of the surface's vertices, and of the edges that its cuts are on, ascending. */
   void *node, *offset, *quantity, *cut_edges;
   double threshold;

@@ -55,7 +55,8 @@ static mcor_status mcor_visit_cap_square(
   const int cell = mcor_side_bit(nodes, nodes->plane - nodes->upper, lowest);
   const bool used = of[nodes->upper ? own->inner : lowest / MCOR_SIDE_NODES].used >> cell & 1;
   int total = 0;
-  bool valid = true; /* the cell beside the square is, where the surface does not meet it */
+  bool valid = true; /* this says whether the cell beside the square is valid where the surface does
+                      * not meet the square */
   for (int k = 0; k < 4; ++k)
   {
     const int64_t at = mcor_corner_index(nodes, lowest, k);
@@ -116,7 +117,7 @@ void mcor_free_cap_job(mcor_cap_job* job)
 
 mcor_status mcor_cap(mcor_context* context)
 {
-  mcor_end_caps(context); /* those of the last iso value */
+  mcor_end_caps(context); /* vertices and triangles of the last iso value */
   mcor_cap_job job = { .context = context,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
   const mcor_mesh* mesh = &context->mesh;

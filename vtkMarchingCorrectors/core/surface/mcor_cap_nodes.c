@@ -67,9 +67,8 @@ static void mcor_set_cap_extent(
 
 /* ---- Bricks ---- */
 
-/* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4
- * to 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
- * mistake. */
+/* Fails if particles reach more clusters of a side than this. With 16^2 nodes each, these are 4 to
+ * 64 million nodes. If few particles reach more, a smoothing length or the cube size is wrong. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)
 {

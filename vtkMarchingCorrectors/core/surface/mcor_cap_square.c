@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/* A cut keeps this far off the ends of its line, as those of the surface do. */
+/* A cut keeps this far from the ends of its line, as the surface's cuts do. */
 #define MCOR_CAP_CUT_MARGIN 1e-5
 #define MCOR_CAP_ROOT 2e-5 /* a margin below which a cut counts as exact */
 
@@ -300,7 +300,7 @@ static void mcor_move_cut(
   const double share = ++line->moves % 4 == 0 ? 0.5 : mcor_bracket_share(bracket);
   const double s = bracket->at[0] + (bracket->at[1] - bracket->at[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  line->done = line->at == before; /* at an end of its line, or as exact as numbers are */
+  line->done = line->at == before; /* the cut is at an end of its line, or as exact as numbers allow */
   double at[3];
   mcor_point_between(line->from, line->to, line->at, at);
   mcor_put_cap_vertex(vertex, at);

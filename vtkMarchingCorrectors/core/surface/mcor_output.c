@@ -35,7 +35,7 @@ typedef struct mcor_download
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest, *curvature, *cuts; /* where the caller asked for them */
   uint8_t* owned;                                /* see mcor_find_counted */
-  mcor_mapping mappings[MCOR_DOWNLOADS];         /* of these views */
+  mcor_mapping mappings[MCOR_DOWNLOADS];         /* means of attributes, as views */
   int mapped;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
@@ -160,7 +160,7 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   if (flag != 2)
   {
     const double residual = fabs(mcor_get_real(context, d->value, v));
-    double gradient = 0; /* each axis is rounded, by which the value may move */
+    double gradient = 0; /* each axis is rounded, and the value may change with it */
     for (int a = 0; a < 3; ++a)
     {
       gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
@@ -390,7 +390,7 @@ static mcor_status mcor_append_mesh(
   if (count > 0)
   {
     const bool uniform = context->measure.support_min == context->measure.support_max;
-    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
+    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming has left the eigenvalue at other vertices */
     {
       MCOR_TRY(mcor_reserve(context, &context->trim.eigenvalue, vertices * real));
       MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, &context->trim.eigenvalue));
@@ -445,8 +445,8 @@ mcor_status mcor_append_output(
     .sum_rounding = mcor_sum_rounding(context),
     .surface = surface };
   mcor_mesh* m = &context->mesh;
-  /* Frees what only the mesh needed, so that the output finds room; then what the output did, for
-   * what the caller makes of the surface. */
+  /* Frees what only the mesh needed, so that the output finds room; later frees what the output
+   * needed, so that the caller finds room. */
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_append_mesh(context, input, all, &download);

@@ -65,7 +65,7 @@ mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
   for (size_t i = 0; i < 3 * triangles && status == MCOR_OK; ++i)
   {
     const cl_ulong cell = ((const cl_ulong*)cells)[i / 3];
-    uint8_t* of = *owners + ((const cl_int*)corners)[i]; /* of the first triangle with the vertex */
+    uint8_t* of = *owners + ((const cl_int*)corners)[i]; /* the first triangle with a vertex sets its owner */
     *of = *of                    ? *of
       : !(cell & MCOR_RING_CELL) ? MCOR_OWN
       : cell & MCOR_OTHERS_CELL  ? MCOR_ANOTHERS

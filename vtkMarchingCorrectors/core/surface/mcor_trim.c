@@ -67,7 +67,7 @@ double mcor_vertex_threshold(const mcor_context* context)
   return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
 }
 
-/* The quantity by which trimming decides; its threshold. */
+/* The quantity that trimming compares, and its threshold. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)

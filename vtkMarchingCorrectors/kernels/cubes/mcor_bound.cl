@@ -85,7 +85,7 @@ typedef struct
   realv low, high;   /* bounds of F + level */
   realv size;        /* sum of the absolute terms */
   realv weight;      /* sum of the trimming weights times the greatest w */
-  realv weight_size; /* sum of its absolute terms, if terms may be negative */
+  realv weight_size; /* sum of the absolute values of these terms, if terms may be negative */
 } mcor_bound;
 
 mcor_bound mcor_bound_start(void)

@@ -24,7 +24,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* A brick whose surroundings are filled less than this is taken to be near the surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
-/* A share of each particle's support. */
+/* The share of each particle's support within which the proof looks at particles. */
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether that proof is tried: by regions if a work-item evaluates whole bricks, else by bricks. */
@@ -61,10 +61,10 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether the close particles do so at the nodes of the leaf's level on its far sides. The finer
- * nodes there are also nodes of finer leaves: either own ones, which a proof of those leaves
- * covers, or nodes on their far sides, where a leaf beside a larger one is chosen. The march
- * goes on from there. tile: particles close to any of the leaf. */
+/* Whether the close particles lift all points also at the nodes of the leaf's level on its far
+ * sides. The finer nodes there are also nodes of finer leaves: either own ones, which a proof of
+ * those leaves covers, or nodes on their far sides, where a leaf beside a larger one is chosen, and
+ * the march goes on from there. tile: particles close to any of the leaf's nodes. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {

@@ -12,7 +12,7 @@ typedef struct
   __global const int* slots; /* made by mcor_leaf_tables */
   __global const ulong *above, *valid;
   uint hanging; /* where the leaf has finer nodes: a bit for each part of it, as of directions */
-  int plane;    /* nodes above the plane have the masks of nodes in it */
+  int plane;    /* in a plane, nodes above it have the masks of the nodes in it */
   ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
@@ -200,7 +200,7 @@ void mcor_leaf_mark(
   }
 }
 
-/* Leaves, and the nodes of all bricks. plane: cells are squares. */
+/* The leaves, and the nodes of all bricks; plane: cells are squares. */
 #define MCOR_LEAF_PARAMS                                                                           \
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid

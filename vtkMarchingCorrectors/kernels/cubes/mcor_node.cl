@@ -87,7 +87,7 @@ void mcor_sums_store(
   *weight = defined ? t : (real)-1;
 }
 
-/* Writes those of a work-item's nodes, from its first on. */
+/* Writes field and trimming weight of a work-item's nodes, beginning with its first. */
 void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global real* weight)
 {
   for (int n = 0; n < MCOR_ITEM_NODES; ++n)

@@ -129,7 +129,7 @@ __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];
-      mcor_cluster_from(tile, i, points, at, d); /* made again: keeping it takes longer */
+      mcor_cluster_from(tile, i, points, at, d); /* made anew, because keeping it takes longer */
       const realv v = tile->weight[i] *
         mcor_weight_gradient(d, length + (k - begin), (realv)(tile->inv_h[i]), &slope, along);
       w += v;
@@ -217,7 +217,7 @@ __kernel void mcor_probe_sums(
   const mcor_grid grid = MCOR_GRID;
   const int end = min((int)(get_global_id(0) + 1) * MCOR_CLUSTER, group_count);
   mcor_cluster cluster;
-  mcor_query query, wide; /* of a group, of a cluster */
+  mcor_query query, wide; /* numbers of the group, of the cluster */
   mcor_reach reach;
   for (int begin = get_global_id(0) * MCOR_CLUSTER; begin < end; begin += cluster.count)
   {

@@ -16,7 +16,7 @@ typedef struct
 {
   int count;
   bool complete;  /* the tile holds all particles of the query */
-  bool delivered; /* nothing is left for this loop */
+  bool delivered; /* this loop has no particles left to gather */
   MCOR_ALIGNED int list[MCOR_TILE_SIZE + 16];
   /* Position from the query's origin, in cubes. */
   MCOR_ALIGNED real x[MCOR_TILE_SIZE + 16], y[MCOR_TILE_SIZE + 16], z[MCOR_TILE_SIZE + 16];
@@ -58,14 +58,15 @@ fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box,
 #endif
 }
 
-/* Returns which of particles i, i + 1, ... of a tile are that near. */
+/* Returns which of particles i, i + 1, ... of a tile are within their share of support from a box. */
 fixv mcor_tile_near(const mcor_tile* tile, int i, const mcor_span* box, realv share)
 {
   return mcor_near_box(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
     MCOR_TILE(tile, inv_h, i), box, share);
 }
 
-/* Lists the places in the tile of the particles that are that near. Returns their number. */
+/* Lists the places in the tile of the particles within their share of support from a box. Returns
+ * their number. */
 int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int* list)
 {
   int count = 0;
@@ -79,7 +80,7 @@ int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int
   return count;
 }
 
-/* Appends the particles of a mask to the tile, but not to its list. */
+/* Appends the particles of a mask to the tile, but not their indices to its list. */
 void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_h, realv weight,
   realv value, realv trim_weight, int count, mcor_tile* tile)
 {
@@ -188,7 +189,7 @@ void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile*
   mcor_tile_pad(tile);
 }
 
-/* The particles of a tile as each lane sees them. */
+/* The particles of a tile, as each lane sees them. */
 #if MCOR_PARTS == 1
 typedef struct
 {
@@ -219,7 +220,7 @@ typedef struct
 typedef struct
 {
   mcor_tile tile;
-  realv w[MCOR_TILE_SIZE]; /* as above */
+  realv w[MCOR_TILE_SIZE]; /* of each particle in each lane, as last evaluated */
   mcor_reach_masks masks;
   MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE];
   real inv_h[MCOR_REACH_SIZE], weight[MCOR_REACH_SIZE];

@@ -10,7 +10,7 @@ typedef struct
   mcor_grid grid;
   fix origin[3];
   int begin, count;
-  bool complete; /* never: nothing is kept */
+  bool complete; /* always false: no particles are kept */
 } mcor_tile;
 
 real mcor_tile_position(const mcor_tile* tile, __global const fix* position, int axis, int i)

@@ -236,7 +236,7 @@ void mcor_points_from(
   d[2] = (at[2] - z) + points->oz;
 }
 
-/* Finds them from particle i of a reach. */
+/* Finds the offsets from particle i of a reach. */
 #define MCOR_REACH_FROM(at, points, reach, i, d)                                                   \
   mcor_points_from(                                                                                \
     at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d)

@@ -83,7 +83,8 @@ int mcor_plane_mark(
     const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
     const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, nodes.split, axis, lower);
     const int across = axis == 0 ? lower / 3 : lower % 3;
-    mcor_leaf_mark_edge(&edge, across > 0 ? 10 : 5, quadrants); /* the side where the square is */
+    /* quadrants on the side where the square is */
+    mcor_leaf_mark_edge(&edge, across > 0 ? 10 : 5, quadrants);
   }
   return lines;
 }

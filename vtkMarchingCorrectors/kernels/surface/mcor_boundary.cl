@@ -24,8 +24,7 @@ realv mcor_dot(const realv a[3], const realv b[3])
   return MCOR_FMA(a[2], b[2], MCOR_FMA(a[1], b[1], a[0] * b[0]));
 }
 
-/* Gradient g of W / norm * h^3, and its derivative d along the unit vector e: the Hessian times
- * e. */
+/* Finds the gradient g of W / norm * h^3, and its derivative d along the unit vector e, which is the Hessian times e. */
 void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[3], realv d[3])
 {
 #if MCOR_TENSOR
@@ -140,7 +139,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
       m.zx = MCOR_FMA(-half_v, MCOR_FMA(u[2], g[0], u[0] * g[2]), m.zx);
     }
   }
-  if (plane) /* excludes the third axis: the smallest is one of the two of the plane */
+  if (plane) /* keeps the third axis out: the smallest eigenvalue must be one of the plane's two */
   {
     m.zz = (real)4 * (fabs(m.xx) + fabs(m.yy) + (real)1);
   }

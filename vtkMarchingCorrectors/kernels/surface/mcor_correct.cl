@@ -27,8 +27,9 @@ realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
 /* Returns the root near t of the cubic through the values at 0, 1 and t with the slope at t. */
 realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 {
-  const realv a = ((v0 - v) / t + slope) / t;                   /* (p(0) - tangent) / t^2 */
-  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t); /* (p(1) - tangent) / (1 - t)^2 */
+  const realv a = ((v0 - v) / t + slope) / t;                   /* (p(0) - tangent(0)) / t^2 */
+  /* (p(1) - tangent(1)) / (1 - t)^2 */
+  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t);
   const realv c3 = b - a, c2 = a + c3 * t;
   return t + mcor_correct_root(v, slope, c2, c3);
 }
@@ -154,7 +155,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   fixv active = low < high;
   realv last_t = 0, last_value = e->v0, last_slope = e->slope;
   realv reached_low = 0, reached_high = MCOR_LINE_SLACK;
-  if (!e->lines) /* else mcor_lines_load has gathered */
+  if (!e->lines) /* for lines, mcor_lines_load has gathered already */
   {
     reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
     reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);

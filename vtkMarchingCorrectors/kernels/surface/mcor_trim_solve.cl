@@ -99,7 +99,7 @@ typedef struct
   int steps;
   bool by_eigenvalue, plane;
   fixv lacking;
-  realv inside[3]; /* the edge's end inside, from the linear cut */
+  realv inside[3]; /* from the linear cut to the edge's end that is inside */
 } mcor_trim_limits;
 
 /* Replaces a quantity by another one in some lanes. */
@@ -190,8 +190,8 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
   return tangent;
 }
 
-/* Moves points of linear cuts without a mean towards the edge's end inside until there is one.
- * Returns which points. */
+/* Moves points whose linear cut has no mean towards the edge's end inside, until there is one.
+ * Returns which points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -277,7 +277,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
     return linear;
   }
   mcor_trim_return(grid, query, limits->iso, start, linear, points, reach, at);
-  if (MCOR_FIELD != 0 || limits->steps == 0) /* a preview */
+  if (MCOR_FIELD != 0 || limits->steps == 0) /* in a preview */
   {
     return linear;
   }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes what the Python package must know of the C sources, so that it stands there alone.
 
-    make_structs.py mcor_parts.h mcor.h FOLDER
+    make_structs.py mcor_parts.h mcor.h mcor_find.h FOLDER
 
 _structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of the shapes of arrays, and
 the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types, and the codes of mcor_says.def. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
@@ -116,7 +116,7 @@ class Header:
         if base == "void":
             base, pointers = "ctypes.c_void_p", pointers - 1
         if (base, pointers) == ("char", 1):
-            return "ctypes.c_char_p"
+            base, pointers = "ctypes.c_char_p", 0
         kind = f"ctypes.{NUMBERS[base]}" if base in NUMBERS else \
             "ctypes.c_int" if base in self.enums else base
         for _ in range(pointers):
@@ -203,7 +203,7 @@ def c_checks(module, header):
     scope = {}
     exec(compile(module, "_structs.py", "exec"), scope)  # what was just written
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",
-             '#include "mcor_parts.h"', "#include <stddef.h>", ""]
+             '#include "mcor_find.h"', "#include <stddef.h>", ""]
     for struct, fields in header.structs.items():
         lines.append(f'_Static_assert(sizeof({struct}) == {ctypes.sizeof(scope[struct])}, "{struct}");')
         for name, *_ in fields:

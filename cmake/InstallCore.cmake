@@ -34,4 +34,5 @@ if (UNIX)
   configure_file("${PROJECT_SOURCE_DIR}/cmake/mcor.pc.in" "${CMAKE_BINARY_DIR}/mcor.pc" @ONLY)
   install(FILES "${CMAKE_BINARY_DIR}/mcor.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 endif ()
-install(FILES vtkMarchingCorrectors/core/mcor.h vtkMarchingCorrectors/core/mcor_parts.h vtkMarchingCorrectors/core/mcor_says.def DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES vtkMarchingCorrectors/core/mcor.h vtkMarchingCorrectors/core/mcor_parts.h
+  vtkMarchingCorrectors/core/mcor_find.h vtkMarchingCorrectors/core/mcor_says.def DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 sources = Path(sys.argv[1])
 core = sources / "vtkMarchingCorrectors" / "core"
-NAMES = "mcor_parts.h", "mcor.h"
+NAMES = "mcor_parts.h", "mcor.h", "mcor_find.h"
 
 
 def made_of(texts, folder):

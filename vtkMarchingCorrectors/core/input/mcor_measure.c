@@ -232,6 +232,7 @@ enum
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
+  MCOR_LONE = 13,    /* volume x W(0) of fluid particles */
 
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
@@ -302,6 +303,7 @@ typedef struct mcor_measuring
   const mcor_context* context;
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
+  double peak;  /* W(0) of a kernel of length 1; 0: it is not asked for */
   mcor_watch watch;
   mcor_findings slices[MCOR_SLICES];
 } mcor_measuring;
@@ -337,6 +339,13 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
         r.sums[MCOR_FACTOR_SUM] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
       }
     }
+    mcor_read_size(input, first, job->peak > 0 ? count : 0, value);
+    for (int i = 0; i < count && job->peak > 0; ++i)
+    {
+      const double weight =
+        value[i] * job->peak / mcor_power(part[0].length[i], context->space.axes);
+      mcor_add_range(&r, MCOR_LONE, DBL_MAX, solid && solid[i] ? -DBL_MAX : weight);
+    }
     mcor_part_chunk(solid, &part[0], &part[1]);
     for (int k = 0; k < 2; ++k)
     {
@@ -354,6 +363,16 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->slices[slice] = r;
 }
 
+/* Returns W(0) of a particle with the smoothing length 1. */
+static double mcor_peak(const mcor_options* options, int axes)
+{
+  const mcor_kernel_row* kernel = mcor_kernel_of(options->sph_kernel);
+  const double along = mcor_w_of(options->sph_kernel, 0);
+  const double norm = kernel->norm * (axes == 2 ? kernel->plane_factor : 1);
+  return norm * (kernel->is_tensor ? mcor_power(along, axes) : along) /
+    mcor_power(options->h_scale, axes);
+}
+
 /* Measures the particles of all ranks. A particle that is not finite is reported by its own rank
  * alone. */
 static mcor_status mcor_measure_particles(
@@ -363,7 +382,10 @@ static mcor_status mcor_measure_particles(
   const mcor_options* options = context->run.options;
   mcor_measuring job = { .context = context,
     .input = input,
-    .reach = mcor_support_factor(options->sph_kernel) * options->h_scale };
+    .reach = mcor_support_factor(options->sph_kernel) * options->h_scale,
+    .peak = options->field == MCOR_WEIGHT_SUM && !mcor_needs_density(input)
+      ? mcor_peak(options, context->space.axes)
+      : 0 };
   int slices;
   mcor_begin_watch(context, &job.watch);
   MCOR_TRY(
@@ -387,6 +409,7 @@ static mcor_status mcor_measure_particles(
   m->widening_sum = r->sums[MCOR_FACTOR_SUM];
   m->widening_min = m->widening_sum > 0 ? r->least[MCOR_FACTORS] : 0;
   m->widening_max = m->widening_sum > 0 ? r->most[MCOR_FACTORS] : 0;
+  m->lone_weight = job.peak > 0 ? fmax(r->most[MCOR_LONE], 0) : 0;
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->first;

@@ -3,13 +3,11 @@
 
 /* The names that solvers give to the arrays that a run needs, and to the period. */
 
-#include "mcor.h"
+#include "mcor_finder.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-#define MCOR_NAMES 14
 
 /* Usual names, the most usual first, as small letters and digits alone. */
 static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {

@@ -1,0 +1,375 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What is found among named arrays, and made of what is given by hand: volumes, types of elements, the
+ * fluid, the scalar, attributes, and sentences. */
+
+#include "core_fixture.h"
+#include "mcor_find.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT 4
+
+static const double x[3 * COUNT] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+static const double h[COUNT] = { 1, 1, 1, 1 }, volume[COUNT] = { 2, 2, 2, 2 },
+                    mass[COUNT] = { 3, 3, 3, 3 }, density[COUNT] = { 4, 4, 4, 4 },
+                    speed[COUNT] = { 0, 1, 2, 3 };
+static const float v32[3 * COUNT] = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 };
+
+static mcor_named of(const char* name, mcor_element type, int components, const void* data)
+{
+  return (mcor_named){ name, type, components, COUNT, data, { 0, 0 } };
+}
+
+static mcor_named real(const char* name, const double* data)
+{
+  return of(name, MCOR_ELEMENT_FLOAT64, 1, data);
+}
+
+static const mcor_named positions = { NULL, MCOR_ELEMENT_FLOAT64, 3, COUNT, x, { 0, 0 } };
+
+static mcor_request request_of(unsigned wants)
+{
+  return (
+    mcor_request){ .wants = wants, .find = 1, .active = -1, .scalar_component = MCOR_MAGNITUDE };
+}
+
+static mcor_status find(
+  const mcor_request* request, const mcor_named* arrays, int count, mcor_found* found)
+{
+  return mcor_find_input(request, &positions, arrays, count, NULL, found);
+}
+
+/* The rule of precedence: whatever is in the file, and whatever is given by hand. */
+static void test_volumes(void** state)
+{
+  (void)state;
+  const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
+    real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
+  /* file: letters of v, m, d that it has. given: v, m, d by name, M, D by value, c computed, p one volume.
+   * used: what makes the volumes. unused: what the sentence begins with; NULL: there is none. */
+  const struct
+  {
+    const char *file, *given, *used, *unused;
+  } cases[] = { { "vmd", "", "Volume", NULL }, { "md", "", "Mass/Density", NULL },
+    { "m", "", "Mass/", NULL }, { "d", "", "", NULL }, { "", "", "", NULL },
+    { "vmd", "D", "Volume", "The given density is not used" },
+    { "vmd", "M", "Volume", "The given mass is not used" }, { "vmd", "MD", "7/8", NULL },
+    { "vmd", "mD", "M2/8", NULL }, { "vmd", "v", "V2", NULL },
+    { "vmd", "vmd", "V2", "The given mass and density are not used" },
+    { "vmd", "vM", "V2", "The given mass is not used" }, { "md", "D", "Mass/8", NULL },
+    { "md", "M", "7/Density", NULL }, { "m", "D", "Mass/8", NULL },
+    { "", "D", "", "The given density is not used" }, { "", "M", "7/", NULL },
+    { "vmd", "c", "Mass/", NULL }, { "v", "c", "", NULL },
+    { "vmd", "cD", "Mass/", "The given density is not used" },
+    { "vmd", "cv", "Mass/", "The given volume is not used" }, { "vmd", "p", "Volume", NULL },
+    { "m", "p", "9", NULL }, { "md", "p", "Mass/Density", NULL }, { "", "p", "9", NULL },
+    { "m", "pM", "9", "The given mass is not used" } };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
+  {
+    mcor_named arrays[7] = { all[0], all[4], all[5], all[6] };
+    int count = 4;
+    for (int k = 0; k < 3; ++k)
+    {
+      if (strchr(cases[c].file, "vmd"[k]))
+      {
+        arrays[count++] = all[1 + k];
+      }
+    }
+    mcor_request request = request_of(MCOR_WANT_SIZES);
+    const char* given = cases[c].given;
+    request.names[MCOR_ROLE_VOLUME] = strchr(given, 'v') ? "V2" : NULL;
+    request.names[MCOR_ROLE_MASS] = strchr(given, 'm') ? "M2" : "(automatic)";
+    request.names[MCOR_ROLE_DENSITY] = strchr(given, 'd') ? "D2" : "";
+    request.values[MCOR_ROLE_MASS] = strchr(given, 'M') ? 7 : 0;
+    request.values[MCOR_ROLE_DENSITY] = strchr(given, 'D') ? 8 : 0;
+    request.compute_volumes = strchr(given, 'c') != NULL;
+    request.particle_volume = strchr(given, 'p') ? 9 : 0;
+    mcor_found found;
+    assert_int_equal(find(&request, arrays, count, &found), MCOR_OK);
+    char used[64] = "";
+    const mcor_array* sources[3] = { &found.input.volume, &found.input.mass, &found.input.density };
+    for (int k = 0; k < 3; ++k)
+    {
+      const mcor_array* source = sources[k];
+      char text[32] = "";
+      snprintf(text, sizeof text, source->data ? "%s" : "%.0s%g", source->name ? source->name : "",
+        source->constant);
+      strcat(used, mcor_is_given(source) ? text : "");
+      strcat(used, k == 1 && mcor_is_given(source) ? "/" : "");
+    }
+    const char* why = found.unused.text ? found.unused.text : "(nothing)";
+    CORE_CHECK(
+      strcmp(used, cases[c].used) == 0, "file %s, given %s: %s", cases[c].file, given, used);
+    CORE_CHECK(cases[c].unused ? strncmp(why, cases[c].unused, strlen(cases[c].unused)) == 0
+                               : !found.unused.text,
+      "file %s, given %s: %s", cases[c].file, given, why);
+    /* Masses and densities are known beside volumes. */
+    assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
+      strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
+    mcor_free_found(&found);
+  }
+}
+
+/* Elements of any type and with gaps between them are read alike; floats and doubles without gaps stay where
+ * they are. */
+static void test_elements(void** state)
+{
+  (void)state;
+  const int8_t i8[COUNT] = { 1, 2, 3, 4 };
+  const uint8_t u8[COUNT] = { 1, 2, 3, 4 };
+  const int16_t i16[COUNT] = { 1, 2, 3, 4 };
+  const uint16_t u16[COUNT] = { 1, 2, 3, 4 };
+  const int32_t i32[COUNT] = { 1, 2, 3, 4 };
+  const uint32_t u32[COUNT] = { 1, 2, 3, 4 };
+  const int64_t i64[COUNT] = { 1, 2, 3, 4 };
+  const uint64_t u64[COUNT] = { 1, 2, 3, 4 };
+  const float f32[COUNT] = { 1, 2, 3, 4 }, gaps[2 * COUNT] = { 1, 0, 2, 0, 3, 0, 4, 0 };
+  const double f64[COUNT] = { 1, 2, 3, 4 };
+  const char odd[1 + sizeof f64] = { 0 };
+  memcpy((char*)odd + 1, f64, sizeof f64);
+  mcor_named arrays[] = { of("f", MCOR_ELEMENT_FLOAT32, 1, f32), real("d", f64),
+    of("i8", MCOR_ELEMENT_INT8, 1, i8), of("u8", MCOR_ELEMENT_UINT8, 1, u8),
+    of("i16", MCOR_ELEMENT_INT16, 1, i16), of("u16", MCOR_ELEMENT_UINT16, 1, u16),
+    of("i32", MCOR_ELEMENT_INT32, 1, i32), of("u32", MCOR_ELEMENT_UINT32, 1, u32),
+    of("i64", MCOR_ELEMENT_INT64, 1, i64), of("u64", MCOR_ELEMENT_UINT64, 1, u64),
+    of("gaps", MCOR_ELEMENT_FLOAT32, 1, gaps), real("odd", (const double*)(const void*)(odd + 1)) };
+  arrays[10].stride[0] = 2 * sizeof(float);
+  const int count = (int)(sizeof arrays / sizeof arrays[0]);
+  for (int i = 0; i < count; ++i)
+  {
+    mcor_request request = request_of(MCOR_WANT_SIZES);
+    request.names[MCOR_ROLE_SMOOTHING_LENGTH] = arrays[i].name;
+    mcor_found found;
+    assert_int_equal(find(&request, arrays, count, &found), MCOR_OK);
+    const mcor_array* length = &found.input.smoothing_length;
+    const bool stays = i < 2;
+    CORE_CHECK(stays == (length->data == arrays[i].data), "array %s is copied", arrays[i].name);
+    assert_int_equal(length->type, i == 0 || i == 10 ? MCOR_FLOAT32 : MCOR_FLOAT64);
+    assert_string_equal(length->name, arrays[i].name);
+    for (int p = 0; p < COUNT; ++p)
+    {
+      const double value = length->type == MCOR_FLOAT32 ? (double)((const float*)length->data)[p]
+                                                        : ((const double*)length->data)[p];
+      CORE_CHECK(value == p + 1, "%s[%d] is %g", arrays[i].name, p, value);
+    }
+    mcor_free_found(&found);
+  }
+}
+
+/* Fluid by the codes of DualSPHysics, by 0 and 1, by hand; and the particles that are left. */
+static void test_fluid(void** state)
+{
+  (void)state;
+  const uint8_t codes[COUNT] = { 0, 1, 3, 3 }, wall[COUNT] = { 1, 0, 0, 0 };
+  const double other[COUNT] = { 5, 6, 6, 6 };
+  const mcor_named arrays[] = { of("Type", MCOR_ELEMENT_UINT8, 1, codes),
+    of("IsWall", MCOR_ELEMENT_UINT8, 1, wall), real("ptype", other),
+    of(MCOR_WALL_BLOCK, MCOR_ELEMENT_UINT8, 1, wall) };
+  mcor_request request = request_of(MCOR_WANT_FLUID);
+  mcor_found found;
+  request.find_fluid = 1;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_int_equal(found.which[MCOR_ROLE_FLUID], 0);
+  assert_true(found.fluid_value == 3 && found.fluid_count == 2 && !found.unused_type.text);
+  assert_true(found.input.solid[0] && found.input.solid[1] && !found.input.solid[2]);
+  mcor_free_found(&found);
+  assert_int_equal(find(&request, arrays + 1, 3, &found), MCOR_OK);
+  assert_true(
+    found.which[MCOR_ROLE_FLUID] == 0 && found.fluid_value == 0 && found.fluid_count == 3);
+  mcor_free_found(&found);
+  request.find_fluid = 0;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_true(found.which[MCOR_ROLE_FLUID] == -1 && !found.input.solid && found.fluid_count == 4);
+  assert_non_null(strstr(found.unused_type.text, "'Type' is not used"));
+  mcor_free_found(&found);
+  request.names[MCOR_ROLE_FLUID] = "ptype";
+  request.fluid_value = 7;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_string_equal(found.no_fluid, "No particle has ptype = 7");
+  mcor_free_found(&found);
+  request.names[MCOR_ROLE_FLUID] = "Block: water";
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_true(found.which[MCOR_ROLE_FLUID] == 3 && found.fluid_count == 3);
+  mcor_free_found(&found);
+  const mcor_only only[] = { { "Type", 3, 3 }, { "Type", 0, 0 }, { "ptype", 5, 6 } };
+  request = request_of(0);
+  request.only = only;
+  request.only_count = 3;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_true(found.fluid_count == 3 && found.input.solid[1] == MCOR_ABSENT);
+  mcor_free_found(&found);
+  request.within[1] = 0.5;
+  request.within[4] = -1;
+  request.within[5] = 1;
+  request.only_count = 1;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_true(found.fluid_count == 1 && found.input.solid[3] == 0);
+  mcor_free_found(&found);
+  request.within[5] = 0.5;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  assert_string_equal(found.no_fluid, "No particle is within 0,0.5,0,0,-1,0.5 and left by Type=3");
+  mcor_free_found(&found);
+  const mcor_only lacks = { "Typo", 0, 1 };
+  request.only = &lacks;
+  assert_int_equal(find(&request, arrays, 4, &found), MCOR_INVALID_ARGUMENT);
+  assert_string_equal(found.error.text,
+    "There is no point array 'Typo' for the choice of particles. Point arrays: Type, IsWall, "
+    "ptype, WallBlock.");
+  mcor_free_found(&found);
+}
+
+/* The scalar: chosen by name, by its fitness, of three arrays, or summed; attributes; what a flow needs. */
+static void test_scalar_and_attributes(void** state)
+{
+  (void)state;
+  const int32_t id[COUNT] = { 3, 1, 2, 0 };
+  const float vx[COUNT] = { 1, 4, 7, 10 }, vy[COUNT] = { 2, 5, 8, 11 }, vz[COUNT] = { 3, 6, 9, 12 };
+  const mcor_named arrays[] = { real("h", h), of("Idp", MCOR_ELEMENT_INT32, 1, id),
+    real("Speed", speed), of("vx", MCOR_ELEMENT_FLOAT32, 1, vx),
+    of("vy", MCOR_ELEMENT_FLOAT32, 1, vy), of("vz", MCOR_ELEMENT_FLOAT32, 1, vz),
+    real("vtkGhostType", speed), of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32),
+    of("text", MCOR_ELEMENT_OTHER, 1, NULL), real("Mass", mass), real("Volume", volume) };
+  mcor_request request =
+    request_of(MCOR_WANT_SIZES | MCOR_WANT_SCALAR | MCOR_WANT_ATTRIBUTES | MCOR_WANT_FLUID);
+  request.taken = "Normals\nSpeed_Y";
+  request.excluded = "vz";
+  request.has_iso_values = 1;
+  mcor_found found;
+  assert_int_equal(find(&request, arrays, 7, &found), MCOR_OK);
+  assert_int_equal(found.which[MCOR_ROLE_SCALAR], 7);
+  assert_string_equal(found.made[0].name, "Velocity");
+  assert_memory_equal(found.input.scalar.data, v32, sizeof v32);
+  assert_string_equal(found.iso_value_name, "Velocity_Magnitude");
+  const int attributes[] = { 0, 2, 3, 4, 7 };
+  assert_int_equal(found.input.attribute_count, 5);
+  assert_memory_equal(found.attributes, attributes, sizeof attributes);
+  assert_true(found.nearest_count == 1 && found.nearest[0] == 1);
+  mcor_free_found(&found);
+  request.active = 2;
+  request.scalar_component = 1;
+  assert_int_equal(find(&request, arrays, 7, &found), MCOR_OK);
+  assert_true(found.which[MCOR_ROLE_SCALAR] == 2 && found.input.scalar_component == 0);
+  assert_string_equal(found.iso_value_name, "Speed");
+  assert_int_equal(found.input.attribute_count, 4); /* without the iso value's own */
+  mcor_free_found(&found);
+  request.active = 1; /* ids are not fit */
+  request.label = "along y";
+  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  assert_int_equal(found.which[MCOR_ROLE_SCALAR], 7);
+  assert_string_equal(found.iso_value_name, "Velocity_along y");
+  assert_true(found.nearest_count == 2 && found.nearest[1] == 8);
+  mcor_free_found(&found);
+  request.names[MCOR_ROLE_SCALAR] = "Density";
+  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  assert_true(found.needs_densities && !found.input.scalar.data);
+  mcor_take_densities(&found, density);
+  assert_true(found.input.scalar.data == density && !found.input.density.data);
+  mcor_free_found(&found);
+  assert_int_equal(find(&request, arrays, 10, &found), MCOR_OK);
+  mcor_take_densities(&found, density);
+  assert_true(found.input.density.data == density && found.input.mass.data == mass);
+  mcor_free_found(&found);
+  request = request_of(MCOR_WANT_SIZES | MCOR_WANT_FLOW);
+  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  assert_int_equal(found.input.attribute_count, 2);
+  assert_string_equal(found.input.attributes[1].name, "Density");
+  assert_true(((const double*)found.input.attributes[1].data)[3] == 1.5);
+  mcor_free_found(&found);
+  request.values[MCOR_ROLE_DENSITY] = 10;
+  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  assert_true(found.input.attributes[1].constant == 10 && found.attributes[1] == -1);
+  assert_true(found.input.volume.data == volume && !found.unused.text);
+  mcor_free_found(&found);
+  request = request_of(MCOR_WANT_SIZES | MCOR_WANT_COLUMN);
+  request.names[MCOR_ROLE_WEIGHT] = "Mass";
+  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  assert_true(found.input.mass.data == mass && found.views[MCOR_ROLE_WEIGHT].data == mass);
+  assert_true(found.input.volume.data == volume && !found.input.scalar.data);
+  mcor_free_found(&found);
+}
+
+/* Each sentence about what is missing, or not usable. */
+static void test_errors(void** state)
+{
+  (void)state;
+  const double dp[COUNT] = { 0.5, 0.5, 0.5, 0.5 };
+  const mcor_named arrays[] = { real("Rhop", density), real("Idp", speed), real("spacing", dp),
+    of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32), of("text", MCOR_ELEMENT_OTHER, 1, NULL),
+    { "short", MCOR_ELEMENT_FLOAT64, 1, 3, speed, { 0, 0 } } };
+  const struct
+  {
+    unsigned wants;
+    mcor_role role;
+    const char *name, *begins;
+  } cases[] = {
+    { MCOR_WANT_SIZES, MCOR_ROLE_FLUID, NULL,
+      "The particles have no smoothing length. Choose {estimate_smoothing_length}, or "
+      "{smoothing_length}; no point array has one of its usual names (SmoothingLength, hsml, h, ...). "
+      "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. By 'spacing', particles are 0.5 "
+      "apart: "
+      "0.65 is usual. Point arrays: Rhop, Idp, spacing, Velocity, text, short." },
+    { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "Velocity",
+      "The smoothing length array 'Velocity' has 3 components; it must have one." },
+    { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "text",
+      "The smoothing length array 'text' does not hold numbers." },
+    { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "short",
+      "The smoothing length array 'short' has 3 values for 4 points." },
+    { 0, MCOR_ROLE_FLUID, "typ", "There is no point array 'typ' for the fluid. Point arrays: " },
+    { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR, "T", "There is no point array 'T' for the scalar. " },
+    { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR_DOT, "Rhop",
+      "The dot product needs two arrays with the same number of components; 'Velocity' has 3, "
+      "'Rhop' has 1." }
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
+  {
+    mcor_request request = request_of(cases[c].wants);
+    request.names[cases[c].role] = cases[c].name;
+    mcor_found found;
+    assert_int_equal(find(&request, arrays, 6, &found), MCOR_INVALID_ARGUMENT);
+    CORE_CHECK(strncmp(found.error.text, cases[c].begins, strlen(cases[c].begins)) == 0, "%s",
+      found.error.text);
+    mcor_free_found(&found);
+  }
+  mcor_request request = request_of(MCOR_WANT_SCALAR);
+  mcor_found found;
+  request.scalar_component = 3;
+  assert_int_equal(find(&request, arrays, 6, &found), MCOR_INVALID_ARGUMENT);
+  assert_string_equal(found.error.text,
+    "The scalar 'Velocity' has no component 3; choose 0 to 2, or -1 for the magnitude.");
+  mcor_free_found(&found);
+  assert_int_equal(find(&request, arrays, 1, &found), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(found.error.text, "No scalar to contour was chosen"));
+  mcor_free_found(&found);
+  request = request_of(MCOR_WANT_SIZES | MCOR_WANT_FLOW);
+  request.values[MCOR_ROLE_SMOOTHING_LENGTH] = 1;
+  assert_int_equal(find(&request, arrays, 3, &found), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(found.error.text, "The particles have no velocity: "));
+  mcor_free_found(&found);
+  request.estimate_smoothing_length = 1;
+  request.wants = MCOR_WANT_SIZES;
+  assert_int_equal(find(&request, arrays, 6, &found), MCOR_OK);
+  assert_string_equal(found.unused.text,
+    "The given smoothing length is not used, because it is estimated. Leave one of them out.");
+  mcor_free_found(&found);
+}
+
+static void test_walls(void** state)
+{
+  (void)state;
+  assert_true(mcor_tells_of_walls("Boundary_particles") && mcor_tells_of_walls("TANK") &&
+    mcor_tells_of_walls("rb_particle_data_1"));
+  assert_false(mcor_tells_of_walls("water") || mcor_tells_of_walls("") ||
+    mcor_tells_of_walls(NULL) || mcor_tells_of_walls("wal"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_volumes),
+    cmocka_unit_test(test_elements), cmocka_unit_test(test_fluid),
+    cmocka_unit_test(test_scalar_and_attributes), cmocka_unit_test(test_errors),
+    cmocka_unit_test(test_walls) };
+  return cmocka_run_group_tests_name("find", tests, NULL, NULL);
+}

@@ -1,0 +1,801 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Finds, among named arrays, what a run needs, and makes an mcor_input of it. What all ranks must
+ * agree on is found first, so that none waits for another that has failed. */
+
+#include "mcor_finder.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void* mcor_find_memory(mcor_finder* f, size_t bytes)
+{
+  mcor_found* found = f->found;
+  void** more = realloc(found->own, ((size_t)found->own_count + 1) * sizeof *more);
+  void* memory = more ? malloc(bytes ? bytes : 1) : NULL;
+  found->own = more ? more : found->own;
+  if (memory)
+  {
+    found->own[found->own_count++] = memory;
+  }
+  f->lacks_memory = f->lacks_memory || !memory;
+  return memory;
+}
+
+int mcor_refuse(mcor_finder* f, mcor_message message)
+{
+  if (f->found->error.code != MCOR_SAYS_NOTHING)
+  {
+    mcor_free_message(&message);
+    return -1;
+  }
+  f->found->error = message;
+  return -1;
+}
+
+/* Lists the arrays; "" if memory runs out. */
+static const char* mcor_names_of(mcor_finder* f)
+{
+  char* list = mcor_list_names(f->arrays, f->count);
+  const char* names = mcor_keep_name(f, list);
+  free(list);
+  return names ? names : "";
+}
+
+const mcor_named* mcor_named_of(const mcor_finder* f, int index)
+{
+  return index < f->count ? f->arrays + index : f->found->made + index - f->count;
+}
+
+const char* mcor_keep_name(mcor_finder* f, const char* name)
+{
+  char* kept = name ? mcor_find_memory(f, strlen(name) + 1) : NULL;
+  return kept ? strcpy(kept, name) : NULL;
+}
+
+/* Returns an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
+ * else a copy. */
+mcor_array mcor_view_of(mcor_finder* f, int index)
+{
+  const mcor_named* named = index == MCOR_FIND_POSITIONS ? f->positions : mcor_named_of(f, index);
+  mcor_array own, *view = index == MCOR_FIND_POSITIONS || !f->views ? &own : f->views + index;
+  if (view != &own && view->data)
+  {
+    return *view;
+  }
+  static const double none[3];
+  const bool is_float = named->type == MCOR_ELEMENT_FLOAT32;
+  const size_t width = is_float ? sizeof(float) : sizeof(double);
+  const int64_t values = named->tuples * named->components;
+  *view = (mcor_array){ .type = is_float ? MCOR_FLOAT32 : MCOR_FLOAT64,
+    .components = named->components,
+    .data = values > 0 ? named->data : none };
+  view->name = index == MCOR_FIND_POSITIONS ? NULL : mcor_keep_name(f, named->name);
+  const bool is_plain = (is_float || named->type == MCOR_ELEMENT_FLOAT64) &&
+    (named->stride[1] == 0 || named->components == 1 || named->stride[1] == (int64_t)width) &&
+    (named->stride[0] == 0 || named->stride[0] == (int64_t)width * named->components) &&
+    (uintptr_t)named->data % width == 0;
+  if (values == 0 || is_plain)
+  {
+    return *view;
+  }
+  void* copy = mcor_find_memory(f, (size_t)values * width);
+  for (int64_t i = 0; copy && i < values; ++i)
+  {
+    const double x = mcor_element_at(named, i / named->components, (int)(i % named->components));
+    if (is_float)
+    {
+      ((float*)copy)[i] = (float)x;
+    }
+    else
+    {
+      ((double*)copy)[i] = x;
+    }
+  }
+  view->data = copy ? copy : none;
+  return *view;
+}
+
+double mcor_element_at(const mcor_named* a, int64_t tuple, int component)
+{
+  static const int widths[MCOR_ELEMENT_COUNT] = { 4, 8, 1, 1, 2, 2, 4, 4, 8, 8, 0 };
+  const int64_t width = widths[a->type];
+  const int64_t step = a->stride[1] ? a->stride[1] : width;
+  const char* at = (const char*)a->data +
+    tuple * (a->stride[0] ? a->stride[0] : width * a->components) + component * step;
+#define MCOR_READ(element, kind)                                                                   \
+  case element:                                                                                    \
+  {                                                                                                \
+    kind value;                                                                                    \
+    memcpy(&value, at, sizeof value);                                                              \
+    return (double)value;                                                                          \
+  }
+  switch (a->type)
+  {
+    MCOR_READ(MCOR_ELEMENT_FLOAT32, float)
+    MCOR_READ(MCOR_ELEMENT_FLOAT64, double)
+    MCOR_READ(MCOR_ELEMENT_INT8, int8_t)
+    MCOR_READ(MCOR_ELEMENT_UINT8, uint8_t)
+    MCOR_READ(MCOR_ELEMENT_INT16, int16_t)
+    MCOR_READ(MCOR_ELEMENT_UINT16, uint16_t)
+    MCOR_READ(MCOR_ELEMENT_INT32, int32_t)
+    MCOR_READ(MCOR_ELEMENT_UINT32, uint32_t)
+    MCOR_READ(MCOR_ELEMENT_INT64, int64_t)
+    MCOR_READ(MCOR_ELEMENT_UINT64, uint64_t)
+    default:
+      return NAN;
+  }
+#undef MCOR_READ
+}
+
+const char* mcor_given_name(const mcor_finder* f, mcor_role role)
+{
+  const char* name = f->request->names[role];
+  const bool none =
+    !name || !*name || strcmp(name, "(automatic)") == 0 || strcmp(name, "(none)") == 0;
+  return none ? NULL : name;
+}
+
+int mcor_find_by_name(const mcor_finder* f, const char* name)
+{
+  for (int i = 0; i < f->count; ++i)
+  {
+    if (f->arrays[i].name && strcmp(f->arrays[i].name, name) == 0)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+int mcor_find_named(
+  const mcor_named* arrays, int count, mcor_quantity quantity, int components, int64_t tuples)
+{
+  int found = -1, best = -1;
+  for (int i = 0; i < count; ++i)
+  {
+    const mcor_named* a = arrays + i;
+    const int rank = mcor_name_priority(quantity, a->name);
+    if (rank >= 0 && (found < 0 || rank < best) && a->components == components &&
+      a->tuples == tuples && a->type < MCOR_ELEMENT_OTHER)
+    {
+      found = i;
+      best = rank;
+    }
+  }
+  return found;
+}
+
+char* mcor_list_names(const mcor_named* arrays, int count)
+{
+  char* list = mcor_text("%s", count > 0 ? "Point arrays: " : "The input has no point arrays.");
+  for (int i = 0; list && i < count; ++i)
+  {
+    char* before = list;
+    list =
+      mcor_text("%s%s%s", before, arrays[i].name ? arrays[i].name : "", i + 1 < count ? ", " : ".");
+    free(before);
+  }
+  return list;
+}
+
+/* Joins vx, vy and vz, unless there is an array "Velocity". As float only where all are. */
+int mcor_join_velocity(mcor_finder* f)
+{
+  mcor_named* made = f->found->made;
+  if (made->name)
+  {
+    return f->count;
+  }
+  const int parts[3] = { mcor_find_by_name(f, "vx"), mcor_find_by_name(f, "vy"),
+    mcor_find_by_name(f, "vz") };
+  bool is_float = true;
+  for (int c = 0; c < 3; ++c)
+  {
+    const mcor_named* part = f->arrays + parts[c];
+    if (parts[c] < 0 || part->components != 1 || part->tuples != f->positions->tuples ||
+      part->type > MCOR_ELEMENT_FLOAT64)
+    {
+      return -1;
+    }
+    is_float = is_float && part->type == MCOR_ELEMENT_FLOAT32;
+  }
+  const int64_t count = f->positions->tuples;
+  void* data = mcor_find_by_name(f, "Velocity") >= 0
+    ? NULL
+    : mcor_find_memory(f, (size_t)count * 3 * (is_float ? sizeof(float) : sizeof(double)));
+  for (int64_t i = 0; data && i < 3 * count; ++i)
+  {
+    const double x = mcor_element_at(f->arrays + parts[i % 3], i / 3, 0);
+    if (is_float)
+    {
+      ((float*)data)[i] = (float)x;
+    }
+    else
+    {
+      ((double*)data)[i] = x;
+    }
+  }
+  if (data)
+  {
+    *made = (mcor_named){ "Velocity", is_float ? MCOR_ELEMENT_FLOAT32 : MCOR_ELEMENT_FLOAT64, 3,
+      count, data, { 0, 0 } };
+  }
+  return data ? f->count : -1;
+}
+
+/* Returns the index if the array is there, and has numbers for all particles. */
+static int mcor_check_named(mcor_finder* f, const char* words, const char* name, int index)
+{
+  if (index < 0)
+  {
+    const bool is_plane = strcmp(name, "Lambda2") == 0 && mcor_find_by_name(f, "Q-criterion") >= 0;
+    return mcor_refuse(f,
+      mcor_say(MCOR_SAY(NO_SUCH_ARRAY), name, words,
+        is_plane ? " There is no Lambda2 in two dimensions, because it is the middle one of three "
+                   "eigenvalues; use Q-criterion."
+                 : "",
+        mcor_names_of(f)));
+  }
+  const mcor_named* named = mcor_named_of(f, index);
+  name = named->name ? named->name : "";
+  if (named->type == MCOR_ELEMENT_OTHER)
+  {
+    return mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_WITHOUT_NUMBERS), words, name));
+  }
+  if (named->tuples != f->positions->tuples || named->components < 1)
+  {
+    return mcor_refuse(f,
+      mcor_say(MCOR_SAY(ARRAY_TOO_SHORT), words, name, (long long)named->tuples,
+        (long long)f->positions->tuples));
+  }
+  return index;
+}
+
+int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components)
+{
+  int index = mcor_find_by_name(f, name);
+  index =
+    index < 0 && components != 1 && strcmp(name, "Velocity") == 0 ? mcor_join_velocity(f) : index;
+  index = mcor_check_named(f, words, name, index);
+  const int has = index < 0 ? 0 : mcor_named_of(f, index)->components;
+  return index < 0 || components != 1 || has == 1
+    ? index
+    : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), words, name, has));
+}
+
+static const char* const mcor_quantity_words[MCOR_ROLE_VALUES] = { "smoothing length", "volume",
+  "mass", "density" };
+
+/* Finds what is given of a quantity, else an array with a usual name. Returns whether it is given. */
+static bool mcor_find_quantity(mcor_finder* f, mcor_role role)
+{
+  mcor_found* found = f->found;
+  const char* name = mcor_given_name(f, role);
+  if (f->request->values[role] != 0)
+  {
+    found->views[role].constant = f->request->values[role];
+    return true;
+  }
+  const int index = name ? mcor_find_given(f, mcor_quantity_words[role], name, 1)
+    : f->request->find
+    ? mcor_find_named(f->arrays, f->count, (mcor_quantity)role, 1, f->positions->tuples)
+    : -1;
+  if (index >= 0)
+  {
+    found->views[role] = mcor_view_of(f, index);
+    f->at[role] = index;
+  }
+  return name != NULL;
+}
+
+static mcor_message mcor_no_length(mcor_finder* f)
+{
+  char* names = mcor_text("%s", "");
+  for (int i = 0; names && i < f->count; ++i)
+  {
+    char* before = names;
+    names = mcor_text("%s%s\n", before, f->arrays[i].name ? f->arrays[i].name : "");
+    free(before);
+  }
+  const bool is_dual = names && strcmp(mcor_find_layout(names), "DualSPHysics") == 0;
+  free(names);
+  const int64_t count = f->positions->tuples;
+  const int spacing = mcor_find_named(f->arrays, f->count, MCOR_SPACING, 1, count);
+  const double distance =
+    spacing >= 0 && count > 0 ? mcor_element_at(f->arrays + spacing, 0, 0) : 0;
+  bool is_one = distance > 0;
+  for (int64_t i = 0; i < count && is_one; ++i)
+  {
+    is_one = mcor_element_at(f->arrays + spacing, i, 0) == distance;
+  }
+  char* usual = is_one ? mcor_text(" By '%s', particles are %g apart: %g is usual.",
+                           f->arrays[spacing].name, distance, 1.3 * distance)
+                       : mcor_text("%s", "");
+  const mcor_message message = mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
+    is_dual ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp." : "",
+    usual ? usual : "", mcor_names_of(f));
+  free(usual);
+  return message;
+}
+
+static void mcor_find_length(mcor_finder* f)
+{
+  const mcor_request* r = f->request;
+  mcor_found* found = f->found;
+  found->input.smoothing_length_is_support_radius = r->smoothing_length_is_support_radius != 0;
+  found->input.estimate_smoothing_length = r->estimate_smoothing_length != 0;
+  if (r->estimate_smoothing_length)
+  {
+    found->needs_lengths = r->lengths_by_neighbours != 0;
+    return;
+  }
+  mcor_find_quantity(f, MCOR_ROLE_SMOOTHING_LENGTH);
+  found->input.smoothing_length = found->views[MCOR_ROLE_SMOOTHING_LENGTH];
+  found->which[MCOR_ROLE_SMOOTHING_LENGTH] = f->at[MCOR_ROLE_SMOOTHING_LENGTH];
+  if (!mcor_has_error(f) && !(r->wants & MCOR_WANT_LIST) &&
+    !mcor_is_given(&found->input.smoothing_length))
+  {
+    mcor_refuse(f, mcor_no_length(f));
+  }
+}
+
+unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
+{
+  const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
+                 both = mass | 1u << MCOR_ROLE_DENSITY;
+  return request->compute_volumes                                      ? known & mass
+    : (known & volume) && ((given & volume) || (given & both) != both) ? volume
+    : (known & both) == both                                           ? both
+    : request->particle_volume > 0                                     ? 0
+                                                                       : known & mass;
+}
+
+mcor_message mcor_describe_unused(
+  const mcor_request* request, unsigned given, unsigned used, const char* volumes)
+{
+  const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
+                 both = mass | 1u << MCOR_ROLE_DENSITY, idle = given & ~used & (volume | both);
+  const char* words = idle & volume ? "volume is"
+    : idle == both                  ? "mass and density are"
+    : idle == mass                  ? "mass is"
+                                    : "density is";
+  return request->estimate_smoothing_length && (given & 1u << MCOR_ROLE_SMOOTHING_LENGTH)
+    ? mcor_say(MCOR_SAY(LENGTH_IN_VAIN))
+    : idle == 0                ? MCOR_NO_MESSAGE
+    : request->compute_volumes ? mcor_say(MCOR_SAY(SIZE_BESIDE_COMPUTED), words)
+    : used & given & volume    ? mcor_say(MCOR_SAY(SIZE_BESIDE_VOLUME), words)
+    : used & volume ? mcor_say(MCOR_SAY(SIZE_BESIDE_ARRAY), words, volumes ? volumes : "")
+    : request->particle_volume > 0 ? mcor_say(MCOR_SAY(SIZE_BESIDE_ONE_VOLUME), words)
+                                   : mcor_say(MCOR_SAY(DENSITY_WITHOUT_MASS), words);
+}
+
+static void mcor_find_sizes(mcor_finder* f)
+{
+  const mcor_request* r = f->request;
+  mcor_found* found = f->found;
+  const char* length = mcor_given_name(f, MCOR_ROLE_SMOOTHING_LENGTH);
+  unsigned given = length || r->values[MCOR_ROLE_SMOOTHING_LENGTH] != 0, known = 0;
+  mcor_find_length(f);
+  for (int role = MCOR_ROLE_VOLUME; role <= MCOR_ROLE_DENSITY; ++role)
+  {
+    given |= mcor_find_quantity(f, (mcor_role)role) ? 1u << role : 0;
+    known |= mcor_is_given(&found->views[role]) ? 1u << role : 0;
+  }
+  const unsigned used = mcor_choose_volumes(r, given, known);
+  mcor_array* const of_input[MCOR_ROLE_VALUES] = { NULL, &found->input.volume, &found->input.mass,
+    &found->input.density };
+  for (int role = MCOR_ROLE_VOLUME; role <= MCOR_ROLE_DENSITY; ++role)
+  {
+    const bool is_used = (used & 1u << role) != 0;
+    *of_input[role] = is_used ? found->views[role] : (mcor_array){ 0 };
+    found->which[role] = is_used ? f->at[role] : -1;
+  }
+  if (used == 0 && !r->compute_volumes)
+  {
+    found->input.volume.constant = r->particle_volume;
+  }
+  if (!(r->wants & (MCOR_WANT_FLOW | MCOR_WANT_COLUMN | MCOR_WANT_LIST)))
+  {
+    found->unused = mcor_describe_unused(r, given, used, found->views[MCOR_ROLE_VOLUME].name);
+  }
+}
+
+/* The scalar by this name is summed from masses where there is no such array. */
+#define MCOR_SUMMED "Density"
+
+/* Chooses the array to contour where none is given. All ranks do. */
+static int mcor_choose_scalar(mcor_finder* f)
+{
+  const int active = f->request->active;
+  const int best = mcor_choose_view(f->arrays, f->count, active, f->ranks);
+  if (best >= 0 && best == active)
+  {
+    return best;
+  }
+  const int joined = mcor_join_velocity(f);
+  return joined >= 0 ? joined : best >= 0 ? best : active < f->count ? active : -1;
+}
+
+static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
+{
+  return (f->request->not_on_points & 1 << role) != 0;
+}
+
+/* Finds the array of the scalar; it may be summed instead. Returns -1 if it is neither, or needs none. */
+static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
+{
+  mcor_found* found = f->found;
+  const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
+  int index = -1;
+  if (name && sums && strcmp(name, MCOR_SUMMED) == 0 && mcor_find_by_name(f, name) < 0)
+  {
+    found->needs_densities = 1;
+    return -1;
+  }
+  index = name ? mcor_find_given(f, words, name, 0)
+               : mcor_check_named(f, words, "", found->which[MCOR_ROLE_SCALAR]);
+  found->which[MCOR_ROLE_SCALAR] = index;
+  return index;
+}
+
+/* Sets the scalar, and checks its component. */
+static void mcor_keep_scalar(mcor_finder* f, mcor_array view)
+{
+  mcor_input* input = &f->found->input;
+  const int component = f->request->scalar_component;
+  const bool is_dot = input->scalar_dot.data != NULL;
+  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0;
+  f->found->views[MCOR_ROLE_SCALAR] = view;
+  input->scalar = view;
+  input->scalar_component = view.components <= 1 ? 0
+    : is_column && component < MCOR_MAGNITUDE    ? MCOR_MAGNITUDE
+                                                 : component;
+  if (!is_dot && view.components > 1 &&
+    (input->scalar_component < MCOR_MAGNITUDE || component >= view.components))
+  {
+    mcor_refuse(f,
+      mcor_say(
+        MCOR_SAY(NO_SUCH_COMPONENT), view.name ? view.name : "", component, view.components - 1));
+  }
+}
+
+static void mcor_find_dot(mcor_finder* f, const char* name, int scalar)
+{
+  mcor_found* found = f->found;
+  const int dot = mcor_find_given(f, "second vector of the dot product", name, 0);
+  if (dot < 0)
+  {
+    return;
+  }
+  const mcor_named *a = mcor_named_of(f, scalar), *b = mcor_named_of(f, dot);
+  if (a->components != b->components)
+  {
+    mcor_refuse(f,
+      mcor_say(MCOR_SAY(DOT_OF_DIFFERENT_VECTORS), a->name ? a->name : "", a->components, name,
+        b->components));
+    return;
+  }
+  found->which[MCOR_ROLE_SCALAR_DOT] = dot;
+  found->input.scalar_dot = found->views[MCOR_ROLE_SCALAR_DOT] = mcor_view_of(f, dot);
+}
+
+/* Finds the scalar to contour. */
+static void mcor_find_scalar(mcor_finder* f)
+{
+  const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),
+             *dot = mcor_given_name(f, MCOR_ROLE_SCALAR_DOT);
+  const bool is_off = mcor_is_off_points(f, MCOR_ROLE_SCALAR);
+  if (!name && f->found->which[MCOR_ROLE_SCALAR] < 0)
+  {
+    mcor_refuse(f, mcor_say(MCOR_SAY(NO_SCALAR), mcor_names_of(f)));
+    return;
+  }
+  if (is_off || mcor_is_off_points(f, MCOR_ROLE_SCALAR_DOT))
+  {
+    mcor_refuse(f,
+      mcor_say(MCOR_SAY(SCALAR_NOT_ON_POINTS),
+        is_off  ? (name ? name : "")
+          : dot ? dot
+                : "",
+        mcor_names_of(f)));
+    return;
+  }
+  const int index = mcor_find_scalar_array(f, "scalar", true);
+  if (index < 0)
+  {
+    return;
+  }
+  if (dot)
+  {
+    mcor_find_dot(f, dot, index);
+  }
+  mcor_keep_scalar(f, mcor_view_of(f, index));
+}
+
+/* Makes an array one of the attributes. */
+static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
+{
+  mcor_found* found = f->found;
+  const int at = found->input.attribute_count++;
+  ((mcor_array*)found->input.attributes)[at] = view;
+  found->attributes[at] = index;
+}
+
+/* Finds the one attribute of derivatives, or the scalar of a projection, which may have none. */
+static void mcor_find_array(mcor_finder* f)
+{
+  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0;
+  const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
+  if (!name && (is_column || f->found->which[MCOR_ROLE_SCALAR] < 0))
+  {
+    if (!is_column)
+    {
+      mcor_refuse(f, mcor_say(MCOR_SAY(NO_ARRAY), mcor_names_of(f)));
+    }
+    return;
+  }
+  if (mcor_is_off_points(f, MCOR_ROLE_SCALAR))
+  {
+    mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_NOT_ON_POINTS), name ? name : "", mcor_names_of(f)));
+    return;
+  }
+  const int index = mcor_find_scalar_array(f, is_column ? "projection" : "derivatives", is_column);
+  if (index >= 0 && is_column)
+  {
+    mcor_keep_scalar(f, mcor_view_of(f, index));
+  }
+  else if (index >= 0)
+  {
+    mcor_add_attribute(f, index, mcor_view_of(f, index));
+  }
+}
+
+/* Finds what a projection sees by: mass, or density where there is no mass; and the weight of a mean. */
+static void mcor_find_column(mcor_finder* f)
+{
+  mcor_found* found = f->found;
+  const mcor_array* mass = &found->views[MCOR_ROLE_MASS];
+  if (mcor_is_given(mass))
+  {
+    found->input.mass = *mass;
+    found->which[MCOR_ROLE_MASS] = f->at[MCOR_ROLE_MASS];
+  }
+  else if (mcor_is_given(&found->views[MCOR_ROLE_DENSITY]))
+  {
+    found->input.density = found->views[MCOR_ROLE_DENSITY];
+    found->which[MCOR_ROLE_DENSITY] = f->at[MCOR_ROLE_DENSITY];
+  }
+  const char* name = mcor_given_name(f, MCOR_ROLE_WEIGHT);
+  const int weight = name ? mcor_find_given(f, "weight", name, 1) : -1;
+  if (weight >= 0)
+  {
+    found->which[MCOR_ROLE_WEIGHT] = weight;
+    found->views[MCOR_ROLE_WEIGHT] = mcor_view_of(f, weight);
+  }
+}
+
+/* Finds an array of velocities by its usual names: of three components, of three arrays, or, in a plane,
+ * of two components. */
+static int mcor_find_velocity(mcor_finder* f)
+{
+  const int64_t count = f->positions->tuples;
+  int index = mcor_find_named(f->arrays, f->count, MCOR_VELOCITY, 3, count);
+  index = index < 0 ? mcor_join_velocity(f) : index;
+  return index < 0 ? mcor_find_named(f->arrays, f->count, MCOR_VELOCITY, 2, count) : index;
+}
+
+/* Makes velocity and density attributes. The density is an array, one value, or mass / volume. */
+static void mcor_find_flow(mcor_finder* f)
+{
+  mcor_found* found = f->found;
+  const char* name = mcor_given_name(f, MCOR_ROLE_VELOCITY);
+  const int velocity =
+    name ? mcor_find_given(f, "velocity", name, 0) : found->which[MCOR_ROLE_VELOCITY];
+  found->which[MCOR_ROLE_VELOCITY] = velocity;
+  if (velocity < 0)
+  {
+    mcor_refuse(f, mcor_say(MCOR_SAY(NO_VELOCITY), mcor_names_of(f)));
+    return;
+  }
+  mcor_add_attribute(f, velocity, mcor_view_of(f, velocity));
+  const mcor_array *mass = &found->views[MCOR_ROLE_MASS], *volume = &found->input.volume;
+  if (mcor_is_given(&found->views[MCOR_ROLE_DENSITY]))
+  {
+    found->which[MCOR_ROLE_DENSITY] = f->at[MCOR_ROLE_DENSITY];
+    mcor_add_attribute(f, f->at[MCOR_ROLE_DENSITY], found->views[MCOR_ROLE_DENSITY]);
+  }
+  else if (mcor_is_given(mass) && mcor_is_given(volume))
+  {
+    const int64_t count = f->positions->tuples;
+    double* divided = mcor_find_memory(f, (size_t)count * sizeof *divided);
+    for (int64_t i = 0; divided && i < count; ++i)
+    {
+      divided[i] = mcor_array_at(mass, i, 0) / mcor_array_at(volume, i, 0);
+    }
+    found->which[MCOR_ROLE_MASS] = f->at[MCOR_ROLE_MASS];
+    found->made[1] = (mcor_named){ "Density", MCOR_ELEMENT_FLOAT64, 1, count, divided, { 0, 0 } };
+    mcor_add_attribute(f, f->count + 1, mcor_view_of(f, f->count + 1));
+  }
+}
+
+/* Whether a name stands in a list of names, one a line. */
+static bool mcor_is_listed(const char* list, const char* name)
+{
+  const size_t length = strlen(name);
+  for (const char* at = list; at; at = strchr(at, '\n'))
+  {
+    at += *at == '\n';
+    if (strncmp(at, name, length) == 0 && (at[length] == '\n' || at[length] == '\0'))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Names what is contoured, and the array of iso values. */
+static void mcor_name_scalar(mcor_finder* f)
+{
+  mcor_found* found = f->found;
+  const mcor_array *scalar = &found->views[MCOR_ROLE_SCALAR],
+                   *dot = &found->views[MCOR_ROLE_SCALAR_DOT];
+  const int component = found->input.scalar_component;
+  const char *label = f->request->label, *name = scalar->name ? scalar->name : "";
+  found->scalar_name = found->needs_densities ? mcor_text(MCOR_SUMMED)
+    : dot->data               ? mcor_text("%s_Dot_%s", name, dot->name ? dot->name : "")
+    : scalar->components <= 1 ? mcor_text("%s", name)
+    : component < 0           ? mcor_text("%s_Magnitude", name)
+    : label                   ? mcor_text("%s_%s", name, label)
+    : scalar->components <= 3 ? mcor_text("%s_%c", name, "XYZ"[component])
+                              : mcor_text("%s_%d", name, component);
+  const char* full = found->scalar_name;
+  found->iso_value_name =
+    full && *full && !f->request->filled && !mcor_is_listed(f->request->taken, full) ? full
+                                                                                     : "IsoValue";
+  f->lacks_memory = f->lacks_memory || !full;
+}
+
+/* Ghost marks would hide triangles. */
+static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
+{
+  return a->name && *a->name && strcmp(a->name, "vtkGhostType") != 0 &&
+    strcmp(a->name, MCOR_WALL_BLOCK) != 0 && a->tuples == f->positions->tuples &&
+    !mcor_is_listed(f->request->taken, a->name) && !mcor_is_listed(f->request->excluded, a->name) &&
+    !(f->request->has_iso_values && strcmp(a->name, f->found->iso_value_name) == 0);
+}
+
+/* Makes attributes of all arrays of floats and doubles, and lists the others. */
+static void mcor_find_attributes(mcor_finder* f)
+{
+  for (int i = 0; i <= (mcor_join_velocity(f) < 0 ? f->count - 1 : f->count); ++i)
+  {
+    const mcor_named* a = mcor_named_of(f, i);
+    if (mcor_is_carried(f, a) && a->type <= MCOR_ELEMENT_FLOAT64)
+    {
+      mcor_add_attribute(f, i, mcor_view_of(f, i));
+    }
+    else if (mcor_is_carried(f, a))
+    {
+      f->found->nearest[f->found->nearest_count++] = i;
+    }
+  }
+}
+
+mcor_status mcor_find_input(const mcor_request* request, const mcor_named* positions,
+  const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found)
+{
+  mcor_finder f = { .request = request,
+    .positions = positions,
+    .arrays = arrays,
+    .count = count,
+    .ranks = ranks,
+    .found = found,
+    .at = { -1, -1, -1, -1 } };
+  const unsigned wants = request->wants;
+  *found = (mcor_found){ .input.count = positions->tuples, .fluid_count = positions->tuples };
+  memset(found->which, -1, sizeof found->which);
+  const size_t most = (size_t)count + 2;
+  f.views = mcor_find_memory(&f, most * sizeof *f.views);
+  mcor_array* attributes = mcor_find_memory(&f, most * sizeof *attributes);
+  found->attributes = mcor_find_memory(&f, most * sizeof(int));
+  found->nearest = mcor_find_memory(&f, most * sizeof(int));
+  if (f.lacks_memory)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  memset(f.views, 0, most * sizeof *f.views);
+  found->input.attributes = attributes;
+  found->input.positions = mcor_view_of(&f, MCOR_FIND_POSITIONS);
+  mcor_find_fluid(&f);
+  const bool contours = (wants & MCOR_WANT_SCALAR) && !request->free_surface;
+  if ((contours || (wants & MCOR_WANT_ARRAY)) && !mcor_given_name(&f, MCOR_ROLE_SCALAR))
+  {
+    found->which[MCOR_ROLE_SCALAR] = mcor_choose_scalar(&f);
+  }
+  if (wants & (MCOR_WANT_FLOW | MCOR_WANT_LIST))
+  {
+    found->which[MCOR_ROLE_VELOCITY] = mcor_find_velocity(&f);
+    found->which[MCOR_ROLE_ID] =
+      mcor_find_named(arrays, count, MCOR_PARTICLE_ID, 1, positions->tuples);
+  }
+  /* From here on, nothing is said to other ranks. */
+  if (contours)
+  {
+    mcor_find_scalar(&f);
+  }
+  if (wants & (MCOR_WANT_ARRAY | MCOR_WANT_COLUMN))
+  {
+    mcor_find_array(&f);
+  }
+  if (wants & MCOR_WANT_SIZES && !mcor_has_error(&f))
+  {
+    mcor_find_sizes(&f);
+  }
+  mcor_mark_particles(&f);
+  if (wants & MCOR_WANT_FLOW && !mcor_has_error(&f))
+  {
+    mcor_find_flow(&f);
+  }
+  if (wants & MCOR_WANT_COLUMN && !mcor_has_error(&f))
+  {
+    mcor_find_column(&f);
+  }
+  if (!mcor_has_error(&f))
+  {
+    mcor_name_scalar(&f);
+  }
+  if (wants & MCOR_WANT_ATTRIBUTES && !mcor_has_error(&f))
+  {
+    mcor_find_attributes(&f);
+  }
+  return f.lacks_memory  ? MCOR_OUT_OF_CAPACITY
+    : mcor_has_error(&f) ? MCOR_INVALID_ARGUMENT
+                         : MCOR_OK;
+}
+
+void mcor_free_found(mcor_found* found)
+{
+  for (int i = 0; found && i < found->own_count; ++i)
+  {
+    free(found->own[i]);
+  }
+  if (found)
+  {
+    free(found->own);
+    mcor_free_message(&found->error);
+    free(found->no_fluid);
+    mcor_free_message(&found->unused_type);
+    mcor_free_message(&found->unused);
+    free(found->scalar_name);
+    *found = (mcor_found){ 0 };
+  }
+}
+
+void mcor_take_lengths(mcor_found* found, const double* lengths)
+{
+  mcor_input* input = &found->input;
+  input->smoothing_length = (mcor_array){
+    .data = lengths, .type = MCOR_FLOAT64, .components = 1, .name = "SmoothingLength"
+  };
+  input->estimate_smoothing_length = input->smoothing_length_is_support_radius = 0;
+}
+
+void mcor_take_densities(mcor_found* found, const double* densities)
+{
+  mcor_input* input = &found->input;
+  const mcor_array *mass = &found->views[MCOR_ROLE_MASS],
+                   view = {
+                     .data = densities, .type = MCOR_FLOAT64, .components = 1, .name = MCOR_SUMMED
+                   };
+  input->scalar = found->views[MCOR_ROLE_SCALAR] = view;
+  input->scalar_component = 0;
+  if (mcor_is_given(mass) && !mcor_is_given(&found->views[MCOR_ROLE_DENSITY]) &&
+    !mcor_is_given(&found->views[MCOR_ROLE_VOLUME]))
+  {
+    input->volume = (mcor_array){ 0 };
+    input->mass = *mass;
+    input->density = view;
+  }
+}

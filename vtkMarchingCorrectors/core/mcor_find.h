@@ -1,0 +1,200 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_find_h
+#define mcor_find_h
+
+/* Particles as files and programs have them, a list of named arrays, and what is said about them by
+ * hand; made of both: an mcor_input, which array serves for what, and sentences about what is
+ * missing or passed over.
+ *
+ *   mcor_found found;
+ *   if (mcor_find_input(&request, &positions, arrays, count, NULL, &found) == MCOR_OK)
+ *   {
+ *     mcor_extract(context, &found.input, &options, &surface);
+ *   }
+ *   mcor_free_found(&found);   (found.error says why it failed) */
+
+#include "mcor_parts.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
+
+  /* Types of elements. The first two are those of mcor_type. */
+  typedef enum mcor_element
+  {
+    MCOR_ELEMENT_FLOAT32 = 0,
+    MCOR_ELEMENT_FLOAT64,
+    MCOR_ELEMENT_INT8,
+    MCOR_ELEMENT_UINT8,
+    MCOR_ELEMENT_INT16,
+    MCOR_ELEMENT_UINT16,
+    MCOR_ELEMENT_INT32,
+    MCOR_ELEMENT_UINT32,
+    MCOR_ELEMENT_INT64,
+    MCOR_ELEMENT_UINT64,
+    MCOR_ELEMENT_OTHER, /* no numbers: text, say; its data are never read */
+    MCOR_ELEMENT_COUNT
+  } mcor_element;
+
+  /* An array as its owner has it, borrowed until the mcor_found is freed. */
+  typedef struct mcor_named
+  {
+    const char* name; /* NULL: it has none, and is only found as the active array */
+    mcor_element type;
+    int components; /* 1 or more */
+    int64_t tuples;
+    const void* data;  /* the first element; may be NULL where there are none */
+    int64_t stride[2]; /* bytes from tuple to tuple, and from component to component; 0: no gaps */
+  } mcor_named;
+
+  /* What an array, or one value for all particles, serves for. */
+  typedef enum mcor_role
+  {
+    MCOR_ROLE_SMOOTHING_LENGTH = 0, /* the first four may be given as one value */
+    MCOR_ROLE_VOLUME,
+    MCOR_ROLE_MASS,
+    MCOR_ROLE_DENSITY,
+    MCOR_ROLE_VELOCITY, /* also made of the arrays vx, vy and vz */
+    MCOR_ROLE_ID,
+    MCOR_ROLE_FLUID, /* tells which particles are fluid */
+    MCOR_ROLE_SCALAR,
+    MCOR_ROLE_SCALAR_DOT, /* the second vector of a dot product */
+    MCOR_ROLE_WEIGHT,     /* of a projection that is a mean */
+    MCOR_ROLE_COUNT
+  } mcor_role;
+#define MCOR_ROLE_VALUES 4
+
+  /* What a call needs. */
+  typedef enum mcor_want
+  {
+    MCOR_WANT_SIZES = 1,      /* smoothing lengths, and volumes where they are known */
+    MCOR_WANT_SCALAR = 2,     /* the scalar, to be contoured */
+    MCOR_WANT_ATTRIBUTES = 4, /* all arrays that can be interpolated, as attributes */
+    MCOR_WANT_ARRAY = 8,      /* the scalar as the only attribute, for mcor_derive */
+    MCOR_WANT_FLOW = 16,      /* velocity and, where it is known, density as attributes */
+    MCOR_WANT_COLUMN = 32, /* for mcor_project: the scalar, if there is one, and mass or density */
+    MCOR_WANT_LIST = 64,   /* a list of what is found: a missing smoothing length is no error */
+    MCOR_WANT_FLUID = 128  /* where no fluid is given, a look at arrays that may tell it */
+  } mcor_want;
+
+  /* A range in which the values of an array must be. */
+  typedef struct mcor_only
+  {
+    const char* name;
+    double low, high;
+  } mcor_only;
+
+  typedef struct mcor_request
+  {
+    unsigned wants; /* bits of mcor_want */
+    /* The names of arrays that are given by hand; NULL or "": none. */
+    const char* names[MCOR_ROLE_COUNT];
+    double values[MCOR_ROLE_VALUES]; /* one value for all particles; 0: none */
+    int find; /* nonzero: arrays that are not given are found by their names */
+    /* Volumes are not taken from the arrays that were found, but computed. */
+    int compute_volumes;
+    double particle_volume;        /* of all particles, where nothing else tells volumes; 0: none */
+    int estimate_smoothing_length; /* as in mcor_input */
+    int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
+    int smoothing_length_is_support_radius;
+    /* The value of fluid particles in the array that is given; and whether to take what MCOR_WANT_FLUID
+     * finds. Of blocks that are one set, the name may be "Block: NAME". */
+    double fluid_value;
+    int find_fluid;
+    int ignore_solids;
+    int free_surface;      /* the scalar is the weight sum; without effect but in sentences */
+    int scalar_component;  /* as in mcor_input */
+    int active;            /* the array to contour if it is fit and none is given; -1: none */
+    int not_on_points;     /* bit 1 << role: the array given is not one of the particles */
+    double within[6];      /* bounds of the particles that count, unless all are 0 */
+    const mcor_only* only; /* [only_count]; of several ranges of one array, any may hold */
+    int only_count;
+    /* Names, one a line, or NULL: of arrays that are computed, and of others that are not to be
+     * attributes. The array of iso values has the name of what is contoured, unless a computed one
+     * has it. */
+    const char *taken, *excluded;
+    int filled; /* nonzero: of a filled region, whose iso values are no values of the scalar */
+    int has_iso_values; /* nonzero: there is such an array, so none of its name is an attribute */
+    const char* label;  /* what the scalar calls the component; NULL: X, Y, Z or a number */
+  } mcor_request;
+
+  /* Made by mcor_find_input; free it with mcor_free_found. Indices are those of the arrays given;
+   * -1: none. Indices behind the last one mean made[0], made[1]. */
+  typedef struct mcor_found
+  {
+    mcor_input input; /* ready to use, until this is freed */
+    /* The array that serves for what. Of the quantities, only those that the input has. */
+    int which[MCOR_ROLE_COUNT];
+    mcor_array views[MCOR_ROLE_COUNT]; /* the arrays as the core reads them, or values given; known
+                                        * quantities, even if the input lacks them; of FLUID the name */
+    double fluid_value;
+    int64_t fluid_count; /* of these particles */
+    int* attributes;     /* [input.attribute_count], of which arrays the input's attributes are */
+    int* nearest; /* [nearest_count], arrays that cannot be interpolated: whole numbers, text */
+    int nearest_count;
+    mcor_named made[2]; /* "Velocity" of vx, vy and vz; "Density" of mass and volume; or no name */
+    /* What is still to be summed over neighbours: mcor_take_lengths, mcor_take_densities. */
+    int needs_lengths, needs_densities;
+    mcor_message error;       /* what is missing or not usable */
+    mcor_message unused_type; /* an array that seems to tell fluid from solids is not used */
+    mcor_message unused;      /* what is given by hand and has no effect */
+    char* no_fluid;           /* why no particle is fluid, without a full stop; NULL: some are */
+    char*
+      scalar_name; /* "Pressure", "Velocity_Magnitude", "Velocity_X", "A_Dot_B"; "": no scalar */
+    const char* iso_value_name; /* this or, if it is taken, "IsoValue" */
+    void** own;                 /* [own_count], memory that belongs to this */
+    int own_count;
+  } mcor_found;
+
+  /* Finds what the request wants. positions: [tuples][3]. ranks: NULL, or those that share the
+   * particles: all call this with the same request and arrays of the same form, and agree on the
+   * fluid and on the array to contour. MCOR_INVALID_ARGUMENT: see found->error;
+   * MCOR_OUT_OF_CAPACITY: memory ran out. *found is overwritten. */
+  mcor_status mcor_find_input(const mcor_request* request, const mcor_named* positions,
+    const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
+  void mcor_free_found(mcor_found* found);
+
+  /* The rule of precedence, as bits 1 << role: which of volume, mass and density makes the volumes; 0:
+   * none, so they are request->particle_volume or computed. What is given by hand takes the place of
+   * that quantity alone, so known volumes stay, unless mass and density are both given, or volumes
+   * are to be computed. known: all that is given or found. */
+  unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known);
+  /* Says what is given by hand and yet not used; volumes: the name of the array that is used, or
+   * NULL. */
+  mcor_message mcor_describe_unused(
+    const mcor_request* request, unsigned given, unsigned used, const char* volumes);
+
+  /* Take the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities, borrowed, for an
+   * input that needs them. Densities are then the scalar; volumes follow from them, too, where
+   * there are masses without densities. */
+  void mcor_take_lengths(mcor_found* found, const double* lengths);
+  void mcor_take_densities(mcor_found* found, const double* densities);
+
+  /* The array to show if the user has chosen none, see mcor_view_priority: the active one if it is
+   * fit; -1: none is fit. */
+  int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
+
+  /* The usual name that comes first among these arrays of so many components, which have a value
+   * for each of `tuples` particles; -1: none. */
+  int mcor_find_named(
+    const mcor_named* arrays, int count, mcor_quantity quantity, int components, int64_t tuples);
+
+  /* Whether a block or body of this name holds walls: "walls", "boundary", "tank", ... */
+  int mcor_tells_of_walls(const char* name);
+
+  /* Lists the arrays: "Point arrays: A, B."; free it with free(). */
+  char* mcor_list_names(const mcor_named* arrays, int count);
+
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -35,10 +35,10 @@ from marchingcorrectors._call import extracted
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import OUTPUTS
-from marchingcorrectors._vtk_blocks import (describe_mesh, join_blocks, list_all, sets_of, take_vertices, tells_of_walls,
-                                             walk)
-from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, describe_unused_types,
-                                               find_fittest, find_period, is_single, name_of, varies)
+from marchingcorrectors._find import tells_of_walls
+from marchingcorrectors._vtk_blocks import describe_mesh, join_blocks, list_all, sets_of, take_vertices, walk
+from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of,
+                                               varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
 from marchingcorrectors._warnings import describe_warnings
 
@@ -283,29 +283,29 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _look_at(self, points, ahead):
         """Adds what can be known of these points: the range needs no smoothing length, the cells no scalar."""
-        ahead["Array"] = ahead["Array"] or name_of(find_fittest(points))
-        choice = self._choice()
-        choice.InterpolateAttributes = False
-        particles = Particles(choice, points)
+        choice, none = self._choice(), Request(self, 9, points)
         with suppress(Unusable):
-            particles.collect_solids()
+            fittest = Particles(choice, points, ["fluid", "array"], (none, none))
+            ahead["Array"] = ahead["Array"] or name_of(fittest.scalar)
+        with suppress(Unusable):
+            particles = self._find(choice, points, ["fluid", "scalar"])
             ahead["Fluid"] = particles.describe_fluid()
             if not choice.FreeSurface:
-                particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
                 ends, value = particles.find_iso_value() or ((), 0.0)
                 if ends:
                     before = ahead["ScalarRange"] if ahead["IsoValue"] == ahead["IsoValue"] else ()
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
-        choice = self._choice()
-        choice.FreeSurface, choice.InterpolateAttributes = True, False
-        particles = Particles(choice, points)
-        with suppress(Unusable):
-            particles.collect((None, None), [])
-            given = particles.arguments()
+        with suppress(Unusable, Error):
+            given = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice)).arguments()
             ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
-            ahead["Cells"] += particles.estimate_cells(given, self._options(choice))
+            ahead["Cells"] += Particles.estimate_cells(given, self._options(choice))
+
+    def _find(self, choice, points, wants, **more):
+        requests = Request(self, 0, points), Request(self, 1, points)
+        return Particles(choice, points, [want for want in wants if want != "scalar" or not choice.FreeSurface],
+                         None if choice.FreeSurface else requests, **more)
 
     # -- a run --
 
@@ -376,27 +376,25 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             return
         choice = self._choice()
         options = self._options(choice)
-        particles = Particles(choice, data)
         try:
             period = find_period(data) if choice.DetectPeriod else None
             if period:
                 options.periodic[:] = period
-            particles.collect((Request(self, 0, data), Request(self, 1, data)),
-                              [camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"], options)
-            if particles.fluid is None:
-                self._warn_once("type", describe_unused_types(data.GetPointData()))
-            if choice.DetectPeriod and not period:
-                raise Unusable(say("NO_PERIOD"))
-            particles.estimate_by_neighbours(options)
-        except (Unusable, Error) as sentence:
-            self._fail(sentence.args[0])
-            return
-        finally:
+            particles = self._find(
+                choice, data, ["fluid", "sizes", "scalar", *["attributes"] * bool(choice.InterpolateAttributes)], options=options,
+                taken=[camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"])
             self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
             self.UsedFluid = particles.describe_fluid()
-        why = particles.describe_no_fluid()
-        if why:
-            self._say(say("NOTHING_WITHOUT_FLUID", why, "no surface"), "Warning")
+            why = particles.text("no_fluid")
+            if why:
+                self._say(say("NOTHING_WITHOUT_FLUID", why, "no surface"), "Warning")
+                return
+            self._warn_once("type", particles.unused_type)
+            self._warn_once("unused", particles.unused)
+            if choice.DetectPeriod and not period:
+                raise Unusable(say("NO_PERIOD"))
+        except (Unusable, Error) as sentence:
+            self._fail(sentence.args[0])
             return
         try:
             self._extract(particles, options, output)
@@ -451,8 +449,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
         iso = [value for value in iso if value == value]  # an empty row of a panel's list is none
         if not iso:
-            found = None if choice.FreeSurface else particles.find_iso_value()
-            iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
+            found = (None, 0.5) if choice.FreeSurface else particles.find_iso_value()
+            iso = [found[1]] if found else []
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
         self.UsedVolume = take_text(lib.mcor_describe_volume(ctypes.byref(arguments.input)))

@@ -13,11 +13,11 @@ import pyvista
 from . import _functions, _meters
 from ._arrays import QUANTITIES, as_points
 from ._call import Shared, own_keywords
-from ._library import InvalidArgument, say
+from ._find import Found
+from ._library import InvalidArgument, say, word_by
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import (GHOSTS, WALL_BLOCK, describe_missing_length, detect, find_period, join_velocity,
-                             name_of)
+from ._vtk_particles import GHOSTS, WALL_BLOCK, detect, find_period, name_of, named, to_numpy
 from ._warnings import warn
 from .io import Particles as FileParticles
 
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 ABOUT_PARTICLES = '''
         smoothing_length, volume, mass, density: the name of a point array, an array, or one value
             for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
-            rho, ...). volume="computed": by the particles' distances, whatever arrays there are.
+            rho, ...). volume="computed": by the particles' distances and masses, whatever volumes
+            and densities there are.
         fluid: ("ParticleType", 0): where this point array has another value, there are solids.
         within: (x0, x1, y0, y1, z0, z1): particles beyond these bounds are left out.
         only: {"ParticleType": 1} or {"ParticleType": (1, 3)}: particles with other values in these
@@ -80,9 +81,12 @@ class PointData(FileParticles):
     def __init__(self, data):
         points = data.point_data
         arrays = {name: lambda name=name: np.asarray(points[name]) for name in points.keys() if name not in (GHOSTS, WALL_BLOCK)}
-        joined = join_velocity(data.GetPointData(), data.n_points)
-        if joined is not None:
-            arrays["Velocity"] = lambda: pyvista.convert_array(joined)
+        found = self.found = Found(to_numpy(data.GetPoints().GetData()) if data.n_points else np.empty((0, 3)),
+                                   named(data.GetPointData()), ["sizes", "list", "attributes"], find=True)
+        if found.found.made[0].name:
+            arrays["Velocity"] = lambda: found.made(0)[1]
+        index = found.which("velocity")
+        self.velocity = "Velocity" if index is None else name_of(data.GetPointData().GetAbstractArray(index)) or "Velocity"
         super().__init__("The data set", "VTK", lambda: np.asarray(data.points), arrays,
                          solid=np.asarray(points[WALL_BLOCK]) if WALL_BLOCK in points else None,
                          **{name: name_of(detect(data.GetPointData(), data.n_points, name)) or None for name in QUANTITIES})
@@ -104,8 +108,8 @@ class PointData(FileParticles):
 
     def check_smoothing_length(self, words):
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None and not self.smoothing_length:
-            remedy = "Give smoothing_length=, a name or a value, or estimate_smoothing_length=True"
-            raise InvalidArgument(describe_missing_length(self.data.GetPointData(), remedy))
+            error = Found(np.empty((len(self), 3)), named(self.data.GetPointData()), ["sizes"], find=True).error
+            raise InvalidArgument(error.say(word_by(lambda slot, _: slot + "=True" * slot.startswith("estimate"))))
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
@@ -239,7 +243,7 @@ class SphAccessor:
         """
         particles, words = self._prepare(words, with_attributes=False)
         if velocity is None:
-            velocity = name_of(detect(particles.data.GetPointData(), len(particles), "velocity", 3)) or "Velocity"
+            velocity = particles.velocity
         return _meters.flux(particles, velocity, _triangles_in(sections), iso, **words)
 
     @_method(PROJECT)

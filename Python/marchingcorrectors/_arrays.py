@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
+from ._find import as_bytes
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
 from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of, without_unit
@@ -126,11 +127,6 @@ def choose(only, array_of):
             raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
         chosen[name] = chosen.get(name, False) | (array >= low) & (array <= high)
     return np.all(list(chosen.values()), axis=0) if chosen else None
-
-
-def as_bytes(text):
-    """For the core's messages; what has no place in UTF-8 (names of files, say) becomes "?"."""
-    return text.encode(errors="replace")
 
 
 class Arguments:

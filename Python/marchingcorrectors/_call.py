@@ -10,12 +10,15 @@ import inspect
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Union, cast
 
+import numpy as np
+
 from . import _structs as c
-from ._arrays import QUANTITIES, SUMMED, Arguments, as_bytes, choose
+from ._arrays import QUANTITIES, SUMMED, Arguments, choose
 from ._context import Context, default_context
+from ._find import Found, as_bytes, choose_volumes, describe_unused
 from ._library import InvalidArgument, InvalidData, lib, word_by
 from ._options import Function, Options, check_names, did_you_mean, show
-from ._warnings import describe_unused_type, warn, warn_of_particles
+from ._warnings import warn, warn_of_particles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -94,7 +97,7 @@ def _words_of_file(particles, given, masses):
         if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
                 (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
             words[name] = particles.array(text)
-    words = particles.words(words)
+    words = particles.words(words, beside=masses)
     if words.get("smoothing_length") is None and not words.get("estimate_smoothing_length") and len(particles):
         raise InvalidArgument(f"{particles.file} tells no smoothing length. Give smoothing_length=, an array's name or a value, or "
                               "estimate_smoothing_length=True (in a shell --smoothing-length NAME, VALUE or estimate). Arrays: "
@@ -109,21 +112,20 @@ def _words_of_file(particles, given, masses):
 
 
 def _warn_of_unused_type(particles):
-    for name in particles.arrays:
-        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
-            sentence = describe_unused_type(name, particles.arrays[name])
-            if sentence:
-                warn(sentence.say(word_by(lambda slot, name: particles.remedy.format(name=name) if slot == "fluid" else "")))
-                return
+    type_of_particles = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
+    arrays = {name: np.ascontiguousarray(particles.arrays[name]) for name in particles.arrays
+              if lib.mcor_name_priority(type_of_particles, as_bytes(name)) >= 0}
+    sentence = Found(np.empty((len(particles), 3), np.float32), arrays, ["fluid"]).unused_type
+    if sentence:
+        warn(sentence.say(word_by(lambda slot, name: particles.remedy.format(name=name) if slot == "fluid" else "")))
 
 
-def prepare(units, words, attributes=None, named=None):
-    """The core's arguments. words: Keywords. named: what `only` may name, where that is more than the attributes."""
+def prepare(units, words, attributes=None, named=None, beside=False):
+    """The core's arguments. words: Keywords. named: what `only` may name, where that is more than the attributes. beside:
+    masses and densities are wanted beside volumes."""
     options, attributes = dict(words), attributes or {}
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
-    if isinstance(given["volume"], str) and given["volume"] == "computed":
-        given.update(volume=None, mass=None, density=None)
-    _warn_of_ignored(given, options)
+    _drop_unused(given, options, warns=not beside)
     arguments = Arguments(units.positions)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
     arguments.set_quantities(units.quantities(given))
@@ -152,17 +154,18 @@ def _attribute(attributes, name):
     return attributes[name]
 
 
-def _warn_of_ignored(given, options):
-    """Tells of arguments that have no effect beside others."""
+def _drop_unused(given, options, warns):
+    """Leaves of volume, mass and density what makes the volumes, and tells of arguments that have no effect beside others."""
+    words = {"compute_volumes": isinstance(given["volume"], str),
+             "estimate_smoothing_length": bool(options.get("estimate_smoothing_length"))}
+    if words["compute_volumes"]:
+        given["volume"] = None
     has = {name for name in QUANTITIES if given[name] is not None}
-    if options.get("estimate_smoothing_length") and "smoothing_length" in has:
-        warn("smoothing_length is not used, because estimate_smoothing_length takes its place. Leave one of them out.")
-    if "volume" in has and has & {"mass", "density"}:
-        unused = " and ".join(name for name in ("mass", "density") if name in has)
-        warn(f"{unused} {'are' if 'and' in unused else 'is'} not used, because volume is given. Leave volume out to use "
-             "mass / density.")
-    elif "density" in has and "mass" not in has:
-        warn("density is not used, because volumes are mass / density, and there is no mass. Give mass, too.")
+    used = choose_volumes(has, has, **words)
+    unused = describe_unused(has, used, **words) if warns else ""
+    if unused:
+        warn(unused)
+    given.update(dict.fromkeys({"volume", "mass", "density"} - used))
     for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
                         ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
         if options.get(name) and options.get(other):

@@ -314,14 +314,12 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     {options}
     """
     units = Units(positions)
-    volume, mass, density = map(words.get, ("volume", "mass", "density"))
+    mass, density = map(words.get, ("mass", "density"))
     if isinstance(scalar, str) and scalar == SUMMED:  # of particles without that array: the sum of their masses
         scalar = None
-    # Masses and densities that volumes are not made of.
-    is_made = volume is None and mass is not None or isinstance(volume, str) and scalar is not None
-    arguments = prepare(units, words if is_made else {**words, "mass": None, "density": None})
-    if not is_made:
-        arguments.set_quantities({"mass": without_unit(mass), "density": without_unit(density)})
+    arguments = prepare(units, words, beside=True)
+    if not lib.mcor_is_given(ctypes.byref(arguments.input.mass)):
+        arguments.set_quantities({"density": without_unit(density)} if mass is None else {"mass": without_unit(mass)})
     if scalar is not None:
         arguments.input.scalar = arguments.per_particle(without_unit(scalar), "scalar")
         if arguments.input.scalar.components == 1:

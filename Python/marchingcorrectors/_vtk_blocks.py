@@ -8,12 +8,11 @@ from vtkmodules.vtkCommonDataModel import (vtkDataObjectTree, vtkPartitionedData
                                            vtkUnstructuredGrid)
 
 from . import _structs as c
+from ._find import tells_of_walls
 from ._library import lib, say
 from ._vtk_particles import WALL_BLOCK, name_of
 from ._vtk_surface import add, add_nearest
 from .io._cells import VERTICES, find_vertices
-
-WALL_WORDS = ("wall", "bound", "solid", "obstacle", "rigid")
 
 
 def walk(tree, empty=False):
@@ -112,10 +111,6 @@ def describe_mesh(data, taken):
 def list_all(data):
     """The data set, and all that it is made of."""
     return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
-
-
-def tells_of_walls(name):
-    return any(word in name.lower() for word in WALL_WORDS)
 
 
 def join_array(sets, like, joined):

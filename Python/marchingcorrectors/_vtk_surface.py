@@ -124,9 +124,9 @@ def add_parameters(data, particles, arguments, wall_share):
     for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", *["ignore_solids"] * has_fluid):
         add(data, camel(name), [getattr(given, name)])
     add(data, "Scalar", particles.scalar_name)
-    add(data, "FluidArray", particles.choice.FluidArrayName if has_fluid else "")
+    add(data, "FluidArray", particles.fluid_name)
     if has_fluid:
-        add(data, "FluidValue", [float(particles.choice.FluidValue)])
+        add(data, "FluidValue", [particles.found.fluid_value])
         add(data, "WallShare", [wall_share])
     add(data, "CubeSizeMode", "adaptive" if o.level_limit else "uniform")
     if o.capping or any(low < high for low, high in zip(o.periodic[::2], o.periodic[1::2])):

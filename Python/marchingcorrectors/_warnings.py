@@ -5,8 +5,6 @@ import ctypes
 import sys
 import warnings
 
-import numpy as np
-
 from . import _structs as c
 from ._library import Error, lib, take_sentence
 
@@ -45,14 +43,3 @@ def warn_of_particles(arguments, statistics):
     for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
         if kinds[kind] in found:
             warn(found[kinds[kind]])
-
-
-def describe_unused_type(name, values):
-    """A sentence about an array of particle types where all particles count as fluid, or ""."""
-    kinds, counts = np.unique(np.asarray(values), return_counts=True)
-    if not 2 <= len(kinds) <= 8:  # the core's limit, before arrays are made for it
-        return ""
-    kinds = np.where(np.isnan(kinds), np.nan, kinds)  # not -nan, which C would print as such
-    return take_sentence(lib.mcor_describe_unused_type(
-        name.encode(errors="replace"), (ctypes.c_double * len(kinds))(*kinds.tolist()),
-        (ctypes.c_int64 * len(kinds))(*counts.tolist()), len(kinds)))

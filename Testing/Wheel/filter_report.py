@@ -3,7 +3,7 @@
 """Reports what the VTK filter, whichever there is, says and makes of particle files, as JSON.
 
     filter_report.py CASES.json
-CASES: [[file, scalar, iso value, {property: value}]]
+CASES: [[file, scalar, iso value, {property: value}]]; with null as iso value, neither it nor the scalar is chosen.
 """
 import hashlib
 import json
@@ -13,14 +13,20 @@ import sys
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
+# Which array serves for what, and defaults, before a run and in it.
+FOUND = [f"Used{name}ArrayName" for name in ("SmoothingLength", "Volume", "Mass", "Density")] + [
+    "UsedFluid", "UsedIsoValues", "IsoValueArrayName", "NextArray", "NextIsoValue", "NextScalarRange", "NextComponents",
+    "NextDimension", "NextFluid", "NextCells"]
 COSTS = ("Seconds", "Device", "Platform", "DeviceBytesPeak")  # These belong to one run, not to the surface.
 
 
 def hash_of(array):
+    if array.IsA("vtkStringArray"):
+        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
     values = vtk_to_numpy(array)
     return f"{values.dtype} {values.shape} {hashlib.sha256(values.tobytes()).hexdigest()[:16]}"
 
@@ -28,7 +34,7 @@ def hash_of(array):
 def report_mesh(surface):
     """Returns hashes of a surface's parts."""
     data = surface.GetPointData()
-    found = {"arrays": {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}}
+    found = {"arrays": {data.GetArrayName(i): hash_of(data.GetAbstractArray(i)) for i in range(data.GetNumberOfArrays())}}
     if surface.GetNumberOfPoints():
         found["points"] = hash_of(surface.GetPoints().GetData())
         for part, cells in ("triangles", surface.GetPolys()), ("lines", surface.GetLines()):
@@ -45,12 +51,14 @@ def report_fields(data):
 
 
 def report(file, scalar, value, properties):
-    reader, extract, said = vtkXMLPolyDataReader(), vtkMarchingCorrectors(), []
+    reader = vtkXMLMultiBlockDataReader() if file.endswith(".vtm") else vtkXMLPolyDataReader()
+    extract, said = vtkMarchingCorrectors(), []
     reader.SetFileName(file)
     reader.Update()
-    extract.SetInputData(reader.GetOutput())
-    extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, scalar)
-    extract.SetValue(0, value)
+    extract.SetInputData(reader.GetOutputDataObject(0))
+    if value is not None:
+        extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, scalar)
+        extract.SetValue(0, value)
     for name, setting in properties.items():
         getattr(extract, "Set" + name)(setting)
 
@@ -64,7 +72,8 @@ def report(file, scalar, value, properties):
     return {"warnings": said, "error": extract.GetErrorMessage(), **report_mesh(extract.GetOutput()),
             "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
             "measures": extract.GetSurfaceMeasures(), "cells": f"{extract.GetEstimatedCells():.9g}",
-            "fields": report_fields(extract.GetRunStatistics())}
+            "fields": report_fields(extract.GetRunStatistics()),
+            "found": {name: getattr(extract, "Get" + name)() for name in FOUND}}
 
 
 def main():

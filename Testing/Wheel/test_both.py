@@ -107,6 +107,72 @@ def make_cases(folder):
     }
 
 
+def make_found(folder):
+    """Sets of all kinds of which nothing is said: {name: [file, what --list-arrays says, what warnings say]}."""
+    def of(name, arrays, fields=(), positions=None, kind=np.float32):
+        x = np.stack(np.meshgrid(*[np.arange(9)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1 if positions is None else positions
+        x = (x + np.random.default_rng(2).normal(0, 0.004, x.shape) * (positions is None)).astype(kind)
+        particles = pyvista.PolyData(x)
+        for array, make in arrays.items():
+            particles[array] = make(x) if callable(make) else np.full(len(x), make)
+        for field, values in dict(fields).items():
+            particles.field_data[field] = values
+        file = folder / f"found {name}.vtp"
+        particles.save(file)
+        return str(file)
+
+    def kinds(*values, kind=np.int32):
+        return lambda x: np.resize(np.repeat(np.array(values, kind), 7), len(x))
+
+    plane = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0), [0.5], indexing="ij"), -1).reshape(-1, 3) * 0.1
+    h, v, speed = {"h": 0.13}, {"Volume": 1e-3}, {"Speed": lambda x: x[:, 0]}
+    m, rho, vector = {"Mass": 1.0}, {"Density": 1000.0}, {"Velocity": lambda x: x * [1, 2, 3]}
+    parts = {"vx": lambda x: x[:, 0], "vy": lambda x: x[:, 1], "vz": lambda x: x[:, 2]}
+    ids = {"Idp": lambda x: np.arange(len(x))}
+    water, wall = of("water", {**h, **speed}), of("wall", {**h, "Mass": 2.0}, positions=plane)
+    blocks = pyvista.MultiBlock({"water": pyvista.read(water), "Boundary": pyvista.read(wall)})
+    blocks.save(folder / "blocks.vtm")
+    sets = {
+        "positions": ({}, "smoothing length  none"), "h": (h, "smoothing length  h"),
+        "names": ({"Smoothing-Length": 0.13, "particle_volume": 1e-3, **speed}, "volume            particle_volume"),
+        "ranks of names": ({"h": 0.2, "hsml": 0.13, "vol": 9.0, "Volume": 1e-3}, "smoothing length  hsml"),
+        "volumes": ({**h, **v, **speed}, "volume            Volume"),
+        "mass": ({**h, **m, **speed}, "computed from the positions and Mass"),
+        "mass and density": ({**h, **m, **rho, **speed}, "Mass / Density"),
+        "mass beside volumes": ({**h, **m, **rho, **v}, "volume            Volume"),
+        "density alone": ({**h, **rho}, "computed from the positions\n"),
+        "vector as mass": ({**h, "Mass": lambda x: x}, "computed from the positions\n"),
+        "integers": ({"h": lambda x: np.full(len(x), 1, np.int16), "Volume": lambda x: np.full(len(x), 1, np.uint8),
+                      "level": lambda x: (10 * x[:, 0]).astype(np.int64)}, "volume            Volume"),
+        "floats and doubles": ({"h": lambda x: np.full(len(x), 0.13, np.float32), **m, "Rho": lambda x: np.full(
+            len(x), 1e3, np.float32), "T": lambda x: x[:, 1].astype(np.float32)}, "Mass / Rho"),
+        "parts of velocity": ({**h, **parts}, "velocity          vx, vy, vz as Velocity"),
+        "parts beside a vector": ({**h, **parts, "vel": lambda x: x}, "velocity          vel"),
+        "whole parts": ({**h, **parts, "vy": lambda x: np.arange(len(x))}, "velocity          none"),
+        "velocity": ({**h, **vector, **ids}, "velocity          Velocity"), "ids": ({**h, **ids}, "velocity          none"),
+        "constants": ({**h, "a": 1.0, "b": 2.0}, "fluid             all particles"),
+        "text": ({**h, "name": lambda x: np.array(["gas"] * len(x))}, "not numbers"),
+        "DualSPHysics": ({**ids, "Vel": lambda x: x, "Rhop": 1000.0, "Type": kinds(0, 1, 2, 3, kind=np.uint8)}, "fluid             Type = 3"),
+        "fluid of two types": ({**h, **speed, "ParticleType": kinds(0, 1)}, "fluid             ParticleType = 0"),
+        "is fluid": ({**h, **speed, "is_fluid": kinds(0, 1, kind=np.float64)}, "fluid             is_fluid = 1"),
+        "types of three": ({**h, **speed, "Type": kinds(1, 2, 4)}, "fluid             all particles"),
+        "one type": ({**h, **speed, "Type": kinds(3)}, "fluid             all particles"),
+        "many types": ({**h, **speed, "Type": lambda x: np.arange(len(x)) % 9}, "fluid             all particles"),
+        "halves": ({**h, **speed, "ptype": kinds(0, 0.5, 1, kind=np.float64)}, "fluid             all particles"),
+        "no number as a type": ({**h, **speed, "type": kinds(0, np.nan, 1, kind=np.float32)}, "fluid             all particles"),
+        "two arrays of types": ({**h, **speed, "Type": kinds(1, 2), "IsWall": kinds(0, 1)}, "fluid             IsWall = 0"),
+        "PySPH": ({**h, "rho": 1e3, "m": 1.0, "gid": lambda x: np.arange(len(x)), "p": lambda x: x[:, 2]}, "m / rho"),
+        "GADGET": ({"SmoothingLength": 0.13, "Masses": 1.0, "Density": 1e3, "ParticleIDs": lambda x: np.arange(len(x))},
+                   "period            2 (field data BoxSize", {"BoxSize": [2.0]}),
+        "SPH-EXA": ({**h, **parts}, "period            0,2,0,0,0,0", {"box": [0.0, 2, 0, 2, 0, 2], "boundaryType": [1, 0, 0]}),
+        "six bounds": ({**h, **speed}, "field data PeriodicBounds", {"PeriodicBounds": [0, 2, 0, 0, 0, 0]}),
+        "no period": ({**h, **speed}, "period            none", {"BoxSize": [-1.0]}),
+        "plane": ({**h, **speed}, "dimension         2", (), plane),
+    }
+    return {**{name: [of(name, one[0], *one[2:]), one[1]] for name, one in sets.items()},
+            "blocks": [str(folder / "blocks.vtm"), None]}
+
+
 WANTED = {"no period": "'ParticleType' is not used", "unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "iso value": "Iso value 99 is outside",
           "neighbours": "neighbours within its support", "few neighbours": "not in the unit", "plane": "lie in a plane",
           "tilted plane": "tilted in space",
@@ -136,9 +202,9 @@ class Test(unittest.TestCase):
         assert "MarchingCorrectorsFilter" in cls.wheel["class"], cls.wheel["class"]
 
     @classmethod
-    def run_report(cls, python, environment):
+    def run_report(cls, python, environment, cases=None):
         file = Path(cls.folder.name) / "cases.json"
-        file.write_text(json.dumps(list(cls.cases.values())))
+        file.write_text(json.dumps(list(cls.cases.values()) if cases is None else cases))
         done = subprocess.run([python, str(REPORT), str(file)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True, env={**os.environ, **environment})
         assert done.returncode == 0, done.stderr[-3000:]
@@ -168,6 +234,44 @@ class Test(unittest.TestCase):
         for name, found, expected in zip(self.cases, self.wheel["cases"], cxx["cases"]):
             for part in sorted({*found, *expected}):
                 self.assertEqual(found.get(part), expected.get(part), f"{name}: {part}")
+
+    def test_found(self):
+        """All that is found where nothing is given: by the filters of both languages, and by the program."""
+        folder = Path(self.folder.name)
+        sets = make_found(folder)
+        cases = [[file, "", None, {"DetectFluid": detects, "FreeSurface": free}] for file, _ in sets.values()
+                 for detects, free in ((1, 0), (0, 1))]
+        python = self.run_report(sys.executable, {}, cases)["cases"]
+        if os.environ.get("MCOR_TEST_VTK_PYTHON"):
+            cxx = self.run_report(os.environ["MCOR_TEST_VTK_PYTHON"], {"PYTHONPATH": os.environ["MCOR_TEST_VTK_PATH"]}, cases)
+            for case, found, expected in zip(cases, python, cxx["cases"]):
+                self.assertEqual(found, expected, case)
+        for i, (name, (file, listed)) in enumerate(sets.items()):
+            found, free = python[2 * i]["found"], python[2 * i + 1]
+            if listed is None or not os.environ.get("MCOR_TEST_PROGRAM"):
+                continue
+            said = subprocess.run([os.environ["MCOR_TEST_PROGRAM"], file, "--list-arrays"], stdout=subprocess.PIPE, check=True,
+                                  text=True).stdout
+            self.assertIn(listed, said, name)
+            told = dict(line.split("  ", 1) for line in said.splitlines() if "  " in line)
+            told = {key: value.strip() for key, value in told.items()}
+            fluid = found["NextFluid"]
+            self.assertEqual(told["fluid"], f"{fluid} (give --fluid {fluid.replace(' ', '')})" if fluid else "all particles", name)
+            self.assertEqual(told["smoothing length"].startswith("none"), bool(free["error"]), name)
+            if free["error"]:
+                continue
+            self.assertEqual(told["dimension"], str(found["NextDimension"]), name)
+            self.assertEqual(told["smoothing length"], found["UsedSmoothingLengthArrayName"], name)
+            arrays = [found[f"Used{quantity}ArrayName"] for quantity in ("Volume", "Mass", "Density")]
+            self.assertEqual(told["volume"], arrays[0] or (arrays[2] and " / ".join(arrays[1:]))
+                             or "computed from the positions" + (arrays[1] and f" and {arrays[1]}"), name)
+            output, statistics = folder / "program.vtp", folder / "program.json"
+            subprocess.run([os.environ["MCOR_TEST_PROGRAM"], file, str(output), "--free-surface", "--stats", str(statistics)],
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=True)
+            self.assertEqual([re.sub(r"^the surface is empty: | \(--[^)]*\)|: --[^)]*(?=\))", "", each).split(". ")[0]
+                              for each in json.loads(statistics.read_text())["warnings"] if "may be a period" not in each],
+                             [each.split(". ")[0] for each in free["warnings"]], name)
+        self.assertEqual(len(sets), 35)
 
     @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
     def test_program(self):

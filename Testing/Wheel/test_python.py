@@ -226,9 +226,9 @@ class Warned(unittest.TestCase):
             self.assertRegex(" ".join(str(each.message) for each in caught(call)), "^" + says("PERIOD_EXCEEDED", "1.1"))
 
     def test_what_is_not_used(self):
-        for words, sentence in (({"estimate_smoothing_length": True}, "smoothing_length is not used"),
+        for words, sentence in (({"estimate_smoothing_length": True}, "smoothing length is not used"),
                                 ({"density": 1.0, "volume": None}, "density is not used.*there is no mass"),
-                                ({"mass": 1.0}, "mass is not used, because volume is given"),
+                                ({"mass": 1.0}, "mass is not used, because volumes are given"),
                                 ({"mass": 1.0, "density": 1.0}, "mass and density are not used"),
                                 ({"cube_size": 0.1, "cube_size_factor": 1}, "cube_size_factor is not used, because cube_size is given"),
                                 ({"preview": True, "tolerance": 0.1}, "tolerance is not used, because preview is given"),

@@ -3,13 +3,12 @@
 """Particles of a file, whose arrays are read when they are asked for."""
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
-from .. import _structs as c
+from .._find import choose_volumes, describe_unused, find_named
 from .._library import Error, lib, say
 from .._options import did_you_mean, words_of
 from .._warnings import warn
@@ -20,10 +19,8 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
 
-# Names of bodies and of sets that tell of walls; rb_particle_data is SPlisHSPlasH's rigid bodies.
-WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
-
 GHOSTS = "vtkGhostType"
+NO_VALUE = np.empty(0, np.float32)
 TIMES = ("TimeValue", "TIME", "Time", "time")  # arrays of field data, in VTK's files
 
 
@@ -155,6 +152,17 @@ class Particles:
     def __repr__(self) -> str:
         return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays) or 'none'}>"
 
+    def _choose_volumes(self, words, beside):
+        """What is given of volume, mass and density takes the place of that quantity alone."""
+        sizes, compute = ("volume", "mass", "density"), {"compute_volumes": isinstance(words.get("volume"), str)}
+        given = {name for name in sizes if words.get(name) is not None and not isinstance(words[name], str)}
+        used = choose_volumes(given, given | {name for name in sizes if getattr(self, name) is not None}, **compute)
+        unused = "" if beside else describe_unused(given, used, str(self.volume), **compute)
+        if unused:
+            warn(unused)
+            words.update(dict.fromkeys(given - used))
+        words.update({name: self.quantity(name) for name in used - given})
+
     def array(self, name: str) -> np.ndarray:
         if name not in self.arrays:
             raise FileError(f"{self.file} has no array '{name}'.{did_you_mean(name, self.arrays)} Arrays: "
@@ -171,19 +179,15 @@ class Particles:
             value = value * self.h_factor
         return value
 
-    def words(self, given):
-        """Keywords of the functions for NumPy, which what is given goes before."""
+    def words(self, given, beside=False):
+        """Keywords of the functions for NumPy, which what is given goes before. beside: masses and densities are wanted
+        beside volumes."""
         words = dict(given)
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
             words["smoothing_length"] = self.quantity("smoothing_length")
             if words["smoothing_length"] is not None:
                 words.setdefault("smoothing_length_is_support_radius", self.support_radius)
-        if words.get("mass") is None and words.get("density") is None and words.get("volume") is None:
-            words["volume"] = self.quantity("volume")
-        if words.get("volume") is None:  # what is given of mass and density takes the file's place, the other stays
-            words["mass"] = self.quantity("mass") if words.get("mass") is None else words["mass"]
-            if words["mass"] is not None and words.get("density") is None:
-                words["density"] = self.quantity("density")
+        self._choose_volumes(words, beside)
         if words.get("solid") is None and self.solid is not None:
             words["solid"] = self.solid
         if self.period is not None:
@@ -206,10 +210,8 @@ class Particles:
 
 def usual(names, quantity):
     """The name most usual for a quantity, of several; None where none is. The core knows them."""
-    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
-    ranks = [(lib.mcor_name_priority(number, name.encode(errors="replace")), i) for i, name in enumerate(names)]
-    best = min((rank for rank in ranks if rank[0] >= 0), default=None)
-    return names[best[1]] if best else None
+    best = find_named([(name, NO_VALUE) for name in names], quantity, 1, 0)
+    return None if best < 0 else names[best]
 
 
 def by_name(file, pairs):

@@ -6,8 +6,9 @@ from importlib import import_module
 
 import numpy as np
 
+from .._find import tells_of_walls
 from ._packed import ending_of, read_head
-from ._particles import WALL, FileError, Particles, choose_step, join, join_bodies, usual
+from ._particles import FileError, Particles, choose_step, join, join_bodies, usual
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
 XYZ = (".xyz", ".extxyz", ".exyz")
@@ -91,7 +92,7 @@ def read_bodies(paths, walls, step):
     bodies = [load(path, step) for path in every]
     if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # a step of a film may be empty
         raise FileError(f"{paths[0].name} has no points.")
-    marked = [path in walls or not walls and len(every) > 1 and bool(WALL.search(path.stem)) for path in every]
+    marked = [path in walls or not walls and len(every) > 1 and tells_of_walls(path.stem) for path in every]
     counts = [len(body.points) for body in bodies]
     fluids = [body for body, wall in zip(bodies, marked) if not wall] or bodies
     common = [name for name in fluids[0].arrays if all(

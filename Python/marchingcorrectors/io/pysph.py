@@ -4,7 +4,8 @@
 
 import numpy as np
 
-from ._particles import WALL, FileError, Particles
+from .._find import tells_of_walls
+from ._particles import FileError, Particles
 from .hdf5 import Part, check_claims, data_set, get, load, names_of
 
 
@@ -27,7 +28,7 @@ def read_pysph(path):
     if not sets:
         raise FileError(f"{path.name} has no particles.")
     parts, counts = [part for part, _ in sets.values()], [part.size() for part, _ in sets.values()]
-    walls = [bool(WALL.search(name)) for name in sets]
+    walls = [tells_of_walls(name) for name in sets]
     fluids = [names for (_, names), wall in zip(sets.values(), walls) if not wall] or [names for _, names in sets.values()]
     names = [name for name in fluids[0] if all(name in each for each in fluids)]
     solid = np.repeat(walls, counts)

@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the core finds among named arrays: mcor_find.h."""
+import ctypes
+
+import numpy as np
+
+from . import _structs as c
+from ._library import lib, take_sentence
+
+ROLES = {name[len("MCOR_ROLE_"):].lower(): number for name, number in c.ENUMS["mcor_role"].items()
+         if not name.endswith("_COUNT")}
+WANTS = {name[len("MCOR_WANT_"):].lower(): number for name, number in c.ENUMS["mcor_want"].items()}
+ELEMENTS = {np.dtype(word): number for number, word in enumerate(("f4", "f8", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"))}
+OTHER = c.ENUMS["mcor_element"]["MCOR_ELEMENT_OTHER"]
+
+
+def as_bytes(text):
+    """For the core's messages; what has no place in UTF-8 (names of files, say) becomes "?"."""
+    return text.encode(errors="replace")
+
+
+def list_named(arrays):
+    """The core's list of {name: array}, or of pairs. What is no array of numbers has a shape alone."""
+    pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
+    named = (c.mcor_named * max(len(pairs), 1))()
+    for each, (name, array) in zip(named, pairs):
+        kind = np.dtype(np.uint8) if getattr(array, "dtype", None) == bool else getattr(array, "dtype", None)
+        each.name, each.type = None if name is None else as_bytes(name), ELEMENTS.get(kind, OTHER)
+        each.tuples, each.components = array.shape[0], int(np.prod(array.shape[1:], dtype=int))
+        if each.type != OTHER and array.size:
+            each.data = array.ctypes.data
+            each.stride[0] = array.strides[0] if len(array) > 1 else 0
+            each.stride[1] = array.strides[1] if array.ndim > 1 and array.shape[1] > 1 else 0
+    return named, len(pairs)
+
+
+def find_named(arrays, quantity, components, count):
+    """The index of the array with the most usual name for a quantity; -1: none."""
+    named, many = list_named(arrays)
+    return lib.mcor_find_named(named, many, c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], components, count)
+
+
+def choose_view(arrays, active=-1):
+    """The index of the array to show where nobody has chosen one; -1: none is fit."""
+    return lib.mcor_choose_view(*list_named(arrays), active, None)
+
+
+def tells_of_walls(name):
+    """Whether a block or body of this name holds walls."""
+    return bool(lib.mcor_tells_of_walls(as_bytes(name)))
+
+
+def role_bits(names):
+    return sum(1 << ROLES[name] for name in names)
+
+
+class Found:
+    """Holds an mcor_found, as `found`, and the arrays that it borrows.
+
+    wants: names of mcor_want; names: {role: name}; values: {role: number}; only: (name, low, high); taken, excluded: names;
+    words: further members of mcor_request.
+    """
+
+    def __init__(self, positions, arrays, wants, names=None, values=None, only=(), taken=(), excluded=(), **words):
+        pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
+        request = c.mcor_request(wants=sum(WANTS[name] for name in wants), active=-1)
+        for role, name in (names or {}).items():
+            request.names[ROLES[role]] = as_bytes(name or "")
+        for role, value in (values or {}).items():
+            request.values[ROLES[role]] = value
+        for name, value in words.items():
+            if isinstance(getattr(request, name), ctypes.Array):
+                getattr(request, name)[:] = value
+            else:
+                setattr(request, name, value)
+        ranges = (c.mcor_only * max(len(only), 1))(*((as_bytes(name), low, high) for name, low, high in only))
+        request.only, request.only_count = ranges, len(only)
+        request.taken, request.excluded = as_bytes("\n".join(taken)), as_bytes("\n".join(excluded))
+        self.found, self._kept = c.mcor_found(), (positions, pairs, ranges)
+        named, count = list_named(pairs)
+        status = lib.mcor_find_input(ctypes.byref(request), list_named([(None, positions)])[0], named, count, None,
+                                     ctypes.byref(self.found))
+        self.error, self.unused_type, self.unused = (
+            take_sentence(getattr(self.found, name)) for name in ("error", "unused_type", "unused"))
+        if status and not self.error:
+            raise MemoryError
+
+    def __del__(self):
+        if hasattr(self, "found"):
+            lib.mcor_free_found(ctypes.byref(self.found))
+
+    def text(self, member):
+        return (getattr(self.found, member) or b"").decode(errors="replace")
+
+    def which(self, role):
+        """The index of the array; beyond the last one: number 0, 1 of those that were made. None: there is none."""
+        index = self.found.which[ROLES[role]]
+        return None if index < 0 else index
+
+    def attributes(self):
+        return self.found.attributes[:self.found.input.attribute_count]
+
+    def nearest(self):
+        return self.found.nearest[:self.found.nearest_count]
+
+    def made(self, i):
+        """(name, array), a copy."""
+        made = self.found.made[i]
+        kind = next(dtype for dtype, number in ELEMENTS.items() if number == made.type)
+        size = made.tuples * made.components
+        data = np.frombuffer((ctypes.c_char * (size * kind.itemsize)).from_address(made.data), kind).copy() if size else \
+            np.empty(0, kind)
+        return made.name.decode(), data.reshape(made.tuples, made.components) if made.components > 1 else data
+
+
+def describe_unused(given, used, volumes=None, **words):
+    """A sentence about what is given by hand and has no effect; given, used: names of quantities."""
+    request = c.mcor_request(**words)
+    return take_sentence(lib.mcor_describe_unused(ctypes.byref(request), role_bits(given), role_bits(used),
+                                                  None if volumes is None else as_bytes(volumes)))
+
+
+def choose_volumes(given, known, **words):
+    """Which of these quantities make the volumes."""
+    used = lib.mcor_choose_volumes(ctypes.byref(c.mcor_request(**words)), role_bits(given), role_bits(known))
+    return {name for name in known if used & role_bits([name])}

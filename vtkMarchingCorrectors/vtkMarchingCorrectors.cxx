@@ -103,26 +103,20 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 }
 
 void vtkMarchingCorrectors::FillChoice(
-  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
+  vtkMarchingCorrectorsChoice& choice, vtkRun& run)
 {
-  static_cast<vtkSPHParticlesChoice&>(choice) = *this;
-  this->FillRequests(choice, particles, merge);
+  if (!this->FreeSurface) // which contours no array: all of their values need not be seen
+  {
+    choice.Scalar = this->FindRequest(0, run.Own);
+    choice.ScalarDot = this->FindRequest(1, run.Own);
+  }
+  static_cast<vtkSPHParticlesChoice&>(choice) =
+    run.Choose(this->FreeSurface ? nullptr : &choice.Scalar);
   choice.ScalarComponent = this->ScalarComponent;
   choice.FreeSurface = this->FreeSurface != 0;
   choice.InterpolateAttributes = this->InterpolateAttributes != 0;
   choice.ComputeScalars = this->ComputeScalars != 0;
   choice.Filled = this->Filled != 0;
-  this->FindFluid(choice, particles, merge);
-}
-
-void vtkMarchingCorrectors::FillRequests(
-  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
-{
-  if (!this->FreeSurface) // which contours no array: all of their values need not be seen
-  {
-    choice.Scalar = this->FindFirstRequest(particles, merge);
-    choice.ScalarDot = this->FindRequest(1, particles);
-  }
 }
 
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
@@ -148,7 +142,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   }
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
-  this->FillChoice(choice, run->Own, run->MergeRanges());
+  this->FillChoice(choice, *run);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(run->Options);
   vtkMarchingCorrectorsInput input(choice, run->Own);
   if (!this->Take(*run, input))
@@ -206,7 +200,7 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   }
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
-  this->FillChoice(choice, run->Own, run->MergeRanges());
+  this->FillChoice(choice, *run);
   choice.InterpolateAttributes = false;
   vtkMarchingCorrectorsInput input(choice, run->Own);
   vtkNew<vtkPointData> found;
@@ -253,7 +247,7 @@ bool vtkMarchingCorrectors::FindWidening(
   }
   std::fill_n(sums->Options.box, sums->IsShared() ? 6 : 0, 0.0);
   vtkSPHParticles* input =
-    sums->Share(mine, [](vtkSPHParticles& near) { return near.CollectParticles(); });
+    sums->Share(mine, [](vtkSPHParticles& near) { return near.Collect(); });
   vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
   if (!input ||
     !sums->Call(*input,
@@ -420,16 +414,17 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
   taken = this->TakesTogether() ? this->JoinParticles(taken).Get() : taken.Get();
   for (vtkPointSet* particles : vtkSPHListPointSets(taken))
   {
+    vtkRun run(this);
+    run.Own = particles;
     vtkMarchingCorrectorsChoice choice;
-    this->FillChoice(choice, particles);
+    this->FillChoice(choice, run);
     choice.InterpolateAttributes = false;
+    vtkSPHRequest fittest;
+    run.Choose(&fittest);
+    next.Array = next.Array.empty() ? fittest.Name : next.Array;
     vtkMarchingCorrectorsInput contoured(choice, particles);
-    const bool isJoined = contoured.JoinVelocity() != nullptr;
-    next.Array = !next.Array.empty() ? next.Array
-      : isJoined                     ? "Velocity"
-                                     : vtkSPHChooseArray(particles->GetPointData());
     double range[2], value;
-    if (!choice.FreeSurface && contoured.CollectContoured() &&
+    if (!choice.FreeSurface && contoured.Collect(MCOR_WANT_SCALAR) &&
       mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
     {
       const bool isFirst = std::isnan(next.IsoValue);
@@ -440,10 +435,11 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
     }
     choice.FreeSurface = true;
     vtkMarchingCorrectorsInput input(choice, particles);
-    if (input.Collect())
+    const bool isUsable = input.Collect();
+    next.Fluid = input.DescribeFluid();
+    if (isUsable)
     {
       next.Dimension = mcor_find_dimension(&input.Core, nullptr, this->Dimension);
-      next.Fluid = input.DescribeFluid();
       next.Cells +=
         mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
     }

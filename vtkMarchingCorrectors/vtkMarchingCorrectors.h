@@ -516,10 +516,7 @@ private:
     const mcor_input& core, const mcor_options& options, double largestFloat);
   bool Take(vtkRun& run, vtkMarchingCorrectorsInput& input);
   void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
-  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
-    const vtkSPHMergeRanges& merge = nullptr);
-  void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
-    const vtkSPHMergeRanges& merge = nullptr);
+  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkRun& run);
   void FillOptions(mcor_options& options);
   /** Findings of the next update, ahead of it. */
   struct vtkAhead

@@ -203,28 +203,6 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   return request;
 }
 
-// Active scalars of a file are nobody's choice.
-vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
-  vtkPointSet* particles, const vtkSPHMergeRanges& merge)
-{
-  vtkSPHRequest request = this->FindRequest(0, particles);
-  vtkPointData* data = particles->GetPointData();
-  auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
-  if (request.Name.empty() && (!active || vtkSPHArrayChoice({ active }, merge).Rank < 0))
-  {
-    const std::string best = vtkSPHChooseArray(data, merge);
-    if (auto velocity = vtkSPHParticles(*this, particles).JoinVelocity())
-    {
-      request.Array = velocity;
-    }
-    else if (!best.empty())
-    {
-      request.Array = data->GetAbstractArray(best.c_str());
-    }
-  }
-  return request;
-}
-
 // The sentences of all blocks are kept, one a line.
 void vtkSPHAlgorithm::Fail(const std::string& message)
 {
@@ -318,14 +296,14 @@ bool vtkSPHAlgorithm::IsShared() const
 
 void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles, bool isUsable)
 {
-  const auto nameOf = [](vtkDataArray* array)
-  { return std::string(array && array->GetName() ? array->GetName() : ""); };
-  this->UsedSmoothingLengthArrayName = nameOf(particles ? particles->SmoothingLength : nullptr);
-  this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
+  const auto nameFor = [particles](mcor_role role)
+  { return particles ? particles->NameFor(role) : std::string(); };
+  this->UsedSmoothingLengthArrayName = nameFor(MCOR_ROLE_SMOOTHING_LENGTH);
+  this->UsedVolumeArrayName = nameFor(MCOR_ROLE_VOLUME);
   this->UsedVolume =
     particles && isUsable ? vtkSPHTakeText(mcor_describe_volume(&particles->Core)) : std::string();
-  this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
-  this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
+  this->UsedMassArrayName = nameFor(MCOR_ROLE_MASS);
+  this->UsedDensityArrayName = nameFor(MCOR_ROLE_DENSITY);
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
 }
 
@@ -334,7 +312,7 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   vtkSPHPrintMacro(SmoothingLengthArrayName, SmoothingLength, EstimateSmoothingLength,
     SmoothingLengthEstimate, NeighborRatio, SmoothingLengthIsSupportRadius, VolumeArrayName,
-    MassArrayName, DensityArrayName, Mass, Density, ParticleVolume, DetectArrays, PeriodicBounds,
+    MassArrayName, DensityArrayName, Mass, Density, ParticleVolume, ComputeVolumes, DetectArrays, PeriodicBounds,
     DetectPeriod, UsedSmoothingLengthArrayName, UsedVolume, UsedVolumeArrayName, UsedMassArrayName,
     UsedDensityArrayName, HScaleFactor, Dimension, FluidArrayName, FluidValue, DetectFluid,
     UsedFluid, IgnoreSolids, Within, Precision, Device, DeviceMemoryLimit, KeepDeviceData,

@@ -131,9 +131,12 @@ struct vtkSPHParticlesChoice
   double Mass = 0.0;
   double Density = 0.0;
   double ParticleVolume = 0.0;
+  vtkTypeBool ComputeVolumes = 0;
   vtkTypeBool DetectArrays = 1;
   std::string FluidArrayName;
   double FluidValue = 0.0;
+  vtkTypeBool DetectFluid = 0;
+  std::string UnusedType; ///< a sentence: no fluid was chosen, and yet an array seems to tell it
   vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
   int Kernel = 0;
   int Dimension = 0;
@@ -226,7 +229,8 @@ public:
   ///@{
   /**
    * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
+   * (the default): found by name. Each that is set takes the place of that quantity alone: volumes
+   * that are found stay, unless mass and density are both set, or ComputeVolumes is on. Masses
    * and densities may have any units that give volumes in L^3; densities are used only with masses.
    * Mass and Density: one value for all particles; 0 (the default): use the array.
    */
@@ -242,6 +246,12 @@ public:
    * and density. Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
    */
   vtkSPHChoiceMacro(ParticleVolume, double);
+
+  /**
+   * Compute volumes from the distances of the particles, and their masses, whatever arrays there
+   * are. Drops, jets and sheets then keep their surface. Off by default.
+   */
+  vtkSPHChoiceFlagMacro(ComputeVolumes);
 
   ///@{
   /**
@@ -352,7 +362,7 @@ public:
    * solid. Off by default: a warning then names such arrays and blocks. GetUsedFluid() returns what
    * was found.
    */
-  vtkSPHFlagMacro(DetectFluid, 0);
+  vtkSPHChoiceFlagMacro(DetectFluid);
 
   /**
    * The array and value that marked fluid in the last run, such as "ParticleType = 0"; empty:
@@ -573,17 +583,12 @@ protected:
   {
     WARN_TYPE_ARRAY = 100, ///< an array that tells fluid from solids is not used
     WARN_WALL_BLOCK,       ///< walls in a block of their own, which is taken by itself
+    WARN_UNUSED,           ///< what is set has no effect
     WARN_SINGLE_POINTS     ///< single precision is too coarse for the output's points
   };
 
   /** Returns the array chosen by SetInputArrayToProcess(index, ...). */
   vtkSPHRequest FindRequest(int index, vtkPointSet* particles);
-
-  /**
-   * Returns the first array. If none was named, these are the active scalars if they are worth
-   * looking at, see mcor_view_priority(), else the array that is most so.
-   */
-  vtkSPHRequest FindFirstRequest(vtkPointSet* particles, const vtkSPHMergeRanges& merge = nullptr);
 
   /** Whether processes share a run; always false in a build without MPI. */
   bool IsShared() const;
@@ -592,9 +597,6 @@ protected:
   vtkDataObject* GetParticles();
   virtual int GetParticlesPort() { return 0; }
 
-  /** Names the fluid in the choice, if it is to be detected and is found. */
-  void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
-    const vtkSPHMergeRanges& merge = nullptr);
   void FillOptions(mcor_options& options) const;
 
   void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);

@@ -196,15 +196,6 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-void vtkSPHAlgorithm::FindFluid(
-  vtkSPHParticlesChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
-{
-  if (this->DetectFluid || choice.IsBlock())
-  {
-    vtkSPHParticles::FindFluid(choice, particles, merge);
-  }
-}
-
 // Keeps the lowest values along each axis; every other of what is below 0 as above it.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
 {
@@ -290,7 +281,13 @@ int vtkSPHAlgorithm::GetNextEstimate()
   const std::vector<vtkPointSet*> sets = vtkSPHListPointSets(taken);
   vtkSPHParticlesChoice choice(*this);
   choice.EstimateSmoothingLength = 0;
-  return !sets.empty() && !vtkSPHParticles(choice, sets.front()).CollectSmoothingLength();
+  if (sets.empty())
+  {
+    return 0;
+  }
+  vtkSPHParticles particles(choice, sets.front());
+  particles.Collect();
+  return mcor_is_given(&particles.Core.smoothing_length) ? 0 : 1;
 }
 
 const char* vtkSPHAlgorithm::GetNextBlocks()
@@ -317,11 +314,14 @@ int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
   const auto run = vtkRun::Make(this);
   run->Begin(particles);
   vtkSPHParticles mine(run->Choose(), run->Own);
+  vtkSPHWanted wanted;
+  wanted.Wants = 0;
+  mine.Collect(wanted);
   int found = 0;
   run->CallAside(
     [&](const mcor_ranks* ranks)
     {
-      found = mine.FindDimension(ranks, this->Dimension);
+      found = mcor_find_dimension(&mine.Core, ranks, this->Dimension);
       return true;
     });
   return found;

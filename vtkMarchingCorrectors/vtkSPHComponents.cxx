@@ -161,10 +161,8 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   vtkSPHParticlesChoice choice;
   choice.FluidValue = this->FluidValue;
   choice.FluidArrayName = vtkSPHRealName(this->FluidArrayName);
-  if (this->DetectFluid || choice.IsBlock())
-  {
-    vtkSPHParticles::FindFluid(choice, particles);
-  }
+  choice.DetectFluid = this->DetectFluid;
+  vtkSPHChoose(choice, particles, nullptr, nullptr);
   vtkDataArray* types = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
   std::vector<vtkIdType> fluid;
   std::vector<std::array<double, 3>> places;

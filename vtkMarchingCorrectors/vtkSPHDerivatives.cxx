@@ -141,13 +141,12 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticles mine(run->Choose(), run->Own);
-  const auto find = [this, &run](vtkSPHParticles& own)
-  {
-    return own.CollectArray(this->FindFirstRequest(run->Own, run->MergeRanges())) &&
-      own.CollectParticles();
-  };
-  if (!run->Accept(mine, find, "there are no derivatives"))
+  vtkSPHWanted sizesAndArray;
+  sizesAndArray.Wants |= MCOR_WANT_ARRAY;
+  sizesAndArray.Scalar = this->FindRequest(0, run->Own);
+  vtkSPHParticles mine(run->Choose(&sizesAndArray.Scalar), run->Own);
+  const auto collect = [&](vtkSPHParticles& near) { return near.Collect(sizesAndArray); };
+  if (!run->Accept(mine, collect, "there are no derivatives"))
   {
     return;
   }
@@ -168,11 +167,6 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   const std::string name = mine.Interpolated[0].Name;
-  const auto collect = [&name](vtkSPHParticles& near)
-  {
-    vtkAbstractArray* array = near.Points->GetPointData()->GetAbstractArray(name.c_str());
-    return near.CollectArray({ array, name, true }) && near.CollectParticles();
-  };
   vtkSPHParticles* input = run->Share(mine, collect);
   vtkSPHOwned<mcor_derivatives, mcor_free_derivatives> derivatives;
   if (!input ||

@@ -125,7 +125,10 @@ std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
 
 bool vtkSPHFlux::Collect(vtkSPHParticles& particles)
 {
-  return this->Superclass::Collect(particles) && particles.CollectFlow(this->VelocityArrayName);
+  vtkSPHWanted wanted;
+  wanted.Wants |= MCOR_WANT_FLOW;
+  wanted.Velocity = this->VelocityArrayName;
+  return particles.Collect(wanted);
 }
 
 int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,

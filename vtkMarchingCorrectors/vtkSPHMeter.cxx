@@ -84,7 +84,7 @@ void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numb
 
 bool vtkSPHMeter::Collect(vtkSPHParticles& particles)
 {
-  return particles.CollectParticles();
+  return particles.Collect();
 }
 
 // Returns false, after an error, if two places have one name.

@@ -357,12 +357,10 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   run->Sum(&pointCount, 1);
   const auto collect = [this](vtkSPHParticles& particles)
   {
-    const bool isUsable = particles.CollectParticles();
-    if (isUsable && this->InterpolateAttributes)
-    {
-      particles.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
-    }
-    return isUsable;
+    vtkSPHWanted wanted;
+    wanted.Wants |= this->InterpolateAttributes ? MCOR_WANT_ATTRIBUTES : 0;
+    wanted.Taken = { "WeightSum", this->ValidPointMaskArrayName };
+    return particles.Collect(wanted);
   };
   vtkSPHParticles mine(run->Choose(), run->Own);
   if (!run->Accept(mine, collect, "no point is valid"))
@@ -450,7 +448,13 @@ void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
       found->AddArray(from->GetArray(i));
     }
   }
-  const std::string best = vtkSPHChooseArray(found, run.MergeRanges());
+  std::string best;
+  run.CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      best = vtkSPHChooseArray(found, ranks);
+      return true;
+    });
   if (output && output->GetPointData()->HasArray(best.c_str()))
   {
     output->GetPointData()->SetActiveScalars(best.c_str());

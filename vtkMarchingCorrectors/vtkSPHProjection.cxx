@@ -71,7 +71,7 @@ int vtkSPHProjection::RequestInformation(
     mcor_projection placed = {};
     this->FillOptions(run->Options);
     const mcor_view view = this->MakeView();
-    if (run->Agree(mine.CollectParticles() ? "" : mine.Error) && run->MeasureLengths(mine))
+    if (run->Agree(mine.Collect() ? "" : mine.Error) && run->MeasureLengths(mine))
     {
       run->Call(mine,
         [&](mcor_context* context)
@@ -115,15 +115,20 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   this->FillOptions(run->Options);
   const auto collect = [this, &view](vtkSPHParticles& near)
   {
-    vtkSPHRequest scalar = this->FindRequest(0, near.Points);
+    vtkSPHWanted wanted;
+    wanted.Wants |= MCOR_WANT_COLUMN;
+    wanted.Scalar = this->FindRequest(0, near.Points);
     if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
     {
       vtkPointData* arrays = near.Points->GetPointData();
-      scalar = { arrays->GetAbstractArray(this->ScalarArrayName.c_str()), this->ScalarArrayName,
+      wanted.Scalar = { arrays->GetAbstractArray(this->ScalarArrayName.c_str()), this->ScalarArrayName,
         true };
     }
-    return near.CollectProjection(
-      scalar, this->ScalarComponent, this->WeightArrayName, view.weight);
+    wanted.ScalarComponent = this->ScalarComponent;
+    wanted.Weight = this->WeightArrayName;
+    const bool isUsable = near.Collect(wanted);
+    view.weight = near.Found.views[MCOR_ROLE_WEIGHT];
+    return isUsable;
   };
   if (!run->Accept(mine, collect, "nothing is seen"))
   {
@@ -137,7 +142,7 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  const std::string name = mine.Core.scalar.data ? mine.Interpolated[0].Name : "ColumnDensity";
+  const std::string name = mine.Core.scalar.data ? mine.NameFor(MCOR_ROLE_SCALAR) : "ColumnDensity";
   vtkSPHParticles* input = &mine;
   if (computes)
   {

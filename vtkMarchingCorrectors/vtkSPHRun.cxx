@@ -105,10 +105,15 @@ bool vtkSPHAlgorithm::vtkRun::Begin(vtkPointSet* particles)
   return particles && !this->Filter->IsAborted();
 }
 
-vtkSPHParticlesChoice vtkSPHAlgorithm::vtkRun::Choose()
+vtkSPHParticlesChoice vtkSPHAlgorithm::vtkRun::Choose(vtkSPHRequest* first)
 {
   vtkSPHParticlesChoice choice(*this->Filter);
-  this->Filter->FindFluid(choice, this->Own, this->MergeRanges());
+  this->CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      vtkSPHChoose(choice, this->Own, first, ranks);
+      return true;
+    });
   return choice;
 }
 
@@ -125,19 +130,19 @@ bool vtkSPHAlgorithm::vtkRun::Accept(
   {
     return false;
   }
-  std::int64_t fluid = particles.FluidCount;
+  const mcor_found& found = particles.Found;
+  std::int64_t fluid = found.fluid_count;
   this->Sum(&fluid, 1);
   this->HasFluid = fluid > 0;
-  const auto gather = [this](const std::vector<double>& mine) { return this->Gather(mine); };
-  const std::string unused = this->HasFluid ? particles.DescribeUnusedType(gather) : "";
   if (this->IsFirst() && this->HasFluid)
   {
-    this->Filter->WarnOnce(WARN_TYPE_ARRAY, unused);
+    this->Filter->WarnOnce(WARN_TYPE_ARRAY, particles.Description.UnusedType);
+    this->Filter->WarnOnce(WARN_UNUSED, particles.Unused);
   }
   else if (this->IsFirst())
   {
-    this->Filter->Warn(vtkSPHSay(
-      MCOR_SAY(NOTHING_WITHOUT_FLUID), particles.DescribeNoFluid().c_str(), consequence.c_str()));
+    this->Filter->Warn(vtkSPHSay(MCOR_SAY(NOTHING_WITHOUT_FLUID),
+      found.no_fluid ? found.no_fluid : "There are no particles", consequence.c_str()));
   }
   return true;
 }

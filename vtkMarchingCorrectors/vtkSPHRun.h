@@ -145,8 +145,11 @@ public:
 
   /** Takes this process's particles, which may be null. */
   virtual bool Begin(vtkPointSet* particles);
-  /** Returns the filter's description of the particles, with the fluid that is detected. */
-  vtkSPHParticlesChoice Choose();
+  /**
+   * Returns the filter's description of the particles, with the fluid that is detected; and names in
+   * `first` the array to contour, if none was named.
+   */
+  vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /** Collects the particles, if there are any, notes which arrays were found, and warns about the
    * fluid. */
   bool Accept(vtkSPHParticles& particles, const Collect& collect, const std::string& consequence);

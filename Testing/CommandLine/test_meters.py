@@ -334,6 +334,31 @@ class Volumes(CommandLineTest):
             self.assertAlmostEqual(level, 0.5, delta=0.05)
             self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
 
+    def test_given_beside_volumes(self):
+        """What is given by hand takes the place of that quantity alone."""
+        arrays = {"Volume": [DX ** 3] * len(self.points), "V2": [2 * DX ** 3] * len(self.points)}
+        files.write_vtp(self.input, self.points, {**arrays, "SmoothingLength": self.arrays["SmoothingLength"]})
+        for options, used, warning in (
+                ((), "Volume", "^$"), (("--density", "1"), "Volume", "The given density is not used, because volumes are those of the"),
+                (("--mass", "9"), "Volume", "array 'Volume'. Give --mass and --density, or choose --volume computed."),
+                (("--mass", "0.001", "--density", "1"), "", "^$"), (("--volume", "V2"), "V2", ".*"),
+                (("--volume", "V2", "--mass", "9", "--density", "1"), "V2", "mass and density are not used, because volumes are given"),
+                (("--volume", "computed"), "", "^$")):
+            with self.subTest(options):
+                run = self.succeed("--free-surface", *options, told=warning)
+                self.assertEqual(run["arrays"]["volume_array"] if "arrays" in run else run["parameters"]["volume_array"], used)
+
+    def test_spray(self):
+        """A particle by itself has a surface with computed volumes alone, which the run says."""
+        points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
+        files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points)})
+        for options, pieces in ((("--smoothing-length", "0.13"), 1), (("--dp", "0.1"), 1),
+                                (("--smoothing-length", "0.13", "--volume", "computed"), 2)):
+            with self.subTest(options):
+                said = self.run_good(self.input, self.output, "--free-surface", "--components", table, *options, says=".*").stdout
+                self.assertEqual(len(read_table(table)), pieces)
+                self.assertEqual("of 1001 particles none has a surface by itself" in said, pieces == 1, said)
+
     def test_statistics_tell_the_volume(self):
         files.write_vtp(self.input, self.points, {})
         self.assertAlmostEqual(self.succeed("--free-surface", "--dp", "0.1")["parameters"]["particle_volume"], 0.001)

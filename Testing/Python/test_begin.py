@@ -115,7 +115,7 @@ class TestForgotten(unittest.TestCase):
         bare = particles_of(lattice(10, 10, 10))
         surface = vtkMarchingCorrectors()
         _, told = run(surface, bare, FreeSurface=1)
-        self.assertRegex(told[0], "no smoothing length. Turn Estimate Smoothing Length on, or choose Smoothing Length Array")
+        self.assertRegex(told[0], "no smoothing length. Choose Estimate Smoothing Length, or Smoothing Length Array")
         self.assertEqual(surface.GetNextEstimate(), 1)
         surface.SetInputData(block())
         self.assertEqual(surface.GetNextEstimate(), 0)
@@ -126,12 +126,12 @@ class TestChoices(unittest.TestCase):
         """A block that is chosen as fluid is the fluid, whatever its name."""
         x = lattice(20, 12, 8)
         wall = x[:, 2] < 0.25
-        blocks = blocks_of(water=block(x[~wall]), tank=block(x[wall]))
+        blocks = blocks_of(water=block(x[~wall]), bed=block(x[wall]))
         surface = vtkMarchingCorrectors()
         surface.SetInputData(blocks)
-        self.assertEqual(surface.GetNextBlocks().split(), ["Block:", "water", "Block:", "tank"])
+        self.assertEqual(surface.GetNextBlocks().split(), ["Block:", "water", "Block:", "bed"])
         counts = []
-        for choice in ("", "Block: water", "Block: tank", "Block: water"):
+        for choice in ("", "Block: water", "Block: bed", "Block: water"):
             _, told = run(surface, None, FreeSurface=1, FluidArrayName=choice)
             self.assertEqual(told, [])
             counts.append(surface.GetRunStatistics().GetArray("FluidParticles").GetValue(0))

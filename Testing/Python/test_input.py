@@ -57,7 +57,7 @@ class TestWeird(unittest.TestCase):
                 (("dot product", "'Vector'"), cube(Vector=ONES), {"InputArrayToProcess": (1, 0, 0, POINTS, "Vector")}),
                 (("'Vector'", "smoothing length", "3 components"), cube(Vector=ONES), {"SmoothingLengthArrayName": "Vector"}),
                 (("'Pair' has 2 components",), cube(Pair=ONES[:, :2]), {"FluidArrayName": "Pair"}),
-                (("no smoothing length. Turn Estimate Smoothing Length on, or choose",), without("SmoothingLength"), {}),
+                (("no smoothing length. Choose Estimate Smoothing Length, or Smoothing Length Array;",), without("SmoothingLength"), {}),
                 (("By 'Spacing', particles are 0.1 apart: 0.13 is",), cube(Spacing=numpy.full(COUNT, 0.1)), {"DetectArrays": 0}),
                 *(((f"'NoSuch' for the {role}", "Point arrays"), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
@@ -243,19 +243,24 @@ class TestKinds(unittest.TestCase):
 
 class TestQuantities(unittest.TestCase):
     def test_volumes(self):
-        """All ways to give volumes give the same surface. A mass array that is set wins over a volume array in the file."""
+        """All ways to the same volumes. A mass that is set alone leaves those of the array; with a density it does not."""
         volume = SPACING ** 3
         extract = sphere(cube(**{"my masses": numpy.full(COUNT, 4 * volume), "RHO": numpy.full(COUNT, 4.0)}))
         surfaces = []
         for settings, used in (
                 ({}, ("SmoothingLength", "Volume", "", "")),
-                ({"MassArrayName": "my masses"}, ("SmoothingLength", "", "my masses", "RHO")),
-                ({"MassArrayName": "", "Mass": 4 * volume, "Density": 4, "SmoothingLength": H}, ("", "", "", "")),
+                ({"MassArrayName": "my masses"}, ("SmoothingLength", "Volume", "", "")),
+                ({"DensityArrayName": "RHO"}, ("SmoothingLength", "", "my masses", "RHO")),
+                ({"MassArrayName": "", "DensityArrayName": "", "Density": 4, "Mass": 1}, ("SmoothingLength", "", "", "")),
+                ({"Mass": 4 * volume, "SmoothingLength": H}, ("", "", "", "")),
                 ({"SmoothingLength": 2 * H, "SmoothingLengthIsSupportRadius": 1}, ("", "", "", ""))):
-            surfaces.append(surface_of(run(extract, **BARE, **settings)[0]))
+            surface, told = run(extract, **BARE, **settings)
+            surfaces.append(surface_of(surface))
             self.assertEqual(tuple(getattr(extract, f"GetUsed{name}ArrayName")() for name in (
                 "SmoothingLength", "Volume", "Mass", "Density")), used)
-            self.assertTrue(surfaces[-1] == surfaces[0])
+            self.assertEqual(surfaces[-1] == surfaces[0], settings.get("Mass") != 1)
+            self.assertEqual(any("The given mass is not used, because volumes are those of the array 'Volume'" in text
+                                 for text in told), list(settings) == ["MassArrayName"])
 
     def test_density_alone_is_not_used(self):
         particles = cube(rho=numpy.full(COUNT, 1000.0))

@@ -249,80 +249,69 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&counts
   vtkSPHAddArray(data, name, array);
 }
 
+vtkSPHNamed::vtkSPHNamed(vtkFieldData* arrays)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    this->Add(arrays->GetAbstractArray(i));
+  }
+}
+
+void vtkSPHNamed::Add(vtkAbstractArray* array)
+{
+  vtkSmartPointer<vtkDataArray> numbers = vtkArrayDownCast<vtkDataArray>(array);
+  if (numbers && (numbers->GetDataType() == VTK_BIT || !numbers->HasStandardMemoryLayout()))
+  {
+    const int type = numbers->GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : numbers->GetDataType();
+    const auto copy = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+    copy->DeepCopy(numbers);
+    copy->SetName(numbers->GetName());
+    numbers = copy;
+  }
+  mcor_named named = {};
+  named.name = array->GetName();
+  named.components = array->GetNumberOfComponents();
+  named.tuples = array->GetNumberOfTuples();
+  named.type = MCOR_ELEMENT_OTHER;
+  if (numbers)
+  {
+    const int size = numbers->GetDataTypeSize();
+    const int kind = size == 1 ? 0 : size == 2 ? 2 : size == 4 ? 4 : 6;
+    named.data = numbers->GetVoidPointer(0);
+    named.type = numbers->GetDataType() == VTK_FLOAT ? MCOR_ELEMENT_FLOAT32
+      : numbers->GetDataType() == VTK_DOUBLE         ? MCOR_ELEMENT_FLOAT64
+                                             : static_cast<mcor_element>(MCOR_ELEMENT_INT8 + kind +
+                                                 (numbers->GetDataTypeMin() < 0.0 ? 0 : 1));
+  }
+  this->List.push_back(named);
+  this->Held.emplace_back(numbers ? numbers.Get() : array);
+}
+
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components)
 {
-  vtkPointData* data = points->GetPointData();
-  vtkDataArray* found = nullptr;
-  int best = -1;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
-    if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == components &&
-      array->GetNumberOfTuples() == points->GetNumberOfPoints())
-    {
-      found = array;
-      best = rank;
-    }
-  }
-  return found;
+  const vtkSPHNamed named(points->GetPointData());
+  const int found = mcor_find_named(named.List.data(), static_cast<int>(named.List.size()),
+    quantity, components, points->GetNumberOfPoints());
+  return found < 0 ? nullptr : points->GetPointData()->GetArray(found);
 }
 
-void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool isReal, bool varies)
+std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks)
 {
-  const int rank = mcor_view_priority(name.c_str(), components, isReal, varies);
-  if (rank >= 0 && (this->Rank < 0 || rank < this->Rank))
-  {
-    this->Best = name;
-    this->Rank = rank;
-  }
+  const vtkSPHNamed named(data);
+  const int best =
+    mcor_choose_view(named.List.data(), static_cast<int>(named.List.size()), -1, ranks);
+  return best < 0 ? "" : data->GetArrayName(best);
 }
 
-vtkSPHArrayChoice::vtkSPHArrayChoice(
-  const std::vector<vtkDataArray*>& arrays, const vtkSPHMergeRanges& merge)
+mcor_array vtkSPHView(vtkDataArray* array)
 {
-  std::vector<double> ranges; // of each component
-  for (vtkDataArray* array : arrays)
-  {
-    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-    {
-      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (array->GetNumberOfTuples() > 0)
-      {
-        array->GetRange(range, c);
-      }
-      ranges.insert(ranges.end(), range, range + 2);
-    }
-  }
-  if (merge)
-  {
-    merge(ranges.data(), static_cast<int>(ranges.size() / 2));
-  }
-  const double* range = ranges.data();
-  for (vtkDataArray* array : arrays)
-  {
-    bool varies = false; // in a component
-    for (int c = 0; c < array->GetNumberOfComponents(); ++c, range += 2)
-    {
-      varies = varies || range[0] < range[1];
-    }
-    this->Consider(
-      vtkSPHNameOf(array), array->GetNumberOfComponents(), vtkSPHIsReal(array), varies);
-  }
-}
-
-std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge)
-{
-  std::vector<vtkDataArray*> arrays;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    if (array && array->GetName())
-    {
-      arrays.push_back(array);
-    }
-  }
-  return vtkSPHArrayChoice(arrays, merge).Best;
+  static const double none = 0.0; // an array without values has no pointer, which is a constant
+  mcor_array view = {};
+  view.type = array->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
+  view.components = array->GetNumberOfComponents();
+  view.data = array->GetVoidPointer(0) ? array->GetVoidPointer(0) : &none;
+  view.name = array->GetName();
+  return view;
 }
 
 double vtkSPHValueOf(const mcor_array& array, std::int64_t i)

@@ -4,7 +4,7 @@
 #ifndef vtkSPHArrays_h
 #define vtkSPHArrays_h
 
-#include "mcor.h"
+#include "mcor_find.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -161,22 +161,24 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics
  */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
-/**
- * Finds, among arrays, the one to show first where nobody has chosen one, see
- * mcor_view_priority().
- */
-struct vtkSPHArrayChoice
+/** Arrays as the core lists them. Holds them, and copies of those whose values do not lie in one piece. */
+class vtkSPHNamed
 {
-  explicit vtkSPHArrayChoice(
-    const std::vector<vtkDataArray*>& arrays = {}, const vtkSPHMergeRanges& merge = nullptr);
-  void Consider(const std::string& name, int components, bool isReal, bool varies);
+public:
+  explicit vtkSPHNamed(vtkFieldData* arrays);
+  /** Of one array, which must hold numbers. */
+  explicit vtkSPHNamed(vtkAbstractArray* array) { this->Add(array); }
 
-  std::string Best; ///< empty where no array is fit
-  int Rank = -1;
+  std::vector<mcor_named> List; // in the order of the arrays
+
+private:
+  void Add(vtkAbstractArray* array);
+
+  std::vector<vtkSmartPointer<vtkAbstractArray>> Held;
 };
 
 /** The name of the fittest array to show; empty: there is none. */
-std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);
+std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks = nullptr);
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
@@ -184,6 +186,9 @@ inline bool vtkSPHIsReal(vtkAbstractArray* array)
 
 /** Returns the array itself if it holds floats or doubles, one after another; else a copy. */
 vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
+
+/** Views an array of floats or doubles that lie one after another. */
+mcor_array vtkSPHView(vtkDataArray* array);
 
 /** The values of an array. */
 class vtkSPHReals

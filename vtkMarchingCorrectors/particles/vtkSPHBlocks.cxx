@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHBlocks.h"
 
-#include "mcor.h"
+#include "mcor_find.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -71,13 +70,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArrays(
 
 bool TellsOfWalls(const std::string& name)
 {
-  std::string small = name;
-  std::transform(small.begin(), small.end(), small.begin(),
-    [](char letter)
-    { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; });
-  const char* const words[] = { "wall", "bound", "solid", "obstacle", "rigid" };
-  return std::any_of(std::begin(words), std::end(words),
-    [&small](const char* word) { return small.find(word) != std::string::npos; });
+  return mcor_tells_of_walls(name.c_str()) != 0;
 }
 
 /** A block, and what to call it. */

@@ -5,6 +5,7 @@
 #include "mcor.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkPointData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 
@@ -13,23 +14,24 @@
 VTK_ABI_NAMESPACE_BEGIN
 vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
 {
-  const auto find = [particles](mcor_quantity quantity, int components)
-  {
-    vtkDataArray* array = vtkSPHDetect(particles, quantity, components);
-    return std::string(array ? array->GetName() : "");
-  };
-  vtkSPHFound found;
-  found.SmoothingLength = find(MCOR_SMOOTHING_LENGTH, 1);
-  found.Volume = find(MCOR_VOLUME, 1);
-  found.Mass = find(MCOR_MASS, 1);
-  found.Density = find(MCOR_DENSITY, 1);
   vtkSPHParticlesChoice choice;
-  const bool isJoined = vtkSPHParticles(choice, particles).JoinVelocity() != nullptr;
-  found.Velocity = isJoined ? "vx, vy, vz as Velocity" : find(MCOR_VELOCITY, 3);
-  found.Velocity = found.Velocity.empty() ? find(MCOR_VELOCITY, 2) : found.Velocity; // in a plane
-  vtkSPHParticles::FindFluid(choice, particles);
-  found.Fluid = choice.FluidArrayName;
-  found.FluidValue = choice.FluidValue;
+  choice.DetectFluid = 1;
+  vtkSPHParticles list(choice, particles);
+  vtkSPHWanted wanted;
+  wanted.Wants |= MCOR_WANT_LIST | MCOR_WANT_FLUID;
+  list.Collect(wanted);
+  vtkSPHFound found;
+  found.SmoothingLength = list.NameFor(MCOR_ROLE_SMOOTHING_LENGTH);
+  found.Volume = list.NameFor(MCOR_ROLE_VOLUME);
+  found.Mass = list.NameFor(MCOR_ROLE_MASS);
+  found.Density = list.NameFor(MCOR_ROLE_DENSITY);
+  found.Velocity = list.NameFor(MCOR_ROLE_VELOCITY);
+  if (found.Velocity == "Velocity" && !particles->GetPointData()->HasArray("Velocity"))
+  {
+    found.Velocity = "vx, vy, vz as Velocity";
+  }
+  found.Fluid = list.NameFor(MCOR_ROLE_FLUID);
+  found.FluidValue = list.Found.fluid_value;
   return found;
 }
 

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHParticles.h"
 
-#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
 
 #include <algorithm>
@@ -20,118 +18,201 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** An array without values has no pointer, which to the core would be a constant. */
-const void* OrEmpty(const void* values)
-{
-  static const double none = 0.0;
-  return values ? values : &none;
-}
-
 const char* const MadeName = "vtkSPHMade:";
+
+/** A message of the core with its slots filled; empty for none. */
+std::string Filled(const mcor_message& message)
+{
+  return vtkSPHTakeText(mcor_fill_slots(message.text, vtkSPHWord, nullptr));
 }
 
-std::string vtkSPHParticles::Quote(const std::string& name)
+/** A copy of an array that the core made. */
+vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
 {
-  return "'" + name + "'";
+  const bool isFloat = made.type == MCOR_ELEMENT_FLOAT32;
+  const auto copy = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  copy->SetName(made.name);
+  copy->SetNumberOfComponents(made.components);
+  copy->SetNumberOfTuples(made.tuples);
+  std::memcpy(copy->GetVoidPointer(0), made.data,
+    static_cast<std::size_t>(copy->GetNumberOfValues()) * copy->GetDataTypeSize());
+  return copy;
 }
 
-bool vtkSPHParticles::Contains(const std::vector<std::string>& names, const std::string& name)
+/** The index of the array asked for, if it was not asked for by a name. */
+int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  int index = request.Name.empty() && request.Array ? data->GetNumberOfArrays() - 1 : -1;
+  while (index >= 0 && data->GetAbstractArray(index) != request.Array)
+  {
+    --index;
+  }
+  return index;
+}
 }
 
-vtkSPHParticles::vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
-  : Description(choice)
-  , Points(points)
+bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* ranks)
 {
-  this->Core.count = this->Points->GetNumberOfPoints();
-}
+  const vtkSPHParticlesChoice& f = this->Description;
+  vtkPointData* data = this->Points->GetPointData();
+  std::string taken, excluded;
+  for (const std::string& name : wanted.Taken)
+  {
+    taken += name + "\n";
+  }
+  for (const std::string& name : f.ExcludedArrays)
+  {
+    excluded += name + "\n";
+  }
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    excluded += IsMade(data->GetArrayName(i)) ? std::string(data->GetArrayName(i)) + "\n" : "";
+  }
+  std::vector<mcor_only> only;
+  for (const vtkSPHOnly& each : f.Only)
+  {
+    only.push_back({ each.Name.c_str(), each.Low, each.High });
+  }
+  const std::string dot =
+    wanted.ScalarDot.Name.empty() ? vtkSPHNameOf(wanted.ScalarDot.Array) : wanted.ScalarDot.Name;
+  mcor_request request = {};
+  request.wants = wanted.Wants;
+  for (const auto& each : { std::make_pair(MCOR_ROLE_SMOOTHING_LENGTH, &f.SmoothingLengthArrayName),
+         { MCOR_ROLE_VOLUME, &f.VolumeArrayName }, { MCOR_ROLE_MASS, &f.MassArrayName },
+         { MCOR_ROLE_DENSITY, &f.DensityArrayName }, { MCOR_ROLE_FLUID, &f.FluidArrayName },
+         { MCOR_ROLE_VELOCITY, &wanted.Velocity }, { MCOR_ROLE_WEIGHT, &wanted.Weight },
+         { MCOR_ROLE_SCALAR, &wanted.Scalar.Name }, { MCOR_ROLE_SCALAR_DOT, &dot } })
+  {
+    request.names[each.first] = each.second->c_str();
+  }
+  request.values[MCOR_ROLE_SMOOTHING_LENGTH] = f.SmoothingLength;
+  request.values[MCOR_ROLE_MASS] = f.Mass;
+  request.values[MCOR_ROLE_DENSITY] = f.Density;
+  request.find = f.DetectArrays;
+  request.compute_volumes = f.ComputeVolumes;
+  request.particle_volume = f.ParticleVolume;
+  request.estimate_smoothing_length = f.EstimateSmoothingLength;
+  request.lengths_by_neighbours =
+    f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS ? 1 : 0;
+  request.smoothing_length_is_support_radius = f.SmoothingLengthIsSupportRadius;
+  request.fluid_value = f.FluidValue;
+  request.find_fluid = f.DetectFluid;
+  request.ignore_solids = f.IgnoreSolids;
+  request.scalar_component = wanted.ScalarComponent;
+  request.active = IndexOf(wanted.Scalar, data);
+  request.not_on_points = (wanted.Scalar.OnPoints ? 0 : 1 << MCOR_ROLE_SCALAR) |
+    (wanted.ScalarDot.OnPoints ? 0 : 1 << MCOR_ROLE_SCALAR_DOT);
+  std::copy(f.Within, f.Within + 6, request.within);
+  request.only = only.data();
+  request.only_count = static_cast<int>(only.size());
+  request.taken = taken.c_str();
+  request.excluded = excluded.c_str();
+  request.free_surface = wanted.FreeSurface;
+  request.has_iso_values = wanted.HasIsoValues;
+  request.filled = wanted.Filled;
+  request.label = wanted.Scalar.Array && wanted.ScalarComponent >= 0
+    ? wanted.Scalar.Array->GetComponentName(wanted.ScalarComponent)
+    : nullptr;
 
-bool vtkSPHParticles::CollectParticles()
-{
-  this->Core.positions = this->View(this->Points->GetPoints()->GetData());
-  this->Core.positions.name = nullptr; // VTK's "Points" says no more than "position"
-  if (!this->CollectSmoothingLength() || !this->CollectVolume() || !this->CollectSolids())
+  this->Named = std::make_unique<vtkSPHNamed>(data);
+  mcor_named positions = {};
+  positions.components = 3;
+  if (vtkPoints* points = this->Points->GetPoints())
+  {
+    this->Positions = std::make_unique<vtkSPHNamed>(points->GetData());
+    positions = this->Positions->List.front();
+  }
+  mcor_free_found(&this->Found);
+  const mcor_status status = mcor_find_input(&request, &positions, this->Named->List.data(),
+    static_cast<int>(this->Named->List.size()), ranks, &this->Found);
+  for (int k = 0; k < 2; ++k)
+  {
+    this->Made[k] = this->Found.made[k].name ? CopyOf(this->Found.made[k]) : nullptr;
+  }
+  this->Error = Filled(this->Found.error);
+  if (status != MCOR_OK && this->Error.empty())
+  {
+    this->Error = mcor_says_text(MCOR_SAYS_HOST_MEMORY);
+  }
+  this->Unused = Filled(this->Found.unused);
+  if (!this->Error.empty() || !this->ComputeNeeded())
   {
     return false;
+  }
+  this->Interpolated.clear();
+  this->FromNearest.clear();
+  this->AttributesSignature.clear();
+  for (int i = 0; i < this->Core.attribute_count; ++i)
+  {
+    if (this->Found.attributes[i] >= 0) // no constant
+    {
+      vtkAbstractArray* array = this->ArrayOf(this->Found.attributes[i]);
+      this->Interpolated.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
+      vtkSPHSign(this->AttributesSignature, array);
+    }
+  }
+  for (int i = 0; i < this->Found.nearest_count; ++i)
+  {
+    vtkAbstractArray* array = this->ArrayOf(this->Found.nearest[i]);
+    this->FromNearest.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
   }
   this->ParticlesSignature = this->Sign();
   return true;
 }
 
-int vtkSPHParticles::FindDimension(const mcor_ranks* ranks, int dimension)
+// Sums over neighbours what the core still needs.
+bool vtkSPHParticles::ComputeNeeded()
 {
-  this->Core.positions = this->View(this->Points->GetPoints()->GetData());
-  this->CollectSolids();
-  return mcor_find_dimension(&this->Core, ranks, dimension);
-}
-
-bool vtkSPHParticles::CollectSmoothingLength()
-{
-  const vtkSPHParticlesChoice& f = this->Description;
-  this->Core.smoothing_length_is_support_radius = f.SmoothingLengthIsSupportRadius ? 1 : 0;
-  this->Core.estimate_smoothing_length = f.EstimateSmoothingLength ? 1 : 0;
-  if (f.EstimateSmoothingLength && f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS)
+  this->Lengths = this->Densities = nullptr;
+  const std::int64_t count = this->Core.count;
+  if (this->Found.needs_lengths)
   {
-    if (!this->SmoothingLength) // not from Take()
+    const double ratio = this->Description.NeighborRatio;
+    this->Lengths = this->Compute("SmoothingLength",
+      [=](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
+      { return mcor_find_smoothing_lengths(&all, &options, ratio, count, values, why); });
+    if (!this->Lengths)
     {
-      this->SmoothingLength = this->Compute("SmoothingLength",
-        [this, &f](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
-        {
-          return mcor_find_smoothing_lengths(
-            &all, &options, f.NeighborRatio, this->Core.count, values, why);
-        });
+      return false;
     }
-    this->Core.estimate_smoothing_length = this->Core.smoothing_length_is_support_radius = 0;
-    this->Core.smoothing_length =
-      this->SmoothingLength ? this->View(this->SmoothingLength) : mcor_array();
-    return this->Error.empty();
+    mcor_take_lengths(&this->Found, static_cast<const double*>(vtkSPHView(this->Lengths).data));
   }
-  if (f.EstimateSmoothingLength)
+  if (this->Found.needs_densities)
   {
-    return true;
+    this->Densities = this->Compute("Density",
+      [=](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
+      { return mcor_sum_densities(&all, &options, count, values, why); });
+    if (!this->Densities)
+    {
+      return false;
+    }
+    mcor_take_densities(&this->Found, static_cast<const double*>(vtkSPHView(this->Densities).data));
   }
-  if (!this->CollectQuantity("smoothing length", f.SmoothingLengthArrayName, f.SmoothingLength,
-        MCOR_SMOOTHING_LENGTH, this->SmoothingLength, this->Core.smoothing_length))
-  {
-    return false;
-  }
-  if (!mcor_is_given(&this->Core.smoothing_length))
-  {
-    this->Error =
-      "The particles have no smoothing length. Turn Estimate Smoothing Length on, or choose "
-      "Smoothing Length Array; no point array has one of its usual names "
-      "(SmoothingLength, hsml, h, ...). " +
-      this->AdviseOnLength() + vtkSPHListNames(this->Points);
-  }
-  return this->Error.empty();
+  return true;
 }
 
-// Tells of the solver whose names the arrays have, and of one array with the distance of all.
-std::string vtkSPHParticles::AdviseOnLength() const
+vtkSmartPointer<vtkAbstractArray> vtkSPHParticles::ArrayOf(int index) const
 {
-  std::ostringstream text;
-  std::string names;
-  for (int i = 0; i < this->Points->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    names += vtkSPHNameOf(this->Points->GetPointData()->GetAbstractArray(i)) + "\n";
-  }
-  if (std::strcmp(mcor_find_layout(names.c_str()), "DualSPHysics") == 0)
-  {
-    text << "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ";
-  }
-  vtkDataArray* spacing = vtkSPHDetect(this->Points, MCOR_SPACING, 1);
-  double range[2] = { 0.0, -1.0 };
-  if (spacing && this->Core.count > 0)
-  {
-    spacing->GetRange(range, 0);
-  }
-  if (range[0] == range[1] && range[0] > 0.0)
-  {
-    text << "By " << Quote(vtkSPHNameOf(spacing)) << ", particles are " << range[0]
-         << " apart: " << 1.3 * range[0] << " is usual. ";
-  }
-  return text.str();
+  const int count = static_cast<int>(this->Named->List.size());
+  return index < 0   ? nullptr
+    : index >= count ? this->Made[index - count].Get()
+                     : this->Points->GetPointData()->GetAbstractArray(index);
+}
+
+vtkSmartPointer<vtkAbstractArray> vtkSPHParticles::ArrayFor(mcor_role role) const
+{
+  const bool isSummed = this->Densities &&
+    (role == MCOR_ROLE_SCALAR ||
+      (role == MCOR_ROLE_DENSITY && this->Core.density.data == this->Core.scalar.data));
+  return role == MCOR_ROLE_SMOOTHING_LENGTH && this->Lengths ? this->Lengths.Get()
+    : isSummed                                               ? this->Densities.Get()
+               : this->ArrayOf(this->Found.which[role]);
+}
+
+std::string vtkSPHParticles::NameFor(mcor_role role) const
+{
+  return vtkSPHNameOf(this->ArrayFor(role));
 }
 
 mcor_options vtkSPHParticles::OwnOptions() const
@@ -175,17 +256,9 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
     array->SetName(name);
     return array.GetPointer();
   }
-  if (!this->CollectSolids())
-  {
-    return nullptr;
-  }
-  if (!this->Core.positions.data)
-  {
-    this->Core.positions = this->View(this->Points->GetPoints()->GetData());
-    this->Core.positions.name = nullptr;
-  }
   mcor_options options = this->OwnOptions();
   mcor_input all = this->Core;
+  const mcor_array& mass = all.mass = this->Found.views[MCOR_ROLE_MASS];
   std::vector<double> positions, masses;
   std::vector<std::uint8_t> solid;
   if (this->Description.Gather)
@@ -197,7 +270,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
       double x[3];
       this->Points->GetPoint(i, x);
       mine.insert(mine.end(), x, x + 3);
-      mine.push_back(this->Mass ? this->Mass->GetComponent(i, 0) : 0.0);
+      mine.push_back(vtkSPHValueOf(mass, i));
       mine.push_back(this->Core.solid ? this->Core.solid[i] : 0);
     }
     std::vector<std::vector<double>> ranks = this->Description.Gather(mine);
@@ -217,9 +290,11 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
       }
     }
     all.count = static_cast<int64_t>(masses.size());
-    all.positions = { OrEmpty(positions.data()), MCOR_FLOAT64, 3, 0.0, nullptr };
-    all.mass =
-      this->Mass ? mcor_array{ OrEmpty(masses.data()), MCOR_FLOAT64, 1, 0.0, nullptr } : all.mass;
+    positions.push_back(0.0); // an empty array is no constant
+    masses.push_back(0.0);
+    all.positions = { positions.data(), MCOR_FLOAT64, 3, 0.0, nullptr };
+    all.mass.data = mass.data ? masses.data() : nullptr;
+    all.mass.type = MCOR_FLOAT64;
     all.solid = solid.empty() ? nullptr : solid.data();
   }
   std::vector<std::uint64_t> signature = this->Sign();
@@ -253,256 +328,16 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
   return made.second;
 }
 
-// An array or constant that was set goes before detection: with a mass set, a volume array that
-// happens to be there is not used.
-bool vtkSPHParticles::CollectVolume()
-{
-  const vtkSPHParticlesChoice& f = this->Description;
-  const bool massOrDensitySet = !vtkSPHRealName(f.MassArrayName).empty() ||
-    !vtkSPHRealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
-  if (!this->CollectQuantity("volume", f.VolumeArrayName, 0.0,
-        massOrDensitySet ? MCOR_QUANTITY_COUNT : MCOR_VOLUME, this->Volume, this->Core.volume))
-  {
-    return false;
-  }
-  if (mcor_is_given(&this->Core.volume))
-  {
-    return true;
-  }
-  if (!this->CollectMass() || !this->CollectDensity(f.Density, this->Core.density))
-  {
-    return false;
-  }
-  if (this->Summed && !mcor_is_given(&this->Core.density))
-  {
-    this->Density = this->Summed;
-    this->Core.density = this->View(this->Summed);
-  }
-  if (!mcor_is_given(&this->Core.mass))
-  {
-    // A density alone says nothing of volumes, and is not to be reported as used.
-    this->Density = nullptr;
-    this->Core.density = {};
-  }
-  if (f.ParticleVolume > 0.0 &&
-    !(mcor_is_given(&this->Core.mass) && mcor_is_given(&this->Core.density)))
-  {
-    this->Core.volume.constant = f.ParticleVolume;
-    this->Mass = this->Density = nullptr;
-    this->Core.mass = this->Core.density = {};
-  }
-  return true;
-}
-
-bool vtkSPHParticles::CollectMass()
-{
-  return this->CollectQuantity("mass", this->Description.MassArrayName, this->Description.Mass,
-    MCOR_MASS, this->Mass, this->Core.mass);
-}
-
-bool vtkSPHParticles::CollectDensity(double constant, mcor_array& core)
-{
-  return this->CollectQuantity(
-    "density", this->Description.DensityArrayName, constant, MCOR_DENSITY, this->Density, core);
-}
-
-// A constant goes before a name, a name before the usual names.
-// `core` stays empty if there is nothing.
-bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
-  double constant, mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core)
-{
-  const std::string name = vtkSPHRealName(setName);
-  if (constant != 0.0)
-  {
-    core.constant = constant;
-    return true;
-  }
-  if (!name.empty() || this->Description.DetectArrays)
-  {
-    array = name.empty() ? vtkSPHDetect(this->Points, quantity, 1) : this->Find(role, name);
-  }
-  core = array ? this->View(array) : core;
-  return name.empty() || array;
-}
-
-// Ghost marks would hide triangles.
-bool vtkSPHParticles::IsCarried(
-  vtkAbstractArray* array, const std::vector<std::string>& taken) const
-{
-  const std::string name = vtkSPHNameOf(array);
-  return !name.empty() && !Contains(taken, name) &&
-    name != vtkDataSetAttributes::GhostArrayName() && name != MCOR_WALL_BLOCK &&
-    !IsMade(name.c_str()) && !Contains(this->Description.ExcludedArrays, name) &&
-    array->GetNumberOfTuples() == this->Core.count;
-}
-
-void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
-{
-  vtkPointData* pointData = this->Points->GetPointData();
-  const int count = pointData->GetNumberOfArrays();
-  for (int i = 0; i < count; ++i)
-  {
-    vtkAbstractArray* array = pointData->GetAbstractArray(i);
-    if (!this->IsCarried(array, taken))
-    {
-      continue;
-    }
-    vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
-    if (numbers && vtkSPHIsReal(numbers))
-    {
-      this->Interpolate(numbers);
-    }
-    else
-    {
-      this->FromNearest.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
-    }
-  }
-  const vtkSmartPointer<vtkDataArray> velocity = this->JoinVelocity();
-  if (velocity && this->IsCarried(velocity, taken))
-  {
-    this->Interpolate(velocity);
-  }
-}
-
-void vtkSPHParticles::Interpolate(vtkDataArray* array)
-{
-  this->Interpolated.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
-  vtkSPHSign(this->AttributesSignature, array);
-  this->Attributes.push_back(this->View(array));
-  this->Core.attributes = this->Attributes.data();
-  this->Core.attribute_count = static_cast<int>(this->Attributes.size());
-}
-
-bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request, const std::string& role)
-{
-  if (vtkSPHRealName(request.Name).empty() && !request.Array)
-  {
-    this->Error = "No array was chosen: choose a point array. " + vtkSPHListNames(this->Points);
-    return false;
-  }
-  if (!request.OnPoints)
-  {
-    this->Error = "The array " + Quote(request.Name) +
-      " is not a point array; SPH particles are points. " + vtkSPHListNames(this->Points);
-    return false;
-  }
-  const vtkSmartPointer<vtkDataArray> array =
-    this->Take(role, request.Name, request.Array, role == "projection");
-  if (array)
-  {
-    this->Interpolate(array);
-  }
-  return array != nullptr;
-}
-
-bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
-{
-  const std::string name = vtkSPHRealName(velocityName);
-  vtkSmartPointer<vtkDataArray> velocity;
-  if (name.empty())
-  {
-    const vtkSmartPointer<vtkDataArray> joined = this->JoinVelocity();
-    vtkDataArray* inSpace = vtkSPHDetect(this->Points, MCOR_VELOCITY, 3);
-    velocity = inSpace ? inSpace
-      : joined         ? joined.Get()
-                       : vtkSPHDetect(this->Points, MCOR_VELOCITY, 2);
-  }
-  else
-  {
-    velocity = this->Take(
-      "velocity", name, this->Points->GetPointData()->GetAbstractArray(name.c_str()), false);
-  }
-  if (!velocity)
-  {
-    this->Error = !this->Error.empty()
-      ? this->Error
-      : "The particles have no velocity: no point array has one of its usual names (Velocity, vel, "
-        "v, ...). Choose Velocity Array. " +
-        vtkSPHListNames(this->Points);
-    return false;
-  }
-  this->Interpolate(velocity);
-  mcor_array density = this->Core.density;
-  if (!this->Density && this->Description.Density == 0.0 && !this->CollectDensity(0.0, density))
-  {
-    return false;
-  }
-  if (this->Density)
-  {
-    this->Interpolate(this->Density);
-  }
-  else if (this->Description.Density != 0.0)
-  {
-    density.constant = this->Description.Density;
-    this->Attributes.push_back(density);
-  }
-  else if (mcor_is_given(&this->Core.volume) && this->CollectMass() &&
-    mcor_is_given(&this->Core.mass))
-  {
-    vtkNew<vtkDoubleArray> divided;
-    divided->SetName("Density");
-    divided->SetNumberOfValues(this->Points->GetNumberOfPoints());
-    for (vtkIdType i = 0; i < divided->GetNumberOfValues(); ++i)
-    {
-      const double mass = this->Mass ? this->Mass->GetComponent(i, 0) : this->Core.mass.constant;
-      divided->SetValue(
-        i, mass / (this->Volume ? this->Volume->GetComponent(i, 0) : this->Core.volume.constant));
-    }
-    this->Interpolate(divided);
-  }
-  this->Core.attributes = this->Attributes.data();
-  this->Core.attribute_count = static_cast<int>(this->Attributes.size());
-  return this->Error.empty();
-}
-
-bool vtkSPHParticles::CollectProjection(
-  const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView)
-{
-  const bool hasScalar = !vtkSPHRealName(scalar.Name).empty() || scalar.Array;
-  if ((hasScalar && !this->CollectArray(scalar, "projection")) || !this->CollectParticles() ||
-    (!mcor_is_given(&this->Core.mass) && !this->CollectMass()) ||
-    (!mcor_is_given(&this->Core.mass) &&
-      !this->CollectDensity(this->Description.Density, this->Core.density)))
-  {
-    return false;
-  }
-  if (hasScalar)
-  {
-    this->Core.scalar = this->Attributes.front();
-    const int components = this->Core.scalar.components;
-    if (components > 1 && component >= components)
-    {
-      this->Error = "The scalar " + Quote(this->Interpolated.front().Name) + " has no component " +
-        std::to_string(component) + "; choose 0 to " + std::to_string(components - 1) +
-        ", or -1 for the magnitude.";
-      return false;
-    }
-    this->Core.scalar_component = components > 1 ? std::max(component, MCOR_MAGNITUDE) : 0;
-  }
-  weightView = {};
-  if (!vtkSPHRealName(weight).empty())
-  {
-    vtkDataArray* array = this->Find("weight", weight);
-    if (!array)
-    {
-      return false;
-    }
-    this->Interpolate(array); // for other ranks, too
-    weightView = array == this->Mass ? this->Core.mass : this->Attributes.back();
-  }
-  this->Core.attribute_count = 0;
-  return true;
-}
-
 // The data set's own time is part of it: users change arrays in place and tell the data set.
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;
-  vtkDataArray* positions = this->Points->GetPoints()->GetData();
-  for (vtkObject* object : std::initializer_list<vtkObject*>{ this->Points, positions,
-         this->SmoothingLength, this->Volume, this->Mass, this->Density, this->Fluid })
+  vtkSPHSign(particles, this->Points);
+  vtkSPHSign(particles, this->Points->GetPoints() ? this->Points->GetPoints()->GetData() : nullptr);
+  for (const mcor_role role : { MCOR_ROLE_SMOOTHING_LENGTH, MCOR_ROLE_VOLUME, MCOR_ROLE_MASS,
+         MCOR_ROLE_DENSITY, MCOR_ROLE_FLUID })
   {
-    vtkSPHSign(particles, object);
+    vtkSPHSign(particles, this->ArrayFor(role));
   }
   const vtkSPHParticlesChoice& f = this->Description;
   std::vector<double> numbers(f.Within, f.Within + 6);
@@ -513,9 +348,9 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
   }
   const mcor_input& c = this->Core;
   numbers.insert(numbers.end(),
-    { f.FluidValue, c.smoothing_length.constant, c.mass.constant, c.density.constant,
-      1.0 * c.smoothing_length_is_support_radius, 1.0 * c.estimate_smoothing_length,
-      1.0 * c.ignore_solids, 1.0 * f.Kernel });
+    { this->Found.fluid_value, c.smoothing_length.constant, c.volume.constant, c.mass.constant,
+      c.density.constant, 1.0 * c.smoothing_length_is_support_radius,
+      1.0 * c.estimate_smoothing_length, 1.0 * c.ignore_solids, 1.0 * f.Kernel });
   for (const double number : numbers)
   {
     vtkSPHSign(particles, number);
@@ -523,112 +358,51 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
   return particles;
 }
 
-// float and double arrays are used where they lie, all others as a copy in double.
-mcor_array vtkSPHParticles::View(vtkDataArray* array)
+void vtkSPHChoose(
+  vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first, const mcor_ranks* ranks)
 {
-  mcor_array view = {};
-  this->Names.push_back(vtkSPHNameOf(array));
-  view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
-  view.components = array->GetNumberOfComponents();
-  const vtkSmartPointer<vtkDataArray> real = vtkSPHAsReal(array);
-  view.type = real->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
-  view.data = OrEmpty(real->GetVoidPointer(0));
-  this->Viewed.push_back(real);
-  return view;
+  vtkSPHParticles found(choice, points);
+  vtkSPHWanted wanted;
+  wanted.Wants = first ? MCOR_WANT_FLUID | MCOR_WANT_ARRAY : MCOR_WANT_FLUID;
+  wanted.Scalar = first ? *first : vtkSPHRequest();
+  found.Collect(wanted, ranks);
+  if (vtkSPHRealName(choice.FluidArrayName).empty() || choice.IsBlock())
+  {
+    const std::string name = found.NameFor(MCOR_ROLE_FLUID);
+    choice.FluidArrayName = name.empty() ? choice.FluidArrayName : name;
+    choice.FluidValue = name.empty() ? choice.FluidValue : found.Found.fluid_value;
+  }
+  choice.UnusedType = Filled(found.Found.unused_type);
+  if (first && vtkSPHRealName(first->Name).empty())
+  {
+    first->Array = found.ArrayFor(MCOR_ROLE_SCALAR);
+    first->Name = vtkSPHNameOf(first->Array);
+  }
 }
 
-vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& name)
+std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
 {
-  vtkDataArray* array =
-    this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
-  const int components = array ? array->GetNumberOfComponents() : 1;
-  if (components != 1)
-  {
-    this->Error = "The " + role + " array " + Quote(name) + " has " + std::to_string(components) +
-      " components; it must have one.";
-    return nullptr;
-  }
-  return array;
+  vtkSPHParticlesChoice bare = choice;
+  bare.FluidArrayName.clear();
+  vtkSPHParticles particles(bare, points);
+  vtkSPHWanted wanted;
+  wanted.Wants = 0;
+  particles.Collect(wanted);
+  const std::uint8_t* marks = particles.Core.solid;
+  std::vector<bool> present(marks ? particles.Core.count : 0);
+  std::transform(marks, marks + present.size(), present.begin(),
+    [](std::uint8_t mark) { return mark != MCOR_ABSENT; });
+  return present;
 }
 
-vtkSmartPointer<vtkDataArray> vtkSPHParticles::Take(
-  const std::string& role, const std::string& name, vtkAbstractArray* array, bool sums)
+std::string vtkSPHParticles::DescribeFluid() const
 {
-  if (sums && name == "Density" && !array)
+  std::ostringstream text;
+  if (const auto fluid = this->ArrayFor(MCOR_ROLE_FLUID))
   {
-    // It gives volumes, too, from then on.
-    this->Summed = this->CollectSmoothingLength() && this->CollectVolume()
-      ? this->Compute("Density",
-          [this](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
-          { return mcor_sum_densities(&all, &options, this->Core.count, values, why); })
-      : nullptr;
-    return this->Summed;
+    text << vtkSPHNameOf(fluid) << " = " << this->Found.fluid_value;
   }
-  const vtkSmartPointer<vtkDataArray> velocity =
-    name == "Velocity" && !array ? this->JoinVelocity() : nullptr;
-  return velocity ? velocity : vtkSmartPointer<vtkDataArray>(this->Check(role, name, array));
-}
-
-vtkDataArray* vtkSPHParticles::Check(
-  const std::string& role, const std::string& name, vtkAbstractArray* array)
-{
-  if (!array)
-  {
-    const bool isPlane = name == "Lambda2" && this->Points->GetPointData()->HasArray("Q-criterion");
-    this->Error = "There is no point array " + Quote(name) + " for the " + role + ". " +
-      (isPlane ? "There is no Lambda2 in two dimensions, because it is the middle one of three "
-                 "eigenvalues; use Q-criterion. "
-               : "") +
-      vtkSPHListNames(this->Points);
-    return nullptr;
-  }
-  vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
-  if (!numbers)
-  {
-    this->Error =
-      "The " + role + " array " + Quote(vtkSPHNameOf(array)) + " does not hold numbers.";
-    return nullptr;
-  }
-  if (numbers->GetNumberOfTuples() != this->Core.count || numbers->GetNumberOfComponents() < 1)
-  {
-    this->Error = "The " + role + " array " + Quote(vtkSPHNameOf(array)) + " has " +
-      std::to_string(numbers->GetNumberOfTuples()) + " values for " +
-      std::to_string(this->Core.count) + " points.";
-    return nullptr;
-  }
-  return numbers;
-}
-
-// As float only where all are.
-vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
-{
-  vtkPointData* pointData = this->Points->GetPointData();
-  vtkDataArray* const parts[] = { pointData->GetArray("vx"), pointData->GetArray("vy"),
-    pointData->GetArray("vz") };
-  bool isFloat = true;
-  for (vtkDataArray* part : parts)
-  {
-    if (!part || !vtkSPHIsReal(part) || part->GetNumberOfComponents() != 1 ||
-      part->GetNumberOfTuples() != this->Core.count)
-    {
-      return nullptr;
-    }
-    isFloat = isFloat && part->GetDataType() == VTK_FLOAT;
-  }
-  if (pointData->HasArray("Velocity"))
-  {
-    return nullptr;
-  }
-  vtkSmartPointer<vtkDataArray> joined;
-  joined.TakeReference(vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
-  joined->SetName("Velocity");
-  joined->SetNumberOfComponents(3);
-  joined->SetNumberOfTuples(this->Core.count);
-  for (int component = 0; component < 3; ++component)
-  {
-    joined->CopyComponent(component, parts[component], 0);
-  }
-  return joined;
+  return text.str();
 }
 
 std::vector<std::string> vtkSPHParticles::ListLeftOut(
@@ -639,8 +413,8 @@ std::vector<std::string> vtkSPHParticles::ListLeftOut(
   {
     if (notFinite[i] >= 0)
     {
-      sentences.push_back("The point array " + Quote(this->Interpolated[i].Name) +
-        " is NaN or infinite at particle " + std::to_string(notFinite[i]) +
+      sentences.push_back("The point array '" + this->Interpolated[i].Name +
+        "' is NaN or infinite at particle " + std::to_string(notFinite[i]) +
         " and was left out of " + place + ". Correct its values, or exclude it.");
     }
   }

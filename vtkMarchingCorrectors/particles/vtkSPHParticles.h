@@ -7,16 +7,17 @@
 #ifndef vtkSPHParticles_h
 #define vtkSPHParticles_h
 
-#include "mcor.h"
+#include "mcor_find.h"
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointSet.h"
 #include "vtkSPHAlgorithm.h"
+#include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,19 +41,41 @@ struct vtkSPHAttribute
   int Components;
 };
 
+/** What a run needs of the particles, besides their description. */
+struct vtkSPHWanted
+{
+  unsigned Wants = MCOR_WANT_SIZES; ///< bits of mcor_want
+  vtkSPHRequest Scalar, ScalarDot;
+  int ScalarComponent = MCOR_MAGNITUDE;
+  std::string Velocity, Weight;   ///< names; empty: found, none
+  std::vector<std::string> Taken; ///< names of computed arrays
+  bool FreeSurface = false, HasIsoValues = false, Filled = false;
+};
+
 /** Marks the particles that the choice leaves; empty: all. An array that is not there leaves all. */
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
+
+/**
+ * Names in the choice the fluid that is detected, and in `first` the array to contour, if none was
+ * named. All ranks do.
+ */
+void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
+  const mcor_ranks* ranks);
 
 class vtkSPHParticles
 {
 public:
-  vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
+  vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+    : Description(choice)
+    , Points(points)
+  {
+  }
+  ~vtkSPHParticles() { mcor_free_found(&this->Found); }
+  vtkSPHParticles(const vtkSPHParticles&) = delete;
+  void operator=(const vtkSPHParticles&) = delete;
 
-  /**
-   * Fills what describes the particles. False if something is missing or not usable; Error then
-   * says what.
-   */
-  bool CollectParticles();
+  /** Finds what is wanted. False if something is missing or not usable; Error then says what. */
+  bool Collect(const vtkSPHWanted& wanted = {}, const mcor_ranks* ranks = nullptr);
 
   ///@{
   /** The name under which what was made of neighbours goes to other processes with the particles, so
@@ -61,40 +84,6 @@ public:
   static bool IsMade(const char* name);
   ///@}
 
-  /** The part of it that is about smoothing lengths. */
-  bool CollectSmoothingLength();
-
-  /** As mcor_find_dimension(), of all particles if nothing marks the fluid. */
-  int FindDimension(const mcor_ranks* ranks, int dimension);
-
-  /**
-   * Lists the arrays to interpolate: all but those excluded and those whose names are taken by what
-   * is computed.
-   */
-  void CollectAttributes(const std::vector<std::string>& taken);
-
-  /**
-   * Makes the array asked for the only one of the core's attributes, whatever its type. False if it
-   * is not usable; Error then says why, and what it was for.
-   */
-  bool CollectArray(const vtkSPHRequest& request, const std::string& role = "derivatives");
-
-  /**
-   * CollectParticles(), and what a projection sees: the scalar, or mass or density where none is
-   * asked for, and the weight of a mean, whose name may be empty. False if something is not usable;
-   * Error then says what.
-   */
-  bool CollectProjection(
-    const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView);
-
-  /**
-   * Makes velocity and, where it is known, density the core's attributes, after CollectParticles().
-   * The velocity is the array of this name; empty: found by its usual names. The density is an
-   * array, one value, or mass / volume, if both are given. False if there is no velocity; Error
-   * then says so.
-   */
-  bool CollectFlow(const std::string& velocity);
-
   /**
    * One sentence for each array that the core left out: notFinite[i] is the particle at which
    * number i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
@@ -102,66 +91,25 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /**
-   * The point arrays vx, vy and vz as one vector, "Velocity"; nothing where they are not there, or
-   * such an array is.
-   */
-  vtkSmartPointer<vtkDataArray> JoinVelocity() const;
-
-  /**
-   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if
-   * there are such. Those of a block that it names, too.
-   */
-  static void FindFluid(
-    vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
-
   /** "ParticleType = 0"; empty where all particles are fluid. */
   std::string DescribeFluid() const;
 
-  /** Why no particle is fluid: "No particle has ParticleType = 0", "No particle is within ...". */
-  std::string DescribeNoFluid() const;
-
-  /**
-   * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else
-   * empty. `gather` returns the lists of all processes, this one's among them.
-   */
-  std::string DescribeUnusedType(const vtkSPHGather& gather);
+  /** The array that serves for this; null: none does. */
+  vtkSmartPointer<vtkAbstractArray> ArrayFor(mcor_role role) const;
+  std::string NameFor(mcor_role role) const;
 
   const vtkSPHParticlesChoice Description;
   const vtkSmartPointer<vtkPointSet> Points;
-  mcor_input Core = {};
+  mcor_found Found = {};
+  mcor_input& Core = Found.input;
   std::string Error;
-
-  vtkSmartPointer<vtkDataArray> SmoothingLength;
-  vtkSmartPointer<vtkDataArray> Volume;
-  vtkSmartPointer<vtkDataArray> Mass;
-  vtkSmartPointer<vtkDataArray> Density;
-  vtkSmartPointer<vtkDataArray> Fluid;
-  vtkIdType FluidCount = 0;
-  bool AllAbsent = false; // see vtkSPHAlgorithm::SetWithin() and AddOnly()
+  std::string Unused; ///< a sentence: what is set has no effect
 
   std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // identifiers, integers, strings
   std::vector<std::uint64_t> ParticlesSignature;  // equal signatures: same particles
   std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar, empty if none
   std::vector<std::uint64_t> AttributesSignature; // the same for the interpolated arrays
-
-protected:
-  static std::string Quote(const std::string& name);
-  static bool Contains(const std::vector<std::string>& names, const std::string& name);
-
-  mcor_array View(vtkDataArray* array);
-  /**
-   * The array asked for, or one that is made of others in its place: "Velocity" of vx, vy and vz,
-   * and, if sums are wanted, "Density". Null, and Error, if there is none.
-   */
-  vtkSmartPointer<vtkDataArray> Take(
-    const std::string& role, const std::string& name, vtkAbstractArray* array, bool sums);
-  vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
-
-  bool CollectSolids();
-  bool CollectVolume();
-  void Interpolate(vtkDataArray* array);
 
 private:
   /** Options on which sums over neighbours depend. */
@@ -170,22 +118,13 @@ private:
    * null, and Error, where it fails. */
   vtkSmartPointer<vtkDataArray> Compute(const char* name,
     const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call);
-  vtkSmartPointer<vtkDataArray> Summed; // density
-  std::string AdviseOnLength() const;
-  bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
+  bool ComputeNeeded();
+  vtkSmartPointer<vtkAbstractArray> ArrayOf(int index) const;
   std::vector<std::uint64_t> Sign() const;
 
-  /** The point array of that name and one component; null if there is none. Error then says why. */
-  vtkDataArray* Find(const std::string& role, const std::string& name);
-  bool CollectMass();
-  bool CollectDensity(double constant, mcor_array& core);
-  bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
-    mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core);
-
-  std::vector<vtkSmartPointer<vtkDataArray>> Viewed; // held while the core reads them
-  std::deque<std::string> Names;                     // of these, for the core's messages
-  std::vector<std::uint8_t> Solid;
-  std::vector<mcor_array> Attributes;
+  std::unique_ptr<vtkSPHNamed> Positions, Named; // the point arrays, held while the core reads them
+  vtkSmartPointer<vtkDataArray> Made[2];         // copies of Found.made
+  vtkSmartPointer<vtkDataArray> Lengths, Densities; // summed over neighbours
 };
 VTK_ABI_NAMESPACE_END
 

@@ -407,15 +407,6 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   const mcor_options whole = options;
   run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
   run.Scatter(mine.Core, run.Own);
-  // Arrays are found among those that came by the names of this rank's own.
-  const bool isNamed =
-    choice.Scalar.Name.empty() && choice.Scalar.Array && choice.Scalar.Array->GetName();
-  const std::string scalarName = isNamed ? choice.Scalar.Array->GetName() : "";
-  this->FillRequests(choice, run.Near);
-  if (isNamed)
-  {
-    choice.Scalar.Array = run.Near->GetPointData()->GetAbstractArray(scalarName.c_str());
-  }
   vtkMarchingCorrectorsInput input(choice, run.Near);
   if (!run.Agree(input.Collect() ? "" : input.Error))
   {

@@ -407,8 +407,11 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
 // again.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
 {
-  std::vector<vtkAbstractArray*> arrays = { used.SmoothingLength, used.Volume, used.Mass,
-    used.Density, used.Fluid };
+  std::vector<vtkAbstractArray*> arrays;
+  for (int role = 0; role < MCOR_ROLE_COUNT; ++role)
+  {
+    arrays.push_back(used.ArrayFor(static_cast<mcor_role>(role)));
+  }
   for (const vtkSPHAttribute& attribute : used.Interpolated)
   {
     arrays.push_back(attribute.Array);

@@ -32,9 +32,16 @@ public:
   }
 
   /**
-   * Fills all members. Returns false if something is missing or not usable; Error then says why.
+   * Finds what `wants` names, bits of mcor_want. Returns false if something is missing or not usable;
+   * Error then says why.
    */
-  bool Collect();
+  bool Collect(unsigned wants);
+  /** Finds all that a surface needs. */
+  bool Collect()
+  {
+    return this->Collect(MCOR_WANT_SIZES | MCOR_WANT_SCALAR |
+      (this->Choice.InterpolateAttributes ? MCOR_WANT_ATTRIBUTES : 0));
+  }
 
   /**
    * Takes the arrays that vtkMarchingCorrectors::FindWidening() has found. The factors become the
@@ -42,18 +49,13 @@ public:
    */
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
-  /** Finds the scalar and the fluid particles alone: the range of values depends on these. */
-  bool CollectContoured() { return this->CollectScalar() && this->CollectSolids(); }
-
   const vtkMarchingCorrectorsChoice Choice;
   vtkSmartPointer<vtkDataArray> Scalar;
   vtkSmartPointer<vtkDataArray> ScalarDot;
-  std::string ScalarName;   // with the component, or of the dot product
   std::string IsoValueName; // see vtkMarchingCorrectors::SetComputeScalars
 
 private:
-  bool CollectScalar();
-  void NameScalar();
+  std::vector<mcor_array> Attributes; // with the factors of the widening
 };
 
 VTK_ABI_NAMESPACE_END

@@ -232,18 +232,28 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   const bool isOne = input.Scalar && input.Scalar->GetName() && !input.ScalarDot &&
     this->Options.iso_count == 1 && !this->Options.filled &&
     (input.Core.scalar.components == 1 || input.Core.scalar_component == MCOR_MAGNITUDE);
-  vtkSPHArrayChoice choice;
+  std::string best;
+  int bestRank = -1;
+  const auto consider = [&](const std::string& name, int components, bool varies)
+  {
+    const int rank = mcor_view_priority(name.c_str(), components, 1, varies);
+    if (rank >= 0 && (bestRank < 0 || rank < bestRank))
+    {
+      best = name;
+      bestRank = rank;
+    }
+  };
   for (size_t i = 0; i < attributes.size(); ++i)
   {
     const double* r = ranges.data() + 4 * i;
     const bool isContoured = isOne && attributes[i].Name == input.Scalar->GetName();
-    choice.Consider(attributes[i].Name, attributes[i].Components, true,
+    consider(attributes[i].Name, attributes[i].Components,
       r[1] - r[0] > LeastShare * (r[3] - r[2]) && r[1] > r[0] && !isContoured);
   }
-  choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
-  if (data->HasArray(choice.Best.c_str()))
+  consider(this->Input.IsoValueName, 1, this->Options.iso_count > 1);
+  if (data->HasArray(best.c_str()))
   {
-    data->SetActiveScalars(choice.Best.c_str());
+    data->SetActiveScalars(best.c_str());
   }
 }
 
@@ -326,7 +336,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   const mcor_options& o = this->Options;
   const char* const fields[] = { "shepard", "sum", "weight_sum" };
   vtkSPHAddText(fieldData, "Field", fields[o.field]);
-  vtkSPHAddText(fieldData, "Scalar", this->Input.ScalarName);
+  vtkSPHAddText(fieldData, "Scalar", this->Input.Found.scalar_name);
   AddQuantity(fieldData, "SmoothingLengthArray", nullptr, this->Input.Core.smoothing_length);
   vtkSPHAddCount(fieldData, "SmoothingLengthIsSupportRadius",
     { this->Input.Core.smoothing_length_is_support_radius });
@@ -335,11 +345,11 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   AddQuantity(fieldData, "VolumeArray", "ParticleVolume", this->Input.Core.volume);
   AddQuantity(fieldData, "MassArray", "Mass", this->Input.Core.mass);
   AddQuantity(fieldData, "DensityArray", "Density", this->Input.Core.density);
-  vtkSPHAddText(
-    fieldData, "FluidArray", this->Input.Fluid ? this->Input.Choice.FluidArrayName : "");
-  if (this->Input.Fluid)
+  const char* const fluid = this->Input.Found.views[MCOR_ROLE_FLUID].name;
+  vtkSPHAddText(fieldData, "FluidArray", fluid ? fluid : "");
+  if (fluid)
   {
-    vtkSPHAddReal(fieldData, "FluidValue", { this->Input.Choice.FluidValue });
+    vtkSPHAddReal(fieldData, "FluidValue", { this->Input.Found.fluid_value });
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
     vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }

@@ -326,8 +326,13 @@ const std::vector<Option> Table = {
   { "--support-radius", "", "--smoothing-length is the support radius of the kernel", ALL, "",
     "smoothing_length_is_support_radius",
     DO(SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true)) },
-  { "--volume", "NAME", "array of particle volumes", ALL, "", "volume",
-    DO(SetAll(j, &vtkSPHAlgorithm::SetVolumeArrayName, Printable(v).c_str())) },
+  { "--volume", "NAME|computed",
+    "array of particle volumes; computed: from the distances of the particles, whatever volumes and "
+    "densities there are, so that drops keep their surface",
+    ALL, "", "volume",
+    DO(v == "computed"
+        ? SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetComputeVolumes, true)
+        : SetAll(j, &vtkSPHAlgorithm::SetVolumeArrayName, Printable(v).c_str())) },
   { "--mass", "NAME|VALUE", "array of particle masses, or one value", ALL, "", "mass",
     DO(j.Mass = ToQuantity(n, v)) },
   { "--density", "NAME|VALUE", "array of densities, or one value", ALL, "", "density",

@@ -86,10 +86,7 @@ struct Advice
 };
 
 const Advice Advices[] = {
-  { "Turn Estimate Smoothing Length on, or choose Smoothing Length Array",
-    "Give --smoothing-length NAME, VALUE or estimate", "--smoothing-length" },
   { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
-  { "Choose Velocity Array", "Give --velocity NAME", "--velocity" },
   { "for the fluid. Point arrays",
     "for the fluid; leave out --fluid if all particles are fluid. Point arrays", "--fluid" },
 };

@@ -295,13 +295,19 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
       (hasLines ? "parts of them in caps" : "of them in caps");
   }
   trimming = trimming.empty() ? "" : " (" + trimming + ")";
+  const double lone = Number(run, "LoneWeight");
+  const bool leavesSpray = lone > 0.0 && lone < Number(run, "IsoValues");
   const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
   return Fill(run,
     std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
                 "smoothing length {SmoothingLengthRange:0}") +
       (areMany ? " .. {SmoothingLengthRange:1}" : "") +
       "[ (array {SmoothingLengthArray})]; volume: [array {VolumeArray}|{ParticleVolume}|"
-      "{Mass} / {Density}|computed from {Mass}|computed]\n"
+      "{Mass} / {Density}|computed from {Mass}|computed]\n" +
+      (leavesSpray ? "volumes     of {FluidParticles} particles none has a surface by itself: volume x W(0) is "
+                     "{LoneWeight} or less, below the iso value; --volume computed keeps drops and "
+                     "spray\n"
+                   : "") +
       "contour     [{Scalar}|weight sum][ = {IsoValues}]"
       "[; range {ScalarRange:0} .. {ScalarRange:1}]" +
       (atLength ? "[; field {Field}]; kernel {Kernel}; cube size {CubeSize}\n"

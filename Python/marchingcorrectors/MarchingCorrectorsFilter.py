@@ -383,8 +383,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             particles = self._find(
                 choice, data, ["fluid", "sizes", "scalar", *["attributes"] * bool(choice.InterpolateAttributes)], options=options,
                 taken=[camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"])
-            self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
-            self.UsedFluid = particles.describe_fluid()
+            self._note(particles)
             why = particles.text("no_fluid")
             if why:
                 self._say(say("NOTHING_WITHOUT_FLUID", why, "no surface"), "Warning")
@@ -394,6 +393,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if choice.DetectPeriod and not period:
                 raise Unusable(say("NO_PERIOD"))
         except (Unusable, Error) as sentence:
+            if getattr(sentence, "particles", None):
+                self._note(sentence.particles)
             self._fail(sentence.args[0])
             return
         try:
@@ -402,6 +403,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             pass
         except Error as sentence:
             self._fail(sentence.args[0])
+
+    def _note(self, particles):
+        self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
+        self.UsedFluid = particles.describe_fluid()
 
     def _choice(self):
         return SimpleNamespace(Made=self._made, ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,

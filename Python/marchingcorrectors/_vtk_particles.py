@@ -18,7 +18,11 @@ WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells o
 
 
 class Unusable(Exception):
-    """The sentence that says what is missing or wrong."""
+    """The sentence that says what is missing or wrong, and what was found nevertheless."""
+
+    def __init__(self, sentence, particles=None):
+        super().__init__(sentence)
+        self.particles = particles
 
 
 class NoNumbers:
@@ -151,7 +155,7 @@ class Particles:
         self.input = self.found.input
         self._made = [self._wrap(*self._holder.made(i)) if self.found.made[i].name else None for i in range(2)]
         if self._holder.error:
-            raise Unusable(self._holder.error)
+            raise Unusable(self._holder.error, self)
         if self.found.needs_lengths:
             self._sum(options, "SmoothingLength", lib.mcor_find_smoothing_lengths, lib.mcor_take_lengths, choice.NeighborRatio)
         if self.found.needs_densities:

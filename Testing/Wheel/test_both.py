@@ -163,7 +163,7 @@ def make_found(folder):
         "two arrays of types": ({**h, **speed, "Type": kinds(1, 2), "IsWall": kinds(0, 1)}, "fluid             IsWall = 0"),
         "PySPH": ({**h, "rho": 1e3, "m": 1.0, "gid": lambda x: np.arange(len(x)), "p": lambda x: x[:, 2]}, "m / rho"),
         "GADGET": ({"SmoothingLength": 0.13, "Masses": 1.0, "Density": 1e3, "ParticleIDs": lambda x: np.arange(len(x))},
-                   "period            2 (field data BoxSize", {"BoxSize": [2.0]}),
+                   "period            2,2,2 (field data BoxSize", {"BoxSize": [2.0]}),
         "SPH-EXA": ({**h, **parts}, "period            0,2,0,0,0,0", {"box": [0.0, 2, 0, 2, 0, 2], "boundaryType": [1, 0, 0]}),
         "six bounds": ({**h, **speed}, "field data PeriodicBounds", {"PeriodicBounds": [0, 2, 0, 0, 0, 0]}),
         "no period": ({**h, **speed}, "period            none", {"BoxSize": [-1.0]}),
@@ -250,7 +250,7 @@ class Test(unittest.TestCase):
             found, free = python[2 * i]["found"], python[2 * i + 1]
             if listed is None or not os.environ.get("MCOR_TEST_PROGRAM"):
                 continue
-            said = subprocess.run([os.environ["MCOR_TEST_PROGRAM"], file, "--list-arrays"], stdout=subprocess.PIPE, check=True,
+            said = subprocess.run([os.environ["MCOR_TEST_PROGRAM"], "--list-arrays", file], stdout=subprocess.PIPE, check=True,
                                   text=True).stdout
             self.assertIn(listed, said, name)
             told = dict(line.split("  ", 1) for line in said.splitlines() if "  " in line)

@@ -471,8 +471,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self.UsedCubeSize = surface.statistics.cube_size
             self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
             for name, particle in found.left_out.items():
-                self._say(f"The point array '{name}' is NaN or infinite at particle {particle} and was left out of the "
-                          "surface. Correct its values, or exclude it.", "Warning")
+                self._say(say("ARRAY_LEFT_OUT", name, particle, "the surface"), "Warning")
             for kind, sentence in describe_warnings(arguments, surface).items():
                 self._warn_once(kind, sentence)
         add_iso_values(output.GetFieldData(), options)

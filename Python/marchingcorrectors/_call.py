@@ -16,7 +16,7 @@ from . import _structs as c
 from ._arrays import QUANTITIES, SUMMED, Arguments, choose
 from ._context import Context, default_context
 from ._find import Found, as_bytes, choose_volumes, describe_unused
-from ._library import InvalidArgument, InvalidData, lib, word_by
+from ._library import InvalidArgument, InvalidData, lib, say, word_by
 from ._options import Function, Options, check_names, did_you_mean, show
 from ._warnings import warn, warn_of_particles
 
@@ -177,8 +177,7 @@ def _drop_unused(given, options, warns):
 
 def warn_of_missing(missing):
     for name, particle in missing.items():
-        warn(f"The attribute '{name}' is NaN or infinite at particle {particle} and was left out. "
-             "Correct its values, or do not ask for it.")
+        warn(say("ARRAY_LEFT_OUT", name, particle, "the result"))
 
 
 @contextlib.contextmanager

@@ -8,6 +8,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSPHFound.h"
+#include "vtkSPHSay.h"
 
 #include <algorithm>
 #include <cstring>
@@ -413,9 +414,9 @@ std::vector<std::string> vtkSPHParticles::ListLeftOut(
   {
     if (notFinite[i] >= 0)
     {
-      sentences.push_back("The point array '" + this->Interpolated[i].Name +
-        "' is NaN or infinite at particle " + std::to_string(notFinite[i]) +
-        " and was left out of " + place + ". Correct its values, or exclude it.");
+      sentences.push_back(
+        vtkSPHSay(MCOR_SAY(ARRAY_LEFT_OUT), this->Interpolated[i].Name.c_str(),
+          static_cast<long long>(notFinite[i]), place.c_str()));
     }
   }
   return sentences;

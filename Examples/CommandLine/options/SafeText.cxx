@@ -76,20 +76,6 @@ std::string Rewritten(const std::string& text, std::string (*written)(const Char
   }
   return result;
 }
-
-/// What replaces words of the filters, whose advice is the same for all interfaces.
-struct Advice
-{
-  const char* Words;
-  const char* Instead; ///< where the sentence does not name that option already
-  const char* Option;
-};
-
-const Advice Advices[] = {
-  { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
-  { "for the fluid. Point arrays",
-    "for the fluid; leave out --fluid if all particles are fluid. Point arrays", "--fluid" },
-};
 }
 
 std::string Printable(const std::string& text)
@@ -117,20 +103,6 @@ std::string QuotedForJson(const std::string& text)
   return '"' + Rewritten(text, written) + '"';
 }
 
-std::string WithOptions(const std::string& sentence)
-{
-  std::string result = sentence;
-  for (const Advice& advice : Advices)
-  {
-    const std::size_t at = result.find(advice.Words);
-    if (at != std::string::npos && result.find(advice.Option) == std::string::npos)
-    {
-      result.replace(at, std::string(advice.Words).size(), advice.Instead);
-    }
-  }
-  return result;
-}
-
 int OptionWord(void*, const char* name, const char* value, char* word, std::size_t size)
 {
   const std::string member = name;
@@ -143,7 +115,7 @@ int OptionWord(void*, const char* name, const char* value, char* word, std::size
 
 void Say(const std::string& sentence)
 {
-  std::cerr << "marching-correctors: " << Printable(WithOptions(sentence)) << "\n";
+  std::cerr << "marching-correctors: " << Printable(sentence) << "\n";
 }
 
 void FailToRead(const std::string& file, const std::string& why)

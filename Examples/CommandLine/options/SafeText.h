@@ -20,10 +20,6 @@ std::string QuotedForJson(const std::string& text);
 /// mcor_word of mcor.h. Returns 0 if there is none.
 int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
-/// A sentence of the filters, whose advice is the same for all interfaces, in the words of this
-/// one: with its options.
-std::string WithOptions(const std::string& sentence);
-
 /// Errors and warnings: one line on standard error after the program's name, whatever names and
 /// files have put into the sentence.
 void Say(const std::string& sentence);

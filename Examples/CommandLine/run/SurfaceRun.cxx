@@ -391,10 +391,9 @@ Run Extract(const Sharing& sharing, const std::string& before)
                 << std::endl;
     }
   }
-  for (const std::string& sentence : Messages().Warnings)
-  {
-    run.Warnings.push_back(WithOptions(sentence)); // they are in the statistics, too
-  }
+  // They are in the statistics, too.
+  const std::vector<std::string>& told = Messages().Warnings;
+  run.Warnings.insert(run.Warnings.end(), told.begin(), told.end());
   vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
   if (run.Surface->GetNumberOfCells() == 0 && !(triangles && triangles->GetComponent(0, 0) > 0))
   {

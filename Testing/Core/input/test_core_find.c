@@ -304,20 +304,23 @@ static void test_errors(void** state)
     unsigned wants;
     mcor_role role;
     const char *name, *begins;
-  } cases[] = {
-    { MCOR_WANT_SIZES, MCOR_ROLE_FLUID, NULL,
-      "The particles have no smoothing length. Choose {estimate_smoothing_length}, or "
-      "{smoothing_length}; no point array has one of its usual names (SmoothingLength, hsml, h, ...). "
-      "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. By 'spacing', particles are 0.5 "
-      "apart: "
-      "0.65 is usual. Point arrays: Rhop, Idp, spacing, Velocity, text, short." },
+  } cases[] = { { MCOR_WANT_SIZES, MCOR_ROLE_FLUID, NULL,
+                  "The particles have no smoothing length. Choose {estimate_smoothing_length}, or "
+                  "{smoothing_length}; no point array has one of its usual names (SmoothingLength, "
+                  "hsml, h, ...). "
+                  "DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program "
+                  "--coefh and --dp). By 'spacing', particles are 0.5 "
+                  "apart: "
+                  "0.65 is usual. Point arrays: Rhop, Idp, spacing, Velocity, text, short." },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "Velocity",
       "The smoothing length array 'Velocity' has 3 components; it must have one." },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "text",
       "The smoothing length array 'text' does not hold numbers." },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "short",
       "The smoothing length array 'short' has 3 values for 4 points." },
-    { 0, MCOR_ROLE_FLUID, "typ", "There is no point array 'typ' for the fluid. Point arrays: " },
+    { 0, MCOR_ROLE_FLUID, "typ",
+      "There is no point array 'typ' for the fluid. If all particles are fluid, leave out {fluid}. "
+      "Point arrays: " },
     { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR, "T", "There is no point array 'T' for the scalar. " },
     { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR_DOT, "Rhop",
       "The dot product needs two arrays with the same number of components; 'Velocity' has 3, "
@@ -341,12 +344,12 @@ static void test_errors(void** state)
     "The scalar 'Velocity' has no component 3; choose 0 to 2, or -1 for the magnitude.");
   mcor_free_found(&found);
   assert_int_equal(find(&request, arrays, 1, &found), MCOR_INVALID_ARGUMENT);
-  assert_non_null(strstr(found.error.text, "No scalar to contour was chosen"));
+  assert_int_equal(found.error.code, MCOR_SAYS_NO_SCALAR);
   mcor_free_found(&found);
   request = request_of(MCOR_WANT_SIZES | MCOR_WANT_FLOW);
   request.values[MCOR_ROLE_SMOOTHING_LENGTH] = 1;
   assert_int_equal(find(&request, arrays, 3, &found), MCOR_INVALID_ARGUMENT);
-  assert_non_null(strstr(found.error.text, "The particles have no velocity: "));
+  assert_int_equal(found.error.code, MCOR_SAYS_NO_VELOCITY);
   mcor_free_found(&found);
   request.estimate_smoothing_length = 1;
   request.wants = MCOR_WANT_SIZES;

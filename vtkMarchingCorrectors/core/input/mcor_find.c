@@ -235,7 +235,8 @@ static int mcor_check_named(mcor_finder* f, const char* words, const char* name,
       mcor_say(MCOR_SAY(NO_SUCH_ARRAY), name, words,
         is_plane ? " There is no Lambda2 in two dimensions, because it is the middle one of three "
                    "eigenvalues; use Q-criterion."
-                 : "",
+          : strcmp(words, "fluid") == 0 ? " If all particles are fluid, leave out {fluid}."
+                                        : "",
         mcor_names_of(f)));
   }
   const mcor_named* named = mcor_named_of(f, index);
@@ -314,7 +315,9 @@ static mcor_message mcor_no_length(mcor_finder* f)
                            f->arrays[spacing].name, distance, 1.3 * distance)
                        : mcor_text("%s", "");
   const mcor_message message = mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
-    is_dual ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp." : "",
+    is_dual ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program --coefh "
+              "and --dp)."
+            : "",
     usual ? usual : "", mcor_names_of(f));
   free(usual);
   return message;

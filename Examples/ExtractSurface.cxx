@@ -27,7 +27,8 @@ int main(int argc, char* argv[])
   vtkNew<vtkMarchingCorrectors> surface;
   surface->SetInputConnection(reader->GetOutputPort());
   surface->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Velocity"); // a vector: its magnitude
+    // a vector is contoured by its magnitude
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Velocity");
   surface->SetValue(0, 1.0);                                       // m/s
   surface->SetFluidArrayName("ParticleType");                      // 0 is fluid, 1 is wall
   surface->SetFluidValue(0.0);

@@ -73,7 +73,7 @@ static int write_obj(const char* name, const mcor_surface* surface)
   }
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
-    /* Wavefront counts from 1. */
+    /* Wavefront files count points from 1. */
     const int32_t* corner = surface->triangles + 3 * i;
     fprintf(file, "f %d//%d %d//%d %d//%d\n", corner[0] + 1, corner[0] + 1, corner[1] + 1,
       corner[1] + 1, corner[2] + 1, corner[2] + 1);

@@ -35,14 +35,15 @@ def main(particles, free_surface, speed):
     # Smoothing length, mass and density are found by their names.
     surface = vtkMarchingCorrectors()
     surface.SetInputConnection(reader.GetOutputPort())
-    surface.SetFluidArrayName("ParticleType")  # 0 is fluid, 1 is wall
+    surface.SetFluidArrayName("ParticleType")  # 0 is fluid, 1 is wall.
     surface.SetFluidValue(0)
     surface.FreeSurfaceOn()
     write(surface, free_surface)
 
     # The same filter again: what depends on the particles alone is kept.
     surface.FreeSurfaceOff()
-    surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")  # a vector: its magnitude
+    # A vector is contoured by its magnitude.
+    surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
     surface.SetValue(0, 1.0)  # m/s
     mesh = write(surface, speed)
 

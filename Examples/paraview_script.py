@@ -21,7 +21,7 @@ def extract_surfaces(particles):
 
     fast = MarchingCorrectors(Input=particles)  # noqa: F821
     fast.FluidArray = "ParticleType"
-    fast.ContourBy = ["POINTS", "Velocity"]  # a vector: its magnitude
+    fast.ContourBy = ["POINTS", "Velocity"]  # A vector is contoured by its magnitude.
     fast.Isosurfaces = [1.0]  # m/s
     return surface, fast
 
@@ -49,7 +49,7 @@ def draw(surface, fast, picture):
     bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
     inside.SetScalarBarVisibility(view, True)
 
-    Render(view)  # the first rendering places the camera
+    Render(view)  # The first rendering places the camera.
     view.CameraPosition = [-0.35, 2.5, 4.1]
     view.CameraFocalPoint = [1.72, 0.43, 0.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]

@@ -14,11 +14,11 @@ import warnings
 import marchingcorrectors as mc
 import numpy as np
 
-LENGTHS = (1.0, 1.3, 1.7)  # smoothing lengths, in spacings
+LENGTHS = (1.0, 1.3, 1.7)  # Smoothing lengths in spacings.
 
 
 def lattice(*ranges):
-    """Particles in the middles of the cubes between whole numbers."""
+    """Returns particles in the middles of the cubes between whole numbers."""
     return np.stack(np.meshgrid(*[np.arange(*r) + 0.5 for r in ranges], indexing="ij"), -1).reshape(-1, 3)
 
 
@@ -29,7 +29,7 @@ def print_table(title, columns, rows):
 
 
 def walls():
-    """A channel between walls of three layers at y = 0 and y = 12, in which all moves with (1, 1, 0); and a tank's floor."""
+    """Makes a channel between walls of three layers at y = 0 and y = 12, in which everything moves with (1, 1, 0), and a tank with a floor."""
     x = lattice((-8, 8), (-3, 15), (-8, 8))
     solid = (x[:, 1] < 0) | (x[:, 1] > 12)
     x[~solid] += np.random.default_rng(1).normal(0, 0.2, (np.count_nonzero(~solid), 3))
@@ -46,7 +46,7 @@ def walls():
     rows = [[name, *[" / ".join(f"{100 * (found[h, ignored][i] / truth - 1) + 0.0:+.1f}" for ignored in (True, False))
                      for h in LENGTHS]] for i, (name, (_, truth)) in enumerate(sections.items())]
     print_table("Error of the flux in %: without the solids / with them", ["section", *[f"h = {h} spacings" for h in LENGTHS]], rows)
-    x = x[:, [0, 2, 1]]  # the wall at 0 is the floor, under water that is 10 deep
+    x = x[:, [0, 2, 1]]  # The wall at 0 is the floor, under water that is 10 deep.
     kept = x[:, 2] < 10
     x, solid = x[kept], solid[kept]
     masts = np.stack(np.meshgrid(np.linspace(-4, 4, 9), np.linspace(-4, 4, 9)), -1).reshape(-1, 2)
@@ -64,7 +64,8 @@ def walls():
 
 
 def volumes():
-    """Sheets, threads and drops of few particles, alone: the volume inside the free surface, against one for each particle."""
+    """Prints the volume inside the free surface of sheets, threads and drops of few particles, relative to the particles' own volume, and with one
+    volume for all."""
     ball = lattice((-4, 4), (-4, 4), (-4, 4))
     bodies = {"one layer": (lattice((0, 12), (0, 12), (0, 1)), (12, 12, 0)),
               "two layers": (lattice((0, 12), (0, 12), (0, 2)), (12, 12, 0)),
@@ -91,7 +92,7 @@ def volumes():
 
 
 def curvature():
-    """Balls on a lattice: curvature of the contour of a scalar that is 0 at the radius, and of the free surface, times the radius."""
+    """Prints the curvature of balls on a lattice, times the radius: of the contour of a scalar that is 0 at the radius, and of the free surface."""
     lengths, rows = (1.0, 1.3, 1.7, 2.4), []
     for radius in (3, 4, 6, 10):
         x = lattice(*[(-radius - 8, radius + 8)] * 3)
@@ -112,7 +113,7 @@ def curvature():
 
 
 def attributes():
-    """A ball that spins, and still water: values at the free surface against those of the flow."""
+    """Compares values at the free surface of a spinning ball, and of still water, with those of the flow."""
     spinning = lattice((-10, 10), (-10, 10), (-10, 10))
     spinning = spinning[np.linalg.norm(spinning, axis=1) < 9]
     water = lattice((0, 12), (0, 12), (0, 10))
@@ -130,7 +131,7 @@ def attributes():
 
 
 def mean_and_corrected(x, values, h, volume, points):
-    """The Shepard mean at points, the value of a moving least squares fit of first order, and the range of the particles around."""
+    """Returns, at each point, the Shepard mean, the value of a moving least squares fit of first order, and the range of the particles around."""
     from scipy.spatial import cKDTree
     near = cKDTree(x).query_ball_point(points, 2 * np.max(h))
     i, j = np.repeat(np.arange(len(points)), [len(some) for some in near]), np.concatenate([np.array(some, int) for some in near])
@@ -149,8 +150,7 @@ def mean_and_corrected(x, values, h, volume, points):
 
 
 def corrected():
-    """What first-order corrected values would be: of white noise on disordered water, and of the dam break's velocities. Needs
-    SciPy."""
+    """Prints what first-order corrected values would be: of white noise on disordered water, and of the dam break's velocities. Needs SciPy."""
     from marchingcorrectors import io
     random = np.random.default_rng(0)
     x = lattice((-6, 6), (-6, 6), (0, 10))
@@ -180,6 +180,6 @@ def corrected():
 TABLES = {"walls": walls, "volumes": volumes, "curvature": curvature, "attributes": attributes, "corrected": corrected}
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", mc.InputWarning)  # the unusual lengths are meant
+    warnings.simplefilter("ignore", mc.InputWarning)  # These unusual lengths are meant.
     for chosen in sys.argv[1:] or TABLES:
         TABLES[chosen]()

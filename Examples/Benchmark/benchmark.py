@@ -25,7 +25,7 @@ import tables
 import vtk
 from measure import Program, Report, Sets, count_of, machine
 
-# Sizes: particles, with --quick those behind.
+# Sizes are numbers of particles; --quick uses the second ones.
 Case = collections.namedtuple("Case", "make title sizes quick runs", defaults=["670k", "6k", 3])
 LARGE = "60k,670k,3M,10M"
 CASES = {
@@ -46,7 +46,7 @@ QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
 class Benchmark:
-    """All that the cases need: particle sets, the program, how often, how large, where to write."""
+    """Holds all that cases need: particle sets, the program, how often, how large, where to write."""
 
     def __init__(self, arguments, folder):
         self.report, self.folder = Report(), folder
@@ -64,7 +64,7 @@ class Benchmark:
         return case
 
     def describe(self):
-        """Machine, device, versions."""
+        """Returns machine, device and versions as text."""
         found = self.program.run(self.sets.get("tank", self.sizes[0]), tables.ISOSURFACE)
         facts = {"machine": machine(), "device": found["device"], "platform": found["platform"],
                  "program": f"{found['name']}, on VTK {found['vtk']}", "python": platform.python_version(), **versions(),
@@ -74,7 +74,7 @@ class Benchmark:
 
 
 def versions():
-    """Versions of what is compared, as far as this Python has it."""
+    """Returns the versions of the competitors, as far as this Python has them."""
     from importlib.metadata import PackageNotFoundError, version
     try:
         splashsurf = version("pysplashsurf")
@@ -84,7 +84,7 @@ def versions():
 
 
 def find_nonsense(value, path="results"):
-    """Paths of numbers that no measurement gives."""
+    """Returns names of options whose figures no measurement gives."""
     if isinstance(value, dict):
         return [bad for key, v in value.items() for bad in find_nonsense(v, f"{path}.{key}")]
     if isinstance(value, (list, tuple)):
@@ -144,7 +144,7 @@ def main():
             results["facts"] = benchmark.describe()
         for name in arguments.tables:
             results[name] = benchmark.choose(name).make(benchmark)
-            # Also after an interruption, what has been measured is there.
+            # What has been measured is written, even after an interruption.
             if arguments.markdown:
                 arguments.markdown.write_text("\n".join(benchmark.report.lines) + "\n")
             if arguments.json:

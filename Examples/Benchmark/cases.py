@@ -13,7 +13,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
 def medians(rows):
-    """Each column's."""
+    """Returns the median of each column."""
     return [statistics.median(column) for column in zip(*rows)]
 
 
@@ -26,7 +26,7 @@ def adaptive(benchmark):
         options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
         for kind in ("graded-10", "graded-100", "graded-1000"):
             path = benchmark.sets.get(kind, benchmark.sizes[-1])
-            runs = [program.start(path, options) for _ in range(benchmark.runs + 1)]  # the first builds OpenCL programs
+            runs = [program.start(path, options) for _ in range(benchmark.runs + 1)]  # The first update builds OpenCL programs.
             (wall, processors), found = medians(run[1:] for run in runs[1:]), runs[-1][0]["statistics"]
             out.text(f"{kind:12}{found['fluid_particles']:>8} particles {found['triangles']:>9} triangles {wall:8.3f} s, "
                      f"processors {processors:.3f} s")
@@ -47,12 +47,12 @@ def adaptive(benchmark):
              f"processors {ratio[1]:.1f}")
 
 
-SUPPORT = 2  # of the cubic spline, in smoothing lengths
+SUPPORT = 2  # This is the cubic spline's reach in smoothing lengths.
 MASK = (1 << 21) - 1
 
 
 def split_bricks(positions, lengths, cube):
-    """For each level from 1 on the keys of bricks that smaller ones take the place of, one number for each."""
+    """Returns, for each level from 1 on, the keys (one number each) of the bricks that smaller bricks replace."""
     sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
     split = [np.empty(0, np.int64)]
@@ -106,7 +106,7 @@ def distance(benchmark):
              f"within {np.quantile(off, 0.99):.3g}, 99.9 % within {np.quantile(off, 0.999):.3g}")
 
 
-PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # the spacing is 1
+PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # The spacing is 1.
 
 
 def plane(benchmark):
@@ -131,7 +131,7 @@ def plane(benchmark):
 
 
 def make_image(bounds, *dimensions):
-    """An image over the particles' bounds; its last axis in the middle where it is one point thick."""
+    """Returns an image over the particles' bounds. If it is one point thick, the last axis is in the middle."""
     image = vtk.vtkImageData()
     image.SetDimensions(*dimensions)
     pairs = list(zip(bounds[::2], bounds[1::2], dimensions))
@@ -141,7 +141,7 @@ def make_image(bounds, *dimensions):
 
 
 def make_probe(particles, image, *arrays, keep=True):
-    """Probes these arrays alone, or all."""
+    """Probes these arrays, or all of them."""
     from marchingcorrectors import vtkSPHProbe
     probe = vtkSPHProbe()
     probe.SetInputData(image)
@@ -152,7 +152,7 @@ def make_probe(particles, image, *arrays, keep=True):
 
 
 def seconds_of_update(filter_):
-    """By the clock, and of the processors."""
+    """Returns seconds by the clock, and of the processors."""
     filter_.Modified()
     begin = time.perf_counter(), time.process_time()
     filter_.Update()
@@ -181,7 +181,7 @@ def probe(benchmark):
             if name == "vtkSPHInterpolator, locator made":
                 theirs.GetLocator().FreeSearchStructure()
             used = seconds_of_update(filter_)
-            if run > 0:  # the first one builds programs and search structures
+            if run > 0:  # The first run builds programs and search structures.
                 times[name].append(used)
     out.text(f"{particles.GetNumberOfPoints()} particles, array {array}",
              f"slice of {size}^2 points, medians of {runs}: seconds (spread), processor seconds; times as fast as VTK")
@@ -202,7 +202,7 @@ def probe(benchmark):
 
 
 class Watch:
-    """Times a filter's reports of progress."""
+    """Records the times of a filter's progress reports."""
 
     def __init__(self, filter_):
         self.filter, self.reports, self.stop_at = filter_, [], None
@@ -214,8 +214,8 @@ class Watch:
             self.filter.AbortExecuteOn()
 
     def run(self, stop_at=None):
-        """Seconds of the whole run; the longest gaps by clock and processors, each with what it begins with;
-        seconds after the stop."""
+        """Returns the seconds of the whole run; the longest gaps between reports, by clock and by processors, with the phase in which each begins;
+        the seconds after a stop."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -271,7 +271,7 @@ def project(benchmark):
     column, side, out = CubicSplineKernel().get_column_kernel_func(10000), 1.3, benchmark.report
 
     def timed(call):
-        taken, image = [], call()  # which compiles
+        taken, image = [], call()  # This call compiles.
         for _ in range(benchmark.runs):
             begin = time.perf_counter(), time.process_time()
             image = call()
@@ -305,7 +305,7 @@ def project(benchmark):
 
 
 class Walls:
-    """The planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
+    """Returns the planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
 
     def __init__(self, solid, h):
         self.low, self.high = solid.min(axis=0), solid.max(axis=0)
@@ -316,7 +316,7 @@ class Walls:
         return np.min([*(points - self.low).T, *(self.high - points).T], axis=0)
 
     def distance(self, points):
-        """From the wall; below 0 behind it."""
+        """Returns the distance from the wall; negative behind it."""
         tank = self.tank(points)
         if self.box is None:
             return tank
@@ -328,7 +328,7 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids, of the fluid's volume, one particle spacing outside of it."""
+    """Writes the particles with a layer of solids outside of the fluid, one spacing away, of the fluid's volume."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
@@ -353,8 +353,8 @@ def walls(benchmark):
     """Where surfaces end at walls, for each choice of --solids: distance of their border from the first layer of wall
     particles, in smoothing lengths (below 0: behind it), and the share of points behind it. A file without solids gets
     a layer of them."""
-    out, near = benchmark.report, 1.5  # what of the border is so near to a wall, in smoothing lengths, ends there
-    edges = vtk.vtkFeatureEdges()  # those that one triangle alone has
+    out, near = benchmark.report, 1.5  # A border point this near to a wall, in smoothing lengths, ends there.
+    edges = vtk.vtkFeatureEdges()  # These edges have only one triangle.
     edges.FeatureEdgesOff()
     edges.NonManifoldEdgesOff()
     edges.ManifoldEdgesOff()
@@ -407,14 +407,14 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """The mean: a side along an axis cut into p parts has neighbours with 1 - 1/p of probability; or the most."""
+        """Returns the mean number of ranks' copies: a side that is cut into p parts has a neighbour with probability 1 - 1/p; or the largest."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))
         return grown - self.each
 
     def surface(self):
-        """A rank's part of the area."""
+        """Returns a rank's part of the area."""
         x, y, z = self.whole
         return 2 * (x * y + y * z + z * x) / self.ranks
 
@@ -434,7 +434,7 @@ def ranks(benchmark):
             runs.append((Model(sum(found["rank_particles"]), shape, number), found))
     low, depth = 0.0, 100.0
     measured = sum(sum(found["rank_copies"]) for _, found in runs)
-    for _ in range(60):  # the depth whose copies are, over all runs, those that were measured
+    for _ in range(60):  # With this depth, the copies of all runs are as many as were measured.
         middle = (low + depth) / 2
         fewer = sum(model.copies(middle) * model.ranks for model, _ in runs) < measured
         low, depth = (middle, depth) if fewer else (low, middle)
@@ -449,7 +449,7 @@ def ranks(benchmark):
                      f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
                      excess(found["rank_nodes_evaluated"])])
     out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean"], rows)
-    # From one file, all travel that the first rank does not own, and all copies.
+    # With one file, all particles travel that the first rank does not own, and all copies.
     sent = sum(sum(found["rank_bytes_sent"]) for _, found in runs) / sum(
         sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found in runs)
     nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found in runs) /
@@ -461,7 +461,7 @@ def ranks(benchmark):
         for number in (1, 8, 64, 512, 1024):
             model = Model(total, shape, number)
             copies, most = ((model.copies(depth, of_most) if number > 1 else 0) for of_most in (False, True))
-            moved = model.each * (1 - 1 / number) + copies  # none lies where it belongs
+            moved = model.each * (1 - 1 / number) + copies  # No particle begins where it belongs.
             rows.append([text_of(total), number, f"{model.each:.3g}", f"{copies:.3g}", f"{most:.3g}",
                          f"{copies / model.each:.2f}", f"{moved * sent / 1e6:.3g}",
                          f"{model.surface() * nodes:.3g}"])

@@ -18,7 +18,7 @@ import numpy as np
 
 
 def splash(spacing, seconds):
-    """A tank with a wave that runs outwards from its middle, and a crown of drops that fly."""
+    """Makes a tank with a wave that runs outwards from its middle, and a crown of drops that fly."""
     line = np.arange(0, 1, spacing)
     tank = np.stack(np.meshgrid(line, line, np.arange(0, 0.3, spacing)), -1).reshape(-1, 3)
     radius = np.hypot(tank[:, 0] - 0.5, tank[:, 1] - 0.5)
@@ -34,7 +34,7 @@ def splash(spacing, seconds):
 
 
 def write(path, points, velocities, seconds):
-    """A legacy .vtk file, binary."""
+    """Writes a legacy .vtk file, binary."""
     count = len(points)
     parts = ["# vtk DataFile Version 3.0\nsplash\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n",
              np.array([seconds], ">f8"), f"\nPOINTS {count} float\n", points.astype(">f4"), f"\nPOINT_DATA {count}\n"
@@ -43,7 +43,7 @@ def write(path, points, velocities, seconds):
 
 
 def measure(command):
-    """(Seconds of a processor, MiB at most) of a process."""
+    """Returns (processor seconds, peak MiB) of a process."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     if status:

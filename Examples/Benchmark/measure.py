@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shared by all cases of the benchmark: particle sets, runs of the program and of its competitors, tables."""
+"""Has what all cases of the benchmark share: particle sets, runs of the program and of its competitors, tables."""
 import functools
 import hashlib
 import importlib.util
@@ -22,16 +22,16 @@ sys.path.insert(0, str(DATA))
 import make_particles  # noqa: E402
 PHASES = ("input", "search_grid", "seeds", "extraction", "correction", "trimming", "output")
 CUBE_FACTOR = 0.5
-THRESHOLD = 0.5  # of the weight sum, at the free surface
-ENOUGH_SECONDS = 120.0  # no further repetition once a competitor has had this much
+THRESHOLD = 0.5  # The free surface is where the weight sum has this value.
+ENOUGH_SECONDS = 120.0  # After this many seconds a competitor is not run again.
 
-# Sets of make_particles.py with further arguments, and what the program is to be told of the particles.
+# Each set has arguments for make_particles.py, and options that tell the program about the particles.
 SETS = {
-    # 70 neighbours, constant h: for comparisons with other software.
+    # These sets have 70 neighbours and constant h, for comparisons with other software.
     "tank": ("tank", (), ()),
-    # 200 neighbours, constant h: stands for the paper's tsunami.
+    # These have 200 neighbours and constant h, and stand for the paper's tsunami.
     "dense-tank": ("tank", ("--ratio", "1.814"), ("--kernel", "quadratic")),
-    # 70 neighbours, variable h: stands for the paper's dam break.
+    # These have 70 neighbours and variable h, and stand for the paper's dam break.
     "dam-break": ("dam_break", (), ()),
     # A full lattice: stands for the paper's vortex rings. There is no free surface, so nothing is trimmed: with a
     # shortened kernel, weights between the particles of a lattice are low.
@@ -44,13 +44,13 @@ SETS = {
 
 
 def count_of(text):
-    """670k -> 670000, 3M -> 3000000"""
+    """Turns 670k into 670000, and 3M into 3000000."""
     factor = {"k": 1000, "m": 1000000}.get(text[-1:].lower(), 1)
     return round(float(text[:-1] if factor > 1 else text) * factor)
 
 
 def text_of(count):
-    """670000 -> 670k, 3000000 -> 3M"""
+    """Turns 670000 into 670k, and 3000000 into 3M."""
     for unit, letter in ((1000000, "M"), (1000, "k")):
         if count >= unit:
             return f"{count / unit:g}{letter}"
@@ -58,7 +58,7 @@ def text_of(count):
 
 
 class Sets:
-    """The folder where the sets lie. One that is already there, made in the same way, is not made again."""
+    """Has the folder of the particle sets. A set that exists already, made in the same way, is not made again."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -77,8 +77,8 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """These particles with one array alone, and the options that say what the others said:
-        smoothing length, mass and density must be the same for all particles."""
+        """Writes these particles with one array alone, and returns options in place of the others: smoothing length, mass and density must be the
+        same for all particles."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)
@@ -117,7 +117,7 @@ def array_of(data, name):
 
 
 def processor_seconds():
-    """By all processes that have ended."""
+    """Returns the processor seconds of all child processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -127,17 +127,17 @@ def peak_bytes():
 
 
 class Program:
-    """marching-correctors; results are kept, so that tables may share a run."""
+    """Runs marching-correctors. Results are kept, so that tables may share a run."""
 
     def __init__(self, path, device, runs, folder):
         self.path, self.device, self.runs = pathlib.Path(path).resolve(), device, runs
-        self.folder, self.surface = folder, folder / "surface.vtp"  # of the last run
+        self.folder, self.surface = folder, folder / "surface.vtp"  # These are of the last run.
         self.run = functools.lru_cache(None)(self.measure)
 
     def measure(self, path, options):
-        """Medians of the timed runs: one process that extracts the surface once more than it is timed, each time from
-        scratch but for the OpenCL program. The first, which loads that, is apart. A process before it builds the
-        program, if that is not cached: the compiler takes memory."""
+        """Returns medians of the timed runs. One process extracts the surface once more than it is timed, each time from scratch except for the
+        OpenCL program. The first extraction, which loads this program, is given apart. Another process compiles the program before, because the
+        compiler takes memory."""
         print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
         self.start(path, options)
         found = self.start(path, options, self.runs + 1)[0]
@@ -153,8 +153,7 @@ class Program:
             "bytes": found["peak_resident_bytes"]}
 
     def start(self, path, options, repeat=1, environment=None, output=None, before=()):
-        """One process; its report where it makes a surface, and seconds from its start to its end by the clock and of
-        processors."""
+        """Runs one process. Returns its report, if it makes a surface, and the seconds from its start to its end, by the clock and of processors."""
         report = self.folder / "statistics.json"
         report.unlink(missing_ok=True)
         statistics_of = ["--repeat", str(repeat), "--stats", report] if repeat else []
@@ -170,14 +169,14 @@ class Program:
 
 
 def need_surface(result, what):
-    """The result; the benchmark ends where a measurement gave no surface."""
+    """Returns the result, and ends the benchmark if there is no surface."""
     if result["triangles"] == 0:
         sys.exit(f"benchmark.py: {what}: no surface")
     return result
 
 
 def lattice(particles, cube, dimension):
-    """An image of nodes at whole multiples of the cube size, around the particles; in two dimensions in the plane z = 0."""
+    """Returns an image whose points are whole multiples of the cube size around the particles; in two dimensions it lies in the plane z = 0."""
     low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
     high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
     image = vtk.vtkImageData()
@@ -194,7 +193,7 @@ def exclude_others(filter_, particles, *kept):
 
 
 def interpolator(particles, image, h, dimension, *kept):
-    """vtkSPHInterpolator of some arrays, not run yet."""
+    """Returns vtkSPHInterpolator for some arrays, before it has run."""
     kernel = vtk.vtkSPHCubicKernel()
     kernel.SetSpatialStep(h)
     kernel.SetDimension(dimension)
@@ -272,7 +271,7 @@ COMPETITORS = {"vtk": run_vtk, "splashsurf": run_splashsurf, "splashsurf, smooth
 
 
 def available_bytes():
-    """Memory that Linux could give without swapping: free, or used by caches of files alone."""
+    """Returns the memory that Linux could give without swapping: what is free, or only caches files."""
     for line in pathlib.Path("/proc/meminfo").read_text().splitlines():
         if line.startswith("MemAvailable:"):
             return 1024 * int(line.split()[1])
@@ -280,9 +279,8 @@ def available_bytes():
 
 
 def compete(name, path, count, runs, limit, smaller=None, arguments=()):
-    """Medians of a competitor's runs, each a process of its own, or why there are none. Reading the particles is not
-    timed. `smaller` is what it took for fewer particles, None if unknown; a set that would take longer than `limit`
-    seconds, or more memory than there is, is left out."""
+    """Returns medians of a competitor's runs, each in its own process, or why there are none. Reading particles is not timed. smaller: its seconds
+    for fewer particles, or None. A set that would take longer than `limit` seconds, or more memory than there is, is left out."""
     if smaller:
         factor = count / smaller["particles"]
         seconds, size = factor * smaller["seconds"], factor * smaller["bytes"]
@@ -310,8 +308,8 @@ def compete(name, path, count, runs, limit, smaller=None, arguments=()):
 
 
 class Report:
-    """Text that grows; every line is printed at once, as a whole benchmark takes long. Tables as Markdown, aligned so
-    that they read well on a terminal too."""
+    """Collects text, and prints each line at once, because a whole benchmark takes long. Tables are Markdown, aligned so that they can be read on a
+    terminal, too."""
 
     def __init__(self):
         self.lines = []
@@ -346,7 +344,7 @@ def mebibytes(size):
 
 
 def seconds_of(value):
-    """Three digits that count."""
+    """Returns the number with three significant digits."""
     return f"{value:.1f}" if value >= 100 else f"{value:.2f}" if value >= 10 else f"{value:.3f}"
 
 
@@ -357,7 +355,7 @@ def ratio(value):
 
 
 def machine():
-    """Processor, cores, memory and system, as Linux tells them."""
+    """Returns processor, cores, memory and system, as Linux names them."""
     models = [line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
               if line.startswith("model name")]
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2 ** 30

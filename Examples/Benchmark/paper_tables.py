@@ -35,20 +35,20 @@ class Data:
     count: int
     scalar: str
     iso: float
-    coarse_iso: float  # for few thousand particles, which do not resolve the other surface
+    coarse_iso: float  # There are only a few thousand particles, which do not resolve the other surface.
     grid: tuple
     seeds: tuple
     preview: tuple
     corrected: tuple = (None,) * 6
     total: tuple = ()
     total_corrected: tuple = (None,) * 6
-    # Tables IV and V, h scale 1: cubes of 0.5 h, h
+    # Tables IV and V have h scale 1, and cubes of 0.5 h and h.
     cube: tuple = ()
     cells: tuple = ()
     lengths: tuple = ()
 
 
-# The totals are those printed in the paper, also where they are not the sum of the rows above them.
+# The totals are those that the paper prints, even where they are not the sum of the rows above.
 PAPER = {
     "rings": Data(
         "I", "vortex rings", "vortex-rings", 10000000, "VorticityMagnitude", 50, 20,
@@ -89,7 +89,7 @@ LENGTH_ROWS = (("Mean vector norm", "correction_mean"), ("Max vector norm", "cor
 
 
 def beside(ours, paper, text):
-    """Ours (the paper's; ours / the paper's)."""
+    """Returns our figure, and in brackets the paper's and the ratio of both."""
     if paper is None:
         return f"{text(ours)} (-)"
     return f"{text(ours)} ({text(paper)}; {ratio(ours / paper)})"
@@ -104,7 +104,7 @@ def time_row(name, ours, paper, text=seconds_of):
 
 
 def cost(corrected, total):
-    """The correction's share of the total without it."""
+    """Returns the correction's share of the total without it."""
     return [None if a is None else (a - b) / b for a, b in zip(corrected, total)]
 
 
@@ -120,7 +120,7 @@ def run_columns(benchmark, data, count, iso):
     for column in columns:
         column["corrected"] = run(column, "sum")
         column["preview"] = run(column, "sum", "--preview")
-        if column["h_scale"] == 1:  # a kernel shorter than the particles' distance may leave nothing
+        if column["h_scale"] == 1:  # A kernel shorter than the particles' distance may leave no surface.
             need_surface(column["corrected"], data.title)
             column["shepard"] = run(column, "shepard")
     return columns
@@ -164,7 +164,7 @@ def print_times(out, data, columns):
 
 
 def print_last(out, results):
-    """Tables IV and V, of the data sets that these have."""
+    """Prints Tables IV and V for the data sets that have them."""
     shown = [(PAPER[name], columns[i], i) for name, columns in results.items() if PAPER[name].cube for i in range(2)]
     if not shown:
         return

@@ -11,10 +11,10 @@ import numpy as np
 from measure import (compete, has_splashsurf, make_particles, points_of, processor_seconds, read, smoothed_by_splashsurf,
                      vtk_to_numpy)
 
-DROPS, RADIUS, HEIGHT = 40, 13, 13  # of the crown
+DROPS, RADIUS, HEIGHT = 40, 13, 13  # These are of the crown.
 WAYS = {"as it is": [], "--compact": ["--compact"], "--widen 2": ["--widen", "2"], "--smooth": ["--smooth"],
         "--smooth --iso 0.55": ["--smooth", "--iso", "0.55"]}
-SPLASHSURF = {"splashsurf, cubes 0.5 r": 0.5, "splashsurf, cubes 1.0 r": 1.0}  # with its recommended smoothing
+SPLASHSURF = {"splashsurf, cubes 0.5 r": 0.5, "splashsurf, cubes 1.0 r": 1.0}  # It runs with its recommended smoothing.
 
 
 def lattice(nx, ny, nz):
@@ -31,7 +31,7 @@ def radius_at(z):
 
 
 def crown(jitter, random):
-    """Particles, the drops last."""
+    """Returns the particles; the drops come last."""
     parts = [lattice(52, 52, 5) - (26, 26, 5)]
     z, row = 0.5, 0
     while z < HEIGHT:
@@ -55,7 +55,7 @@ SCENES = {"tank, jitter 0.12": (tank, 0.12), "tank, jitter 0.18": (tank, 0.18), 
 
 
 def tilt(normals, wanted):
-    """Degrees, weighted by area."""
+    """Returns the tilt in degrees, weighted by area."""
     area = np.linalg.norm(normals, axis=1)
     cosine = np.abs((normals * wanted).sum(1)) / np.maximum(area * np.linalg.norm(wanted, axis=-1), 1e-300)
     return np.sqrt(np.average(np.degrees(np.arccos(np.clip(cosine, -1, 1))) ** 2, weights=area)) if len(area) else np.nan
@@ -80,7 +80,7 @@ def measure(scene, x, points, triangles):
 
 
 def times(benchmark):
-    """Each run is a process of its own, so that what it takes can be told."""
+    """Runs in its own process, so that its memory and time can be measured."""
     path, taken = benchmark.files[0], {}
     for _ in range(benchmark.runs):
         for name in ("as it is", "--compact", "--smooth"):

@@ -10,7 +10,7 @@ FREE_SURFACE = ("--free-surface", "--iso", THRESHOLD, *CUBE)
 
 
 def competitor_row(count, name, theirs, ours):
-    """A row of what was measured, ours too, or of what was left out."""
+    """Appends a row with what was measured, or with why it was left out."""
     head = [text_of(count), theirs.get("name", name)]
     if "left_out" not in theirs:
         every = theirs["all"]

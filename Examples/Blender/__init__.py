@@ -20,15 +20,15 @@ ENDINGS = ";".join("*" + ending for ending in series.ENDINGS)
 # ---- The surface of a frame ----
 
 def to_time(settings, scene, frame):
-    """The time in the simulation at a frame of the scene."""
+    """Returns the simulation's time at a frame of the scene."""
     rate = scene.render.fps / scene.render.fps_base
     return settings.steps[0].time + (frame - settings.first_frame) / rate * settings.speed
 
 
 def find_step(settings, scene, frame):
-    """The last step that is not later than the frame; the first one before it."""
+    """Returns the last step that is not later than the frame, or the first step."""
     time, found = to_time(settings, scene, frame), settings.steps[0]
-    margin = 1e-4 * settings.speed * scene.render.fps_base / scene.render.fps  # for times that are written with few digits
+    margin = 1e-4 * settings.speed * scene.render.fps_base / scene.render.fps  # Times in files may have few digits.
     for step in settings.steps:
         if step.time > time + margin:
             break
@@ -37,14 +37,14 @@ def find_step(settings, scene, frame):
 
 
 def words_of(settings):
-    """What the mesh depends on beside the step, as words of series.make_surface()."""
+    """Returns the settings, besides the step, that the mesh depends on, as words of series.make_surface()."""
     return {"smoothing_length": settings.smoothing_length, "fluid": settings.fluid, "scalar": settings.scalar, "iso": settings.iso,
             "smooth": settings.smooth, "cube_size_factor": round(settings.cube_factor, 6), "least_particles": settings.least_particles,
             "arrays": [each.name for each in settings.arrays if each.keep]}
 
 
 def refresh(thing, scene):
-    """Makes the mesh of the scene's frame, unless it is the one that is there. Returns the sentence of what went wrong, or ""."""
+    """Makes the mesh of the scene's frame, unless the object has it already. Returns the sentence that says what went wrong, or ""."""
     settings = thing.sph
     if not len(settings.steps):
         return ""
@@ -60,21 +60,21 @@ def refresh(thing, scene):
         settings.message = " ".join(str(each.message) for each in told)
     except (series.Error, OSError) as error:
         surface, settings.message = None, str(error)
-        print(f"{thing.name}: {error}")  # rendering in the background shows no panel
+        print(f"{thing.name}: {error}")  # In the background no panel shows the sentence.
     fill_mesh(thing.data, surface, settings.speed)
     settings.shown = key
     return settings.message
 
 
 def fill_mesh(mesh, surface, speed):
-    """Replaces the points, faces and attributes; materials stay."""
+    """Replaces the points, faces and attributes, but keeps the materials."""
     mesh.clear_geometry()
     if surface is None or not len(surface.points):
         mesh.update()
         return
     mesh.vertices.add(len(surface.points))
     mesh.attributes["position"].data.foreach_set("vector", surface.points.astype("f4").ravel())
-    if surface.lines:  # of particles in a plane
+    if surface.lines:  # These particles lie in a plane.
         edges = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in surface.lines])
         mesh.edges.add(len(edges))
         mesh.edges.foreach_set("vertices", edges.ravel())
@@ -88,7 +88,7 @@ def fill_mesh(mesh, surface, speed):
         mesh.normals_split_custom_set_from_vertices(surface.normals)
     velocity = series.find_velocity(surface.attributes)
     for name, values in surface.attributes.items():
-        if name == velocity:  # Cycles blurs by "velocity", per second of the scene, which is `speed` of the simulation
+        if name == velocity:  # Cycles blurs by the attribute "velocity" per second of the scene, which lasts `speed` seconds of the simulation.
             name, values = "velocity", values * speed
         is_vector = values.ndim == 2
         attribute = mesh.attributes.new(name, "FLOAT_VECTOR" if is_vector else "FLOAT", "POINT")
@@ -120,7 +120,7 @@ class Array(bpy.types.PropertyGroup):
 
 
 def shared(**more):
-    """The properties of an object that its import has, too."""
+    """Has the properties that an object shares with its import."""
     return {
         "smoothing_length": StringProperty(
             name="Smoothing Length", **more, description="An array's name, a length, 'estimate' (from the particle spacing) or "
@@ -143,7 +143,7 @@ def shared(**more):
 class Settings(bpy.types.PropertyGroup):
     steps: CollectionProperty(type=Step)
     arrays: CollectionProperty(type=Array)
-    shown: StringProperty(options={"HIDDEN"})  # what the mesh was made of
+    shown: StringProperty(options={"HIDDEN"})  # This says what the mesh was made of.
     message: StringProperty(options={"HIDDEN"})
     first_frame: IntProperty(name="First Frame", default=1, update=changed, description="The frame at which the first step is shown")
     __annotations__.update(shared(update=changed))
@@ -186,7 +186,7 @@ class ImportParticles(bpy.types.Operator, ImportHelper):
         for name in names:
             array = settings.arrays.add()
             array.name, array.keep = name, name == kept
-        for each in steps:  # last: without steps, changes of settings make no surface
+        for each in steps:  # This comes last: without steps, changed settings make no surface.
             step = settings.steps.add()
             step.path, step.number, step.time = str(each.path), each.number, each.time
         context.collection.objects.link(thing)

@@ -12,7 +12,7 @@ import zipfile
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
-# Blender's words for systems, by what the tags of wheels end with.
+# The ends of wheels' tags, and Blender's words for the systems.
 PLATFORMS = {"linux.*_x86_64": "linux-x64", "linux.*_aarch64": "linux-arm64", "win_amd64": "windows-x64",
              "win_arm64": "windows-arm64", "macosx.*_arm64": "macos-arm64", "macosx.*_x86_64": "macos-x64"}
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Steps of particle files, and the surface of one: all that needs no Blender."""
+"""Finds the steps of particle files, and makes the surface of one, without Blender."""
 from typing import NamedTuple
 
 import numpy as np
@@ -13,17 +13,17 @@ from marchingcorrectors._usd import Film, find_velocity
 from marchingcorrectors.io import ENDINGS, count_steps, read
 
 __all__ = ["ENDINGS", "Error", "Step", "end", "find_velocity", "list_arrays", "list_steps", "make_surface", "read", "write_usd"]
-_context = None  # the device, with what it keeps from call to call
+_context = None  # The context is a device with what it keeps from call to call.
 
 
 class Step(NamedTuple):
     path: str
-    number: int  # of those in the file
+    number: int  # The number counts the steps in the file.
     time: float
 
 
 def list_steps(names, time_step):
-    """All steps of the files, in order. Their times are those of the files, if all tell one and they grow; else multiples of
+    """Returns all steps of the files, in order. Times come from the files if all have one and they ascend; otherwise they are multiples of
     time_step."""
     steps = [(name, number) for name in in_order(names) for number in range(count_steps(name))]
     times = []
@@ -36,13 +36,13 @@ def list_steps(names, time_step):
 
 
 def list_arrays(particles):
-    """Names of the real arrays of one number or a vector, which attributes of a mesh can hold."""
+    """Returns the names of real arrays with one number or a vector for each particle, which mesh attributes can hold."""
     return [name for name, array in particles.arrays.items() if array.dtype.kind == "f" and array.shape[1:] in ((), (3,))]
 
 
 def make_surface(path, number, smoothing_length="", fluid="", scalar="", iso=0.5, smooth=True, cube_size_factor=0.5,
                  least_particles=0, arrays=()):
-    """The surface of a step, with these arrays."""
+    """Makes the surface of a step, with these arrays."""
     global _context
     if _context is None:
         _context = mc.Context()
@@ -76,7 +76,7 @@ def _number(text):
 
 
 def write_usd(path, steps, fps, speed, up, words):
-    """One file of all steps. speed: seconds of the simulation in a second of film."""
+    """Writes one file of all steps. speed: seconds of the simulation in one second of the film."""
     with Film(path, [step.path for step in steps], fps=fps, slow=1 / speed, up=up) as film:
         for step in steps:
             film.add(make_surface(step.path, step.number, **words), step.time)

@@ -20,11 +20,11 @@ extractor = CreateExtractor("VTP", surface, registrationName="surface")
 extractor.Trigger = "TimeStep"
 extractor.Trigger.Frequency = 2
 extractor.Writer.FileName = "surface_{timestep:04d}.pvtp"
-extractor.Writer.DataMode = "Binary"  # small appended data cannot be read with a recent expat
+extractor.Writer.DataMode = "Binary"  # Small appended data cannot be read with a recent expat.
 
 
 def catalyst_execute(info):
-    """Once a step, before the extracts are written."""
+    """Is called once a step, before the extracts are written."""
     surface.UpdatePipeline(info.time)
     print(f"step {info.timestep}, time {info.time:g}: {surface.GetDataInformation().GetNumberOfCells()} triangles",
           flush=True)

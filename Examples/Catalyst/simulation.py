@@ -11,7 +11,7 @@ channel "particles". Each process moves every RANKS-th particle, so none has a r
 import sys
 
 import numpy as np
-from paraview.catalyst import bridge  # before anything else of ParaView
+from paraview.catalyst import bridge  # This must be imported before anything else of ParaView.
 from vtkmodules.vtkCommonDataModel import vtkPointSet
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 from vortex import advanced, ball, fill
@@ -27,7 +27,7 @@ def main(script, steps):
     own = np.arange(controller.GetLocalProcessId(), len(points), controller.GetNumberOfProcesses())
     points = points[own]
     for step in range(steps):
-        # As Catalyst hands over a Conduit mesh of points: points and arrays, no cells.
+        # Catalyst gets the particles as a Conduit mesh of points: points and arrays, no cells.
         bridge.coprocess(step * TIME_STEP, step, fill(vtkPointSet(), points, own), name="particles")
         points = advanced(points, TIME_STEP)
     bridge.finalize()

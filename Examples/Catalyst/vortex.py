@@ -9,20 +9,20 @@ SPACING = 0.015
 
 
 def ball():
-    """The particles at rest."""
+    """Returns the particles at rest."""
     axis = np.arange(0.0, 1.0, SPACING)
     points = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1).reshape(-1, 3)
     return points[np.linalg.norm(points - (0.5, 0.72, 0.5), axis=1) < 0.15]
 
 
 def velocity(points):
-    """A vortex in the unit square, the same at each z; nothing is compressed."""
+    """Returns the velocity of a vortex in the unit square, the same at each z; it compresses nothing."""
     x, y = np.pi * points[:, 0], np.pi * points[:, 1]
     return np.stack((2 * np.sin(x) ** 2 * np.sin(y) * np.cos(y), -2 * np.sin(y) ** 2 * np.sin(x) * np.cos(x), 0 * x), 1)
 
 
 def advanced(points, time):
-    """Where they are after some time, by the midpoint rule."""
+    """Returns the positions after some time, by the midpoint rule."""
     return points + time * velocity(points + 0.5 * time * velocity(points))
 
 

@@ -99,7 +99,7 @@ bool Execute(int argc, char* argv[])
     return true;
   }
   const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
-  Messages(); // are caught from here on
+  Messages(); // these signals are handled from here on
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (job.ListArrays)
   {
@@ -156,7 +156,7 @@ bool Execute(int argc, char* argv[])
 void MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  std::vector<std::string> outputs; // of this process; of the first one, those of all
+  std::vector<std::string> outputs; // memory of this process; on the first process, of all
   for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
   {
     if (sharing.IsFirst() || rank == sharing.GetRank())
@@ -183,7 +183,7 @@ void MakeSurface(Sharing& sharing)
   Run run;
   for (int i = 0; i < job.Repeat; ++i)
   {
-    run.Surface = nullptr; // not two at once
+    run.Surface = nullptr; // one run must end before the next begins
     sharing.OnAll([&] { run = Extract(sharing); });
     pieces.clear();
     sharing.OnAll([&] { AddPieces(pieces, sharing, run, particles); });
@@ -229,7 +229,7 @@ void MakeSurface(Sharing& sharing)
         files.Write(job.ComponentFile, pieces);
       }
     });
-  sharing.OnAll([&] { files.Commit(); }); // only where all have written all
+  sharing.OnAll([&] { files.Commit(); }); // only if all processes have written all files
   if (!job.WideningFile.empty())
   {
     auto widened = vtkSmartPointer<vtkPolyData>::New();
@@ -266,7 +266,7 @@ void MakeSurface(Sharing& sharing)
 
 const Extra& LoadExtra()
 {
-  // By its name alone it is looked for where this program's other libraries are.
+  // Its name alone is looked for in the folder of this program's other libraries.
   static void* const library = dlopen(MCOR_EXTRA_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
   static const void* const extra = library ? dlsym(library, "MarchingCorrectorsExtra") : nullptr;
   if (!extra)
@@ -281,7 +281,8 @@ const Extra& LoadExtra()
 
 int main(int argc, char* argv[])
 {
-  // A file opened by this program must not become its standard output, where that was closed.
+  // If standard output was closed, the next file that the program opens would become it, so this
+  // keeps its place.
   int descriptor = 0;
   while (descriptor >= 0 && descriptor <= STDERR_FILENO)
   {
@@ -309,14 +310,15 @@ int main(int argc, char* argv[])
         throw std::runtime_error("standard output could not be written");
       }
     });
-  // On others the first process says it; a failure could end that one before it has.
+  // On the other processes nothing is said, because the first process says it. A failure here could
+  // end the first process before it has spoken.
   const bool isSilent = isMisused && LaunchedRank() > 0;
   if (!failure.empty() && !isSilent)
   {
     Say(failure);
   }
   std::fflush(nullptr);
-  // Nothing that libraries do at the end of a program is to take time, crash, or write what they
-  // think of a damaged file.
+  // Libraries' code at the program's end is skipped: it may take time, crash, or print what it
+  // thinks of a damaged file.
   _exit(isSilent ? 0 : isMisused ? 2 : isGood && failure.empty() ? 0 : 1);
 }

@@ -15,7 +15,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 GRAVITY = 9.81
-INTERVALS = {"splash": 0.02, "wave": 0.05}  # between steps, s
+INTERVALS = {"splash": 0.02, "wave": 0.05}  # The steps are this many seconds apart.
 
 
 def tank(count, ratio=1.28):
@@ -50,23 +50,23 @@ def dam_break(count, ratio=1.28):
     wave = np.sqrt(GRAVITY * height)
 
     def axis(extent, spacing, grading=0.5):
-        """Coordinates and spacings of lattice planes; the spacing falls linearly along the axis, from 1 + grading to 1."""
+        """Returns coordinates and spacings of lattice planes; the spacing falls linearly along the axis, from 1 + grading to 1."""
         planes = extent / spacing * np.log(1 + grading) / grading
         u = (np.arange(int(planes)) + 0.5) * spacing
         x = extent * (1 + 1 / grading - (1 + grading) / grading * np.exp(-grading * u / extent))
         return x, spacing * (1 + grading * (1 - x / extent))
 
     def lattice(spacing):
-        """Positions and spacings of the lattice points in the water. Ritter (1892): a rarefaction runs back into the column,
-        a tongue forth from it."""
+        """Returns positions and spacings of the lattice points in the water. By Ritter (1892), a rarefaction runs back into the column and a tongue
+        forth from it."""
         (x, dx), (y, dy), (z, dz) = (axis(extent, spacing) for extent in (length + 2 * time * wave, width, height))
-        z, dz = height - z[::-1], dz[::-1]  # finest at the bottom
+        z, dz = height - z[::-1], dz[::-1]  # It is finest at the bottom.
         depth = (2 * wave - np.clip((x - length) / time, -wave, 2 * wave)) ** 2 / (9 * GRAVITY)
         wet = np.nonzero(np.broadcast_to((z < depth[:, None])[:, None, :], (len(x), len(y), len(z))))
         return np.stack([x[wet[0]], y[wet[1]], z[wet[2]]], 1), np.stack([dx[wet[0]], dy[wet[1]], dz[wet[2]]], 1)
 
     spacing = 0.02
-    for _ in range(5):  # the count goes with 1 / spacing^3, but for whole planes
+    for _ in range(5):  # The count goes with 1 / spacing^3, apart from whole planes.
         spacing *= (len(lattice(spacing)[0]) / count) ** (1 / 3)
     positions, spacings = lattice(spacing)
     volumes = spacings.prod(1)
@@ -136,7 +136,7 @@ def wave(count, ratio=1.3, time=0.0):
     crest = 1.3 + celerity * time
 
     def top(x):
-        """Steeper on the side that the wave goes to."""
+        """Makes the wave steeper on the side to which it travels."""
         s = (x - crest) * np.where(x > crest, 7.0, 3.2)
         return depth + height / np.cosh(np.clip(s, -20, 20)) ** 2 + 0.006 * np.sin(21 * x)
 
@@ -179,7 +179,7 @@ def splash(count, ratio=1.3, time=0.1):
     rows = max(int(0.2 * count / (around * layers)), 1)
     layer, row, turn = (c.ravel() for c in np.meshgrid(np.arange(layers), np.arange(rows), np.arange(around), indexing="ij"))
     angle = 2 * math.pi * (turn + 0.5 * (row % 2)) / around
-    late = row / rows  # 0: thrown first, and fastest
+    late = row / rows  # Particles with 0 are thrown first, and fastest.
     start = 0.3 + (layer - (layers - 1) / 2) * dx
     out = 0.9 * (1 - 0.5 * late)
     up = 2.3 * (1 - late) * (1 + 0.12 * np.cos(fingers * angle) * (1 - late)) + 0.05
@@ -206,12 +206,12 @@ def plane(count, jitter=0.15):
 
 
 def tangents(p):
-    """dGamma per node: central difference of the closed polygon."""
+    """Returns dGamma per node: the central difference of the closed polygon."""
     return 0.5 * (np.roll(p, -1, 0) - np.roll(p, 1, 0))
 
 
 def moving_rings(sigma=0.1, z0=0.6, amplitude=0.012, time=3.5, dt=0.03, nodes=384):
-    """The rings' centre lines at that time, and their core radii. The thin-filament model breaks down after about 4."""
+    """Returns the rings' centre lines at that time, and their core radii. The thin-filament model breaks down after about 4."""
     t, rings = np.arange(nodes) * (2.0 * np.pi / nodes), []
     for sign in (1.0, -1.0):
         radius, height = np.ones(nodes), np.zeros(nodes)
@@ -286,7 +286,7 @@ def vortex_rings(count, keep_all=False, threshold=1e-3):
     size = high - low
 
     def lattice(dx):
-        """Centred on the box."""
+        """Centres the points on the box."""
         dims = np.ceil(size / dx).astype(int) + 1
         return 0.5 * (low + high) - 0.5 * dx * (dims - 1), dims
 
@@ -307,12 +307,12 @@ def vortex_rings(count, keep_all=False, threshold=1e-3):
 
 
 def poly_data(positions, arrays):
-    """positions: [n, 3]; arrays: of n values or vectors, by name. Types stay as they are."""
+    """Writes a file. positions: [n, 3]; arrays: by name, of n values or vectors. Types stay as they are."""
     particles = vtk.vtkPolyData()
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(positions, deep=1))
     particles.SetPoints(points)
-    vertices = vtk.vtkCellArray()  # without them ParaView shows nothing
+    vertices = vtk.vtkCellArray()  # Without these ParaView shows nothing.
     vertices.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(positions)), deep=1))
     particles.SetVerts(vertices)
     for name, values in arrays.items():
@@ -358,7 +358,7 @@ def main():
         if steps:
             given["time"] = step * INTERVALS[chosen]
         positions, arrays = sets[chosen](count, **given)
-        if chosen != "graded":  # whose sizes and places go over three decades
+        if chosen != "graded":  # Its sizes and places span three decades.
             positions = positions.astype(np.float32)
             arrays = {name: values.astype(np.float32) if values.dtype.kind == "f" else values for name, values in arrays.items()}
         particles = poly_data(positions, arrays)

@@ -28,7 +28,7 @@ FRAMES = (STEPS - 1) * (BETWEEN + 1) + 1
 
 
 def store(folder):
-    """The steps that a code would have stored; each in another order of the particles."""
+    """Writes the steps that a code would have stored, each with its particles in another order."""
     points, names = ball(), []
     for step in range(STEPS):
         order = np.random.default_rng(step).permutation(len(points))
@@ -58,7 +58,7 @@ def animate(file):
     scene = GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     assert len(list(scene.TimeKeeper.TimestepValues)) == FRAMES
-    Render(view)  # the first rendering places the camera
+    Render(view)  # The first rendering places the camera.
     view.CameraPosition, view.CameraFocalPoint = [0.5, 0.5, 2.6], [0.5, 0.5, 0.5]
     view.CameraViewUp, view.CameraViewAngle = [0.0, 1.0, 0.0], 26
     return scene, view

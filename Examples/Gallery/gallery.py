@@ -32,9 +32,9 @@ from make_particles import poly_data  # noqa: E402
 
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE, WHITE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5), (1, 1, 1)
-# Cameras: position, focus, angle; the whole tank by the number of panels in a row.
+# Cameras have position, focus and angle; the whole tank is seen from farther with more panels in a row.
 TANK = {n: ((-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), angle) for n, angle in ((1, 27), (2, 38), (3, 52))}
-NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # the water behind the obstacle
+NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # It looks at the water behind the obstacle.
 EDGE = (0.3, 0.75, 0.4), (0.82, 0.44, 0.12), 22
 README = (-0.35, 2.5, 4.4), (1.565, 0.45, 0.0), 31
 
@@ -47,7 +47,7 @@ def read():
 
 
 def water(filter_, reader, array=None):
-    """The filter, for the fluid."""
+    """Returns the filter, set up for the fluid."""
     filter_.SetInputConnection(reader.GetOutputPort())
     filter_.SetFluidArrayName("ParticleType")
     filter_.SetFluidValue(0)
@@ -57,7 +57,7 @@ def water(filter_, reader, array=None):
 
 
 def surface(reader, array=None, value=0, **properties):
-    """The filter for an isosurface, or the free surface, with these of its properties."""
+    """Returns the filter for an isosurface, or for the free surface, with these properties."""
     extract = water(vtkMarchingCorrectors(), reader, array)
     extract.SetFreeSurface(not array)
     if array:
@@ -94,7 +94,7 @@ def colored(actor, array, table):
 
 
 def panel(actors, text, place, size, camera, up):
-    """A white part of the window: the text's size and place in pixels."""
+    """Makes a white part of the window, with text of this size at this place in pixels."""
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     caption = vtkTextActor()
@@ -146,7 +146,7 @@ def save(renderers, size, path):
 
 
 def speed_colors():
-    """Deep blue, cyan, white: slow water to spray of 2.5 m/s."""
+    """Returns the colours: deep blue, cyan, white, for slow water to spray of 2.5 m/s."""
     table = vtkLookupTable()
     table.SetNumberOfTableValues(256)
     table.SetTableRange(0.0, 2.5)
@@ -175,7 +175,7 @@ def dam_break():
         ("isosurface of the speed, 1 m/s", actor_of(iso, ORANGE, specular=0.3), faint)], README, (24, 474), 28), (1950, 520)
 
 
-# Panels: a text, and surfaces: an array or None for the free surface, its value, colour, opacity, and the scale of h.
+# Each panel has a text and surfaces. A surface has an array, or None for the free surface, its value, colour, opacity, and the scale of h.
 FIGURES = {
     "figure_1": (TANK[1], [("pressure 500, 1500, 3000 Pa in the free surface", ("Pressure", 500.0, RED), ("Pressure", 1500.0, YELLOW),
                             ("Pressure", 3000.0, GREEN), (None, 0, WATER, 0.25))]),
@@ -188,7 +188,7 @@ FIGURES = {
 
 
 def figure(name):
-    """Vorticity and Lambda2 are computed, in place of those that the file brings."""
+    """Computes Vorticity and Lambda2, in place of the file's own."""
     reader, (camera, panels) = read(), FIGURES[name]
     derived = water(vtkSPHDerivatives(), reader, "Velocity")
 
@@ -210,7 +210,7 @@ def figure_4():
 
 
 def figure_5():
-    """Green where the sum of the kernels is 1, red where it is 0.5 or less."""
+    """Returns the colours: green where the sum of the kernels is 1, red where it is 0.5 or less."""
     reader, table = read(), vtkLookupTable()
     table.SetTableRange(0.5, 1.0)
     table.SetHueRange(0.0, 0.33)
@@ -221,7 +221,7 @@ def figure_5():
         for scale, text in ((1.0, "pressure 1500 Pa, h"), (0.75, "0.75 h"), (0.5, "0.5 h"))], TANK[3])
 
 
-FINEST, SHARE = 0.002, 0.1  # a particle's spacing, and its growth with the distance from the point
+FINEST, SHARE = 0.002, 0.1  # These are the smallest spacing, and its growth with the distance from the point.
 
 
 def graded_particles():

@@ -83,7 +83,7 @@ def curvature():
     return shot(plotter)
 
 
-SPACING, DEPTH, LENGTH, HEIGHT = 0.02, 0.4, 1.0, 0.03  # m, of a tank with a standing wave
+SPACING, DEPTH, LENGTH, HEIGHT = 0.02, 0.4, 1.0, 0.03  # The tank has a standing wave; lengths are in m.
 WAVE = np.pi / LENGTH
 PERIOD = 2 * np.pi / np.sqrt(9.81 * WAVE * np.tanh(WAVE * DEPTH))
 
@@ -103,7 +103,7 @@ def level(time):
 
 
 def volumes_of(surface):
-    """The volume of each triangle's piece, in cm^3."""
+    """Returns the volume of each triangle's piece, in cm^3."""
     piece = surface.connectivity().cell_data["RegionId"]
     a, b, c = (surface.points.astype(float)[surface.faces.reshape(-1, 4)[:, i]] for i in (1, 2, 3))
     return 1e6 * np.bincount(piece, (a * np.cross(b, c)).sum(1) / 6)[piece], np.unique(piece, return_index=True)[1]
@@ -160,7 +160,7 @@ def projection(count=60000, size=480, decades=3.5):
 
 
 def interpolate(particles, square):
-    """The pressure on an image of the plane as VTK makes it; 0 where no particle reaches."""
+    """Returns the pressure on an image of the plane as VTK interpolates it; 0 where no particle reaches."""
     bounds = particles.bounds
     image = pyvista.ImageData(
         origin=(bounds[0] - 4 * square, 0, bounds[4] - 4 * square), spacing=(square, square, square),
@@ -227,12 +227,12 @@ def smooth():
     return plotter.screenshot(return_img=True)
 
 
-CUBE, ISO, WIDE, HIGH = 1.3, 0.2, 7.8, 6.5  # of the method's picture; lengths in spacings of particles
+CUBE, ISO, WIDE, HIGH = 1.3, 0.2, 7.8, 6.5  # These are for the method's picture; lengths are in spacings of particles.
 
 
 def method():
     """The method's four steps, by plain sums over a few particles in a plane."""
-    x, y = np.meshgrid(np.arange(0.5, WIDE), np.arange(0.3, 5))  # a lattice, shifted at random, below empty space
+    x, y = np.meshgrid(np.arange(0.5, WIDE), np.arange(0.3, 5))  # It is a lattice, moved at random, below empty space.
     at = np.stack([x.ravel(), y.ravel()], 1) + np.random.default_rng(3).uniform(-0.18, 0.18, (x.size, 2))
     value = 0.5 + 0.5 * np.tanh(3 * (3.2 - at[:, 0] + 1.2 * np.sin(1.1 * at[:, 1])))
 
@@ -243,7 +243,7 @@ def method():
         return w.sum(), (w * value).sum() / max(w.sum(), 1e-12)
 
     def root(a, b, which, wanted):
-        """Where one of the sums is what is wanted, between two points on either side of it."""
+        """Returns where one of the sums has the wanted value, between two points on either side of it."""
         for _ in range(50):
             middle = (a + b) / 2
             a, b = (middle, b) if (sums(middle)[which] > wanted) == (sums(a)[which] > wanted) else (a, middle)

@@ -30,7 +30,7 @@ def free_surface(particles):
 
 
 def slabs(particles):
-    """The surface of each slab alone."""
+    """Makes the surface of each slab alone."""
     along = Calculator(Input=particles, ResultArrayName="along", Function="coordsX")
     for low, high in zip(CUTS, CUTS[1:]):
         slab = Threshold(Input=along, Scalars=["POINTS", "along"], LowerThreshold=low, UpperThreshold=high - 1e-6,
@@ -47,7 +47,7 @@ def view_of(caption):
 
 
 def look(view):
-    Render(view)  # the first rendering places the camera
+    Render(view)  # The first rendering places the camera.
     view.CameraPosition, view.CameraFocalPoint = [0.2, 2.2, 3.2], [1.5, 0.35, 0.0]
     view.CameraViewUp, view.CameraViewAngle = [0.0, 1.0, 0.0], 30
     Render(view)

@@ -14,9 +14,9 @@ class vtkDataObject;
 class vtkDataSet;
 struct PictureOptions;
 
-/// Pictures of a surface, or of what was probed, inside the outline of a frame. Of several, as of a
-/// film's steps, each shows the place of all before it: the eye moves back where something would be
-/// cut off, and else not at all.
+/// Draws pictures of a surface, or of a probed data set, inside the outline of a frame. In a
+/// series, as of a film's steps, the view has room for all pictures so far: the eye moves back if
+/// something would be cut off, and otherwise stays.
 class Picture
 {
 public:
@@ -25,24 +25,24 @@ public:
   static std::unique_ptr<Picture> New(const PictureOptions& options);
   virtual ~Picture() = default;
 
-  /// The bytes of a .png file, which the sentence of a std::runtime_error names. A slice is seen
-  /// along this axis.
+  /// Returns the bytes of a .png file; `file` is the name for sentences of a std::runtime_error. A
+  /// slice is seen along this axis.
   virtual std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
     const ColorScale& colors, int sliceAxis = -1) = 0;
 };
 
-/// Names what needs many libraries, VTK's rendering and HDF5. These take longer to load than a
-/// small run takes, so this is a library of its own.
+/// Names functions that need large libraries: VTK's rendering, and HDF5. Loading those takes longer
+/// than a small run, so the functions are in a library of their own.
 struct Extra
 {
   std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);
 
-  /// Points of a .vtkhdf file at one of its steps, and the times of these. Throws
+  /// Reads the points of one step of a .vtkhdf file, or lists the times of its steps. Throws
   /// std::runtime_error.
   vtkSmartPointer<vtkDataObject> (*ReadHdf)(const std::string& file, std::size_t step);
   std::vector<double> (*ListHdfTimes)(const std::string& file);
 
-  /// A .stl, .ply or .obj file.
+  /// Writes a .stl, .ply or .obj file.
   vtkSmartPointer<vtkDataObject> (*ReadSurface)(const std::string& file);
 };
 
@@ -54,7 +54,7 @@ extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectors
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 
-/// Loads the library. Throws std::runtime_error where it cannot be loaded.
+/// Loads the library. Throws std::runtime_error if that fails.
 const Extra& LoadExtra();
 
 #endif

@@ -24,7 +24,7 @@
 namespace
 {
 
-const long DeepestGroup = 64; ///< a damaged file may hold a circle of groups
+const long DeepestGroup = 64; ///< a damaged file may have a circle of groups
 
 /// Closes an object of HDF5.
 class Handle
@@ -69,10 +69,11 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
   {
     sentence = "its groups lie too deep in each other; it may be damaged";
   }
-  return sentence.empty() ? 0 : 1; // which ends the visit
+  return sentence.empty() ? 0 : 1; // this ends the visit
 }
 
-/// Refuses files that lead to others: nobody has named these. Throws std::runtime_error.
+/// Refuses files that link to other files, because nobody has named those. Throws
+/// std::runtime_error.
 void RefuseLinks(const std::string& file)
 {
   H5open();
@@ -95,7 +96,7 @@ struct Kind
   hid_t Hdf;
 };
 
-/// Numbers as VTK holds them; VTK_VOID: not numbers.
+/// Returns VTK's type for these numbers; VTK_VOID: they are not numbers.
 Kind KindOf(hid_t data)
 {
   const Kind wholes[] = { { VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR },
@@ -115,7 +116,7 @@ Kind KindOf(hid_t data)
   return whole == std::end(wholes) ? Kind{ VTK_VOID, -1 } : *whole;
 }
 
-/// The group VTKHDF of a file.
+/// Opens the group VTKHDF of a file.
 class HdfFile
 {
 public:
@@ -151,7 +152,8 @@ public:
     return text.substr(0, text.find('\0'));
   }
 
-  /// `count` rows from `first` on, all where that is below 0; null where they are no numbers.
+  /// Reads `count` rows from `first` on, or all if `count` is below 0. Returns null if they are not
+  /// numbers.
   vtkSmartPointer<vtkDataArray> Read(
     const std::string& name, long long first = 0, long long count = -1) const
   {
@@ -197,7 +199,7 @@ public:
     return array;
   }
 
-  /// All values of an array, as numbers of another one's type.
+  /// Reads all values of an array, converted to the type of numbers asked for.
   template <typename ArrayT>
   std::vector<typename ArrayT::ValueType> Values(const std::string& name) const
   {
@@ -262,7 +264,7 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   if ((type != "PolyData" && type != "UnstructuredGrid") ||
     (type == "UnstructuredGrid" && !hasSteps))
   {
-    vtkNew<vtkHDFReader> reader; // which reads cells, too
+    vtkNew<vtkHDFReader> reader; // this reader reads cells, too
     reader->SetFileName(name.c_str());
     if (!reader->CanReadFile(name.c_str()))
     {

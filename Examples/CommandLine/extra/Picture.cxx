@@ -61,7 +61,7 @@ std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)
   FailToWrite(file, "rendering needs a display; try xvfb-run -a -s -noreset");
 }
 
-const double WidthOfBar = 0.13; ///< of the picture, where there is one
+const double WidthOfBar = 0.13; ///< extent of the picture, if there is one
 
 using Vector = vtkVector3d;
 
@@ -113,7 +113,7 @@ View ViewOfSlice(const Vector& up, int axis)
   return MakeView(axis == 1 && up[1] != 0.0 ? Vector(0.0, 0.0, 1.0) : up, toEye);
 }
 
-/// The constant one of lines in a plane; -1: there is none.
+/// Returns the axis that is constant for lines in a plane; -1: there is none.
 int AxisOfLines(vtkDataSet* data)
 {
   auto* surface = vtkPolyData::SafeDownCast(data);
@@ -139,7 +139,7 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   box.GetCenter(center.GetData());
   for (int round = 0; round < 10; ++round)
   {
-    std::array<Vector, 8> seen; // corners as the eye sees them: to the right, upwards, towards it
+    std::array<Vector, 8> seen; // corners in the eye's axes: to the right, upwards, towards it
     double distance = 1e-6 * box.GetDiagonalLength();
     for (int i = 0; i < 8; ++i)
     {
@@ -151,10 +151,10 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
       distance = std::max(
         distance, c[2] + margin * std::max(std::abs(c[1]), std::abs(c[0]) / aspect) / slope);
     }
-    distance = distance > 0.0 ? distance : 1.0; // of a single point
+    distance = distance > 0.0 ? distance : 1.0; // a single point has no extent
     camera->SetFocalPoint(center.GetData());
     camera->SetPosition((center + distance * view.ToEye).GetData());
-    for (int a = 0; a < 2; ++a) // what is near looks larger: the middle is another one
+    for (int a = 0; a < 2; ++a) // near things look larger, so the middle is not the mean
     {
       double lowest = VTK_DOUBLE_MAX, highest = -VTK_DOUBLE_MAX;
       for (const Vector& c : seen)
@@ -169,7 +169,7 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   renderer->ResetCameraClippingRange();
 }
 
-/// Window and what is in it.
+/// The window, and what is shown in it.
 class Scene : public Picture
 {
 public:
@@ -178,7 +178,7 @@ public:
     , Display(Connect(this->Window, options.File))
   {
     this->Renderer->SetBackground(1.0, 1.0, 1.0);
-    // A headlight alone leaves what faces sideways nearly black.
+    // With a headlight alone, sides that face away would be nearly black.
     vtkNew<vtkLightKit> lights;
     lights->AddLightsToRenderer(this->Renderer);
     this->Window->SetOffScreenRendering(1);
@@ -260,7 +260,7 @@ private:
     }
   }
 
-  /// Lines of one shade, which no light changes.
+  /// Draws lines in one shade, independent of light.
   void ShowLines(vtkPolyData* lines, double shade, double width, const double position[3])
   {
     vtkNew<vtkPolyDataMapper> mapper;

@@ -34,7 +34,7 @@ struct FileFormat
   FunctionT Process;
 };
 
-/// The one with the ending of this name; nullptr if there is none.
+/// Returns the format with the ending of this name; nullptr if there is none.
 template <typename FunctionT>
 const FileFormat<FunctionT>* FindFormat(
   const std::vector<FileFormat<FunctionT>>& formats, const std::string& file)
@@ -49,7 +49,7 @@ const FileFormat<FunctionT>* FindFormat(
   return nullptr;
 }
 
-/// ".vtp, .vtu or .vtk"
+/// Returns the endings as ".vtp, .vtu or .vtk".
 template <typename FunctionT>
 std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
 {

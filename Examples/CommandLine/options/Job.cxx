@@ -15,12 +15,12 @@
 namespace
 {
 
-/// What there is to say of a mode.
+/// What sentences and the help say about a mode.
 struct ModeWords
 {
   Modes Mode;
   const char* Word;   ///< may stand in front of the files
-  const char* Plural; ///< for sentences
+  const char* Plural; ///< its name in sentences
   const char* Needs;
 };
 
@@ -53,7 +53,7 @@ std::string ListOf(const std::vector<std::string>& items, const std::string& las
   return list;
 }
 
-/// "surfaces, films and slices"
+/// Returns the modes as "surfaces, films and slices".
 std::string PluralsOf(unsigned modes)
 {
   std::vector<std::string> plurals;
@@ -182,7 +182,7 @@ const std::vector<Rule> Rules = {
 };
 #undef IF
 
-/// The sentence with what stands for the names in braces.
+/// Returns the sentence with values in place of the names in braces.
 std::string Filled(std::string sentence, const Job& job)
 {
   for (std::size_t at = 0; (at = sentence.find('{', at)) != std::string::npos;)
@@ -480,11 +480,11 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
 {
   for (vtkSPHAlgorithm* filter : job.All())
   {
-    filter->KeepDeviceDataOff(); // for one run
+    filter->KeepDeviceDataOff(); // each for one run
   }
   std::vector<std::string> files;
   const char* const* const end = argv + argc;
-  bool isEnded = false; // of options
+  bool isEnded = false; // names of options
   for (const char* const* next = argv + std::min(argc, 1); next < end;)
   {
     const std::string word = *next++;
@@ -526,11 +526,11 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   }
   if (!(job.Mode() & CONTOUR))
   {
-    job.Surface->FreeSurfaceOn(); // which --widen needs of it
+    job.Surface->FreeSurfaceOn(); // the rule that --widen needs
   }
   if ((job.Word == "surface" || job.Word == "film") && !job.Has("--scalar"))
   {
-    job.Surface->FreeSurfaceOn(); // as by python -m marchingcorrectors
+    job.Surface->FreeSurfaceOn(); // words that python -m marchingcorrectors has, too
     job.Given["--free-surface"];
   }
   if (!job.Has("--version") && !job.Has("--list-devices"))

@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-/// Names what a run makes of the particles, and sets of these.
+/// Modes: what a run makes of the particles; and sets of modes.
 enum Modes : unsigned
 {
   SURFACE = 1,
-  FILM = 2, ///< of surfaces
+  FILM = 2, ///< a film of surfaces
   GAUGE = 4,
   FLUX = 8,
   SLICE = 16,
@@ -30,7 +30,7 @@ enum Modes : unsigned
   PROJECT = 128, ///< one image, or a film of images
   CONTOUR = SURFACE | FILM,
   METER = GAUGE | FLUX,
-  SERIES = FILM | METER | PROBE | PROJECT, ///< of which there may be several times
+  SERIES = FILM | METER | PROBE | PROJECT, ///< outputs that may have several times
   POINTS = SLICE | LINE | PROBE,
   PICTURE = CONTOUR | SLICE | PROBE | PROJECT,
   ALL = CONTOUR | METER | POINTS | PROJECT,
@@ -40,19 +40,20 @@ enum Modes : unsigned
 /// Settings of pictures.
 struct PictureOptions
 {
-  std::string File;               ///< empty: none; with %04d in it, one for each step of a film
-  std::string ColorBy;            ///< an array of what is shown; empty: chosen
-  std::vector<double> ColorRange; ///< lowest and highest; empty: those of the array
+  std::string File;               ///< empty: no picture; with %04d in it, one for each step of a
+                                  ///< film
+  std::string ColorBy;            ///< an array of the data that is shown; empty: chosen
+  std::vector<double> ColorRange; ///< lowest and highest value; empty: the array's
   std::string Up = "y";           ///< axis, or -axis, that points upwards
-  std::vector<double> View;       ///< from what is shown to the eye; empty: chosen
+  std::vector<double> View;       ///< direction from the shown data to the eye; empty: chosen
 };
 
-/// Points to probe at that no file has.
+/// Points to probe that come from options, not from a file.
 struct SliceOptions
 {
-  int Axis = -1;            ///< that a slice is normal to; below 0: there is none
-  double Place = 0.0;       ///< on that axis
-  std::vector<double> Line; ///< from, to: six numbers; empty: there is none
+  int Axis = -1;            ///< axis that the slice is normal to; below 0: there is no slice
+  double Place = 0.0;       ///< place of the slice on that axis
+  std::vector<double> Line; ///< begin and end of the line: six numbers; empty: there is no line
   int Resolution = 512;     ///< points along the longest side
 };
 
@@ -62,10 +63,10 @@ struct Place
   enum Kind
   {
     Line,      ///< two points
-    Rectangle, ///< a corner, two ends
+    Rectangle, ///< a corner, and the ends of two edges
     Disc,      ///< centre, normal, radius
     Box,       ///< bounds
-    Surface    ///< of a file
+    Surface    ///< name of a file
   };
   std::string Name;
   Kind Shape = Surface;
@@ -85,13 +86,13 @@ struct GaugeGrid
 struct Job
 {
   vtkNew<vtkMarchingCorrectors> Surface;
-  vtkNew<vtkSPHDerivatives> Derivatives; ///< where Derive is not empty
-  vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
-  vtkNew<vtkSPHGauge> Gauge;             ///< where HasGauges()
-  vtkNew<vtkSPHFlux> Flux;               ///< where IsFlux()
-  vtkNew<vtkSPHProjection> Projection;   ///< with --project
+  vtkNew<vtkSPHDerivatives> Derivatives; ///< used if Derive is not empty
+  vtkNew<vtkSPHProbe> Probe;             ///< used if IsProbe()
+  vtkNew<vtkSPHGauge> Gauge;             ///< used if HasGauges()
+  vtkNew<vtkSPHFlux> Flux;               ///< used if IsFlux()
+  vtkNew<vtkSPHProjection> Projection;   ///< used with --project
 
-  /// Lists all filters, for settings that they share.
+  /// Lists all filters, for settings that several share.
   std::array<vtkSPHAlgorithm*, 6> All() const
   {
     return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux,
@@ -115,30 +116,31 @@ struct Job
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
-  /// The options that were given, but for those that say what holds without them, and the text
-  /// behind each.
+  /// The options that were given, with the text behind each; options that only say what holds
+  /// without them are left out.
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
 
-  std::string Word; ///< a mode's, in front of the files; for --help, too; empty: none
+  std::string Word; ///< the mode in front of the files, or behind --help; empty: none
   std::vector<std::string> Inputs;
   std::vector<std::string>
-    Walls; ///< files whose particles are walls, at all times; or of each step: .pvd, %04d
+    Walls; ///< files whose particles are walls: at all times; or for each step (.pvd, %04d)
   std::string Output;
-  std::vector<double> Times;    ///< of a film or table, ascending; empty: all that are stored
-  double FramesPerSecond = 0.0; ///< of a film; 0: not asked for
-  double SlowMotion = 1.0;      ///< how many times slower it runs than time passes
+  std::vector<double> Times;    ///< times of a film or table, ascending; empty: all that are stored
+  double FramesPerSecond = 0.0; ///< frames per second of a film; 0: not asked for
+  double SlowMotion = 1.0;      ///< how many times slower a film runs than time passes
   bool HasTimes() const { return !this->Times.empty() || this->FramesPerSecond > 0.0; }
-  double TimeStep = 1.0; ///< between the steps of a film of particle files
-  std::string IdArray;   ///< that particles are matched by between steps; empty: found
+  double TimeStep = 1.0; ///< time between the steps of a film of particle files
+  std::string IdArray;   ///< array by which particles are matched between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;
   std::vector<Place> Gauges;
-  std::string GaugeFile; ///< more of them
-  GaugeGrid Grid;        ///< no others then
+  std::string GaugeFile; ///< more such places
+  GaugeGrid Grid;        ///< no other places then
   std::vector<Place> Fluxes;
-  std::string FluxFile; ///< more of them
-  std::string Derive;   ///< array whose gradient, and what is made of it, the particles get
+  std::string FluxFile; ///< more such sections
+  std::string Derive;   ///< array whose gradient is computed for the particles, with quantities of
+                        ///< it
 
   std::string Scalar;
   /// A quantity is an array name or one value for all particles; the input decides which of the two
@@ -146,33 +148,34 @@ struct Job
   std::string SmoothingLength;
   std::string Mass;
   std::string Density;
-  double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
+  double ParticleDistance = 0.0; ///< DualSPHysics' dp; 0: not given
   double CoefH = 1.0;
-  double NeighborRatio = 0.0;              ///< of --smoothing-length neighbours; 0: another one
+  double NeighborRatio = 0.0;              ///< eta of --smoothing-length neighbours; 0: another
+                                           ///< kind of length
   bool DetectPeriod = false;               ///< --periodic auto
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
-  std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
+  std::vector<std::string> AttributeNames; ///< names of arrays to carry; empty: all
 
-  std::string NumbersFile;   ///< table of a film's numbers; empty: none
-  std::string ComponentFile; ///< table of the surface's pieces; empty: none
-  double LeastVolume = 0.0;  ///< of a piece
-  int LeastParticles = 0;    ///< in a piece
+  std::string NumbersFile;   ///< file of the table of a film's numbers; empty: none
+  std::string ComponentFile; ///< file of the table of the surface's pieces; empty: none
+  double LeastVolume = 0.0;  ///< least volume of a piece
+  int LeastParticles = 0;    ///< least number of particles in a piece
 
   std::string StatisticsFile;
-  std::string WideningFile; ///< particles with their factors; empty: none
+  std::string WideningFile; ///< file of the particles with their factors; empty: none
   PictureOptions Picture;
   int Repeat = 1;
   bool Quiet = false;
   bool Verbose = false;
-  bool ListArrays = false; ///< of the only input
+  bool ListArrays = false; ///< arrays of the only input are listed
 };
 
 struct Option
 {
   const char* Name;
-  const char* Argument; ///< what stands for it in the help; empty: the option has none
+  const char* Argument; ///< the value's name in the help; empty: the option has no value
   std::string Help;
-  unsigned Modes = 0;      ///< in which it acts; in others it is refused
+  unsigned Modes = 0;      ///< modes in which it acts; in others it is refused
   std::string Needs = "";  ///< options, or endings of OUTPUT, of which it needs one: "--a|--b"
   const char* Member = ""; ///< its name in the core's sentences and in Python
   std::function<void(Job&, const std::string& option, const std::string& value)> Set = {};
@@ -191,19 +194,19 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 /// NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Places of the options, in their order, those of the files among them. Throws UsageError where
-/// two have one name, or std::runtime_error where a file cannot be read.
+/// Places of the options, including those that files list, in the order of the options. Throws
+/// UsageError if two have one name, or std::runtime_error if a file cannot be read.
 std::vector<Place> ListGauges(const Job& job);
 std::vector<Place> ListSections(const Job& job);
 
 /// Throws UsageError, see OptionValue.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);
 
-/// Returns the text of --help WORD in lines of this width. The word is empty, all, or a mode's.
-/// Throws UsageError where it is another one.
+/// Returns the text of --help WORD in lines of this width. The word is empty, "all", or a mode's.
+/// Throws UsageError for any other word.
 std::string CommandLineHelp(const std::string& word, std::size_t width);
 
-/// Returns the option of this member of the core's structures; an empty string if there is none.
+/// Returns the option for this member of the core's structures, or an empty string.
 std::string WordOf(const std::string& member);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A setting of the filters is a line here.
+// Each setting of the filters is a line here.
 #include "Job.h"
 
 #include "OptionValue.h"
@@ -76,7 +76,7 @@ void AddOnly(Job& job, Text option, Text text)
   SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
 }
 
-/// Times and ranges of times, ascending, each once.
+/// Returns times and ranges of times, ascending, each once.
 std::vector<double> ToTimes(Text option, Text text)
 {
   std::set<double> times;
@@ -94,7 +94,8 @@ std::vector<double> ToTimes(Text option, Text text)
       for (double i = 1.0; i <= count; ++i)
       {
         char digits[32];
-        std::snprintf(digits, sizeof(digits), "%.15g", begin + i * step); // 3 * 0.05 is 0.15
+        // 3 * 0.05 must be 0.15
+        std::snprintf(digits, sizeof(digits), "%.15g", begin + i * step);
         times.insert(std::strtod(digits, nullptr));
       }
     }
@@ -137,7 +138,7 @@ std::vector<double> ToDirection(Text option, Text text)
 void SetWithin(Job& job, Text option, Text text)
 {
   std::vector<double> sides = ToBox(option, text);
-  if (std::count(sides.begin(), sides.end(), 0.0) == 6) // to the filters, no choice
+  if (std::count(sides.begin(), sides.end(), 0.0) == 6) // for the filters this means no choice
   {
     sides[0] = -std::numeric_limits<double>::denorm_min();
   }
@@ -221,7 +222,8 @@ void SetProjection(Job& job, Text option, Text text)
 
 void SetBoundary(Job& job, Text option, Text text)
 {
-  const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text, // its word of old
+  // its earlier word
+  const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text,
     { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
   job.Surface->SetBoundaryDetection(boundary);
   if (!job.Has("--vertex-threshold"))
@@ -243,7 +245,7 @@ const std::vector<Option> Table = {
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)", CONTOUR | PROJECT,
     "--scalar", "scalar_component",
-    DO(const int component = // -1 is the filters' number for it
+    DO(const int component = // -1 is the filters' number for this word
        v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0);
        j.Surface->SetScalarComponent(component); j.Projection->SetScalarComponent(component)) },
   { "--iso", "V[,V...]",

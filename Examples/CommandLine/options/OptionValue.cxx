@@ -102,7 +102,7 @@ std::string NearestOf(Text text, const std::vector<std::string>& names)
   for (Text name : names)
   {
     const std::string letters = lettersOf(name);
-    std::vector<std::size_t> row(letters.size() + 1); // of the table of Levenshtein's distances
+    std::vector<std::size_t> row(letters.size() + 1); // row of Levenshtein's table of distances
     std::iota(row.begin(), row.end(), std::size_t(0));
     for (std::size_t i = 0; i < wanted.size(); ++i)
     {
@@ -178,7 +178,8 @@ std::vector<double> ToBox(Text option, Text text)
   for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = box[2 * a], high = box[2 * a + 1];
-    const bool isFlat = low == high && std::isfinite(low); // for particles in that plane
+    const bool isFlat = low == high && std::isfinite(low); // a flat box means particles in that
+                                                           // plane
     Need(
       low < high || isFlat, option, std::string("the lower number first along ") + "xyz"[a], text);
   }

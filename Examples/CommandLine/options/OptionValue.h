@@ -20,7 +20,7 @@ public:
 void Need(
   bool isGood, const std::string& option, const std::string& words, const std::string& text);
 
-/// Texts between these signs.
+/// Returns the texts between these signs.
 std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
 
 /// True, and the value, if the whole text is one finite number.
@@ -36,10 +36,10 @@ double ToPositive(const std::string& option, const std::string& text);
 double ToThreshold(const std::string& option, const std::string& text); ///< 0 or greater
 int ToCount(const std::string& option, const std::string& text, int smallest,
   int largest = std::numeric_limits<int>::max());
-/// The number of this word.
+/// Returns the number of this word.
 using Choices = std::vector<std::pair<const char*, int>>;
 int ToChoice(const std::string& option, const std::string& text, const Choices& choices);
-/// An array name, or a constant, which must then be greater than 0.
+/// Accepts an array name, or a constant, which must be greater than 0.
 std::string ToQuantity(const std::string& option, const std::string& text);
 std::vector<double> ToNumbers(const std::string& option, const std::string& text);
 /// x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.

@@ -20,8 +20,8 @@ const char* const GaugeForm = "NAME=X,Y,Z:X,Y,Z";
 const char* const FluxForm = "NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:X,Y,Z:NX,NY,NZ:R, "
                              "NAME=box:X0,X1,Y0,Y1,Z0,Z1 or NAME=FILE";
 
-/// Appends the numbers of a text like X,Y,Z:X,Y,Z, which has so many in each of its parts; false if
-/// it has others.
+/// Appends the numbers of a text like X,Y,Z:X,Y,Z. Returns false unless each part has `count`
+/// numbers.
 bool ParsePlaces(Text text, const std::vector<std::size_t>& counts, std::vector<double>& numbers)
 {
   const std::vector<std::string> parts = ItemsOf(text, ':');
@@ -38,7 +38,7 @@ bool ParsePlaces(Text text, const std::vector<std::size_t>& counts, std::vector<
   return isGood;
 }
 
-/// The name of a table's row. noun: what has it.
+/// Returns the name of a table's row. noun: the thing that has the name.
 std::string ToRowName(Text option, Text noun, Text text)
 {
   const std::string name = Printable(text);
@@ -54,7 +54,7 @@ std::string ToRowName(Text option, Text noun, Text text)
 void AddOfFile(Text option, Text file, Text nouns, Text form,
   Place (*parse)(Text option, Text text), std::vector<Place>& places)
 {
-  CheckRegularFile(file); // a pipe or a device may have no end
+  CheckRegularFile(file); // /dev/zero and some pipes never end, so reading stops here
   std::ifstream source(file, std::ios::binary);
   const std::size_t before = places.size();
   for (std::string line; std::getline(source, line);)
@@ -72,7 +72,7 @@ void AddOfFile(Text option, Text file, Text nouns, Text form,
   }
 }
 
-/// The places, followed by those of a file, if there is one.
+/// Returns the places, followed by those of a file, if there is one.
 std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
   Text form, Place (*parse)(Text option, Text text))
 {

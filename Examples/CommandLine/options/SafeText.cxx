@@ -16,7 +16,7 @@ namespace
 
 struct Character
 {
-  std::size_t Bytes; ///< how many stand for it
+  std::size_t Bytes; ///< how many bytes the character has
   unsigned Code;
   bool Valid; ///< false: one byte that is no UTF-8, and Code is its value
 };
@@ -49,7 +49,8 @@ bool IsControl(unsigned code)
   return code < 0x20 || (code >= 0x7f && code < 0xa0);
 }
 
-/// Line breaks, direction marks, and what XML does not allow.
+/// Whether a terminal or XML must not get this character: line breaks, direction marks, and what
+/// XML does not allow.
 bool IsInvisible(unsigned code)
 {
   return code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||

@@ -68,7 +68,7 @@ std::vector<std::string> Tokens(const std::string& text)
     {
       const bool isMasked = text[at] == '\\' && at + 1 < text.size();
       at += isMasked ? 1 : 0;
-      if (isMasked && text[at] == 'u') // a letter that is not in ASCII, by its code
+      if (isMasked && text[at] == 'u') // a character outside of ASCII, written as its code
       {
         const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
         at += std::min<std::size_t>(4, text.size() - 1 - at);
@@ -92,7 +92,7 @@ std::string Resolved(const std::string& list, const std::string& file)
   return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
 }
 
-/// ParaView's {"files": [{"name": "a.vtk", "time": 0}, ...]}, in the order of time.
+/// Reads ParaView's {"files": [{"name": "a.vtk", "time": 0}, ...]}, in the order of time.
 std::vector<CollectionEntry> ReadSeries(const std::string& file)
 {
   CheckRegularFile(file);
@@ -110,7 +110,7 @@ std::vector<CollectionEntry> ReadSeries(const std::string& file)
     CollectionEntry entry = { 0.0, "", "" };
     bool hasTime = false;
     isGood = at(i + 1) == "{";
-    for (i += 2; at(i - 1) != "}" && isGood; i += 4) // at KEY : VALUE and a comma or the end
+    for (i += 2; at(i - 1) != "}" && isGood; i += 4) // at KEY : VALUE, then a comma or the end
     {
       hasTime = hasTime || (at(i) == "\"time" && ParseNumber(at(i + 2), entry.Time));
       entry.File = at(i) == "\"name" && at(i + 2).size() > 1 ? at(i + 2).substr(1) : entry.File;

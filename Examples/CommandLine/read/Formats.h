@@ -14,12 +14,12 @@ class vtkDataObject;
 
 // How files are read. All throw std::runtime_error with one sentence.
 
-/// Opens what is to be read, so that IsSource() knows it. Refuses what is no file, or one that cannot
-/// be opened or sought in.
+/// Opens what is to be read, so that IsSource() knows it. Refuses a name that is not a file, and a file that cannot be
+/// opened or sought in.
 void CheckRegularFile(const std::string& file);
 
-/// Lets libraries read a file: the sentence where they crash over it, ask for more memory than
-/// there is, or say that they failed. After errors VTK goes on, with arrays of zeros.
+/// Runs a library that reads a file. There is a sentence if the library crashes over the file, asks for more memory
+/// than there is, or says that it failed; after errors VTK would go on with arrays of zeros.
 void ReadWithCare(const std::string& file, const std::function<void()>& read);
 
 /// Files of VTK. Its readers ask for memory, and go round in loops, by the counts that a file
@@ -27,8 +27,8 @@ void ReadWithCare(const std::string& file, const std::function<void()>& read);
 ///@{
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
-/// The time that the field data at the beginning tell of (TimeValue, TIME, time), or nothing.
-/// Points and their arrays are not read.
+/// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
+/// arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
 ///@}
 
@@ -36,34 +36,31 @@ std::vector<double> ListTimesOfVtk(const std::string& file);
 struct CollectionEntry
 {
   double Time;
-  std::string File; ///< as it can be opened: from the working directory, not from the .pvd file
-  std::string Part; ///< what the list says it is a part of; empty: nothing
+  std::string File; ///< a name that can be opened from the working directory; in the file it is relative to the .pvd
+                    ///< file
+  std::string Part; ///< the part's name in the list; empty: none
 };
 
-/// Reads entries in the order of time. Entries of one time keep the order of the file; a file
-/// counts once, and of one part the last entry. `warnings` gets sentences.
+/// Reads the entries in the order of time. Entries of the same time keep the order of the file. A file counts once, and
+/// of a part that occurs twice the last entry counts. `warnings` gets sentences.
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings);
 
 /// The files that are parts of one set of particles, from a .pvtp or .pvtu file.
 std::vector<std::string> ReadPieces(const std::string& file);
 
-/// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between
-/// blanks with comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one
-/// name and :0, :1, :2, or _x, _y, _z, ... are vectors. The times of steps are numbers from 0 on
-/// where a file tells of none; a table has none.
-///@{
+/// Reads particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between blanks with
+/// comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Columns that share a name and end in :0, :1, :2, or _x,
+/// _y, _z, ... are one vector. If a file tells no times, steps have the times 0, 1, ...; a table has none.
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
 std::vector<double> ListTimesInText(const std::string& file);
 ///@}
 
-/// The vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
+/// Reads the vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
 vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);
 
-/// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins as one does,
-/// the files of its snapshot, its time, and the gas in one file. SmoothingLength is half of
-/// GADGET's, which is the support radius.
-///@{
+/// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins like one, the files of its
+/// snapshot, its time, and the gas in one file. SmoothingLength is half of GADGET's, which is the support radius.
 bool IsGadget(const std::string& file);
 std::vector<std::string> ListGadget(const std::string& file);
 std::vector<double> ListTimesOfGadget(const std::string& file);

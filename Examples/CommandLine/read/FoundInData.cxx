@@ -19,7 +19,8 @@
 namespace
 {
 
-/// "0.1 .. 0.5", of vectors "(0, 0, 0) .. (1, 2, 3)": each component's own.
+/// Returns the range as "0.1 .. 0.5"; for vectors as "(0, 0, 0) .. (1, 2, 3)", with each
+/// component's own range.
 std::string DescribeRange(vtkDataArray* array)
 {
   const int count = array->GetNumberOfComponents();
@@ -44,7 +45,7 @@ std::string DescribeRange(vtkDataArray* array)
   return ends[0].str() + " .. " + ends[1].str();
 }
 
-/// "1,1,0", or nothing.
+/// Returns the period as "1,1,0", or nothing.
 std::string TextOf(const vtkSPHPeriod& found)
 {
   std::ostringstream text;

@@ -24,8 +24,8 @@
 namespace
 {
 
-/// Names of an array in formats, its name here, and its columns. The first ones are of all types,
-/// the others of gas.
+/// An array's names in the formats, its name here, and its number of columns. All types have the
+/// first arrays; only gas has the others.
 struct Known
 {
   const char* Label;
@@ -94,12 +94,12 @@ public:
     }
   }
 
-  /// The gas, with the arrays that are known.
+  /// Reads the gas, with the arrays that are known here.
   vtkSmartPointer<vtkPolyData> ReadGas()
   {
     auto gas = vtkSmartPointer<vtkPolyData>::New();
     const vtkIdType count = this->Counts[0];
-    std::size_t next = 0; // of format 1
+    std::size_t next = 0; // the order in format 1
     std::uint64_t size = 0;
     for (const Known* known = nullptr; this->Begin(size);)
     {
@@ -148,7 +148,7 @@ public:
   double Time = 0.0;
 
 private:
-  /// Turns the bytes of numbers round where the file has them in the other order.
+  /// Reverses the bytes of numbers if the file has the other byte order.
   void Order(void* numbers, std::size_t count, std::size_t width) const
   {
     if (this->IsSwapped)
@@ -224,7 +224,7 @@ private:
     this->Stream.read(static_cast<char*>(to), static_cast<std::streamsize>(count * width));
     this->Order(to, count, width);
     array->SetName(known.Name);
-    if (&known == Arrays) // of positions
+    if (&known == Arrays) // the type of positions
     {
       gas->SetPoints(vtkNew<vtkPoints>());
       gas->GetPoints()->SetData(array);

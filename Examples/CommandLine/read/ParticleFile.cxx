@@ -42,7 +42,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The files that the run has opened to read.
+/// The files that the run has opened for reading.
 std::set<std::pair<dev_t, ino_t>>& Sources()
 {
   static std::set<std::pair<dev_t, ino_t>> sources;
@@ -53,9 +53,9 @@ std::set<std::pair<dev_t, ino_t>>& Sources()
 struct Kind
 {
   vtkSmartPointer<vtkDataObject> (*Read)(const std::string& file, std::size_t step);
-  /// Lists the times of a file's steps; null where it is one step, and tells no time.
+  /// Lists the times of a file's steps; null if files of this format hold one step and no time.
   std::vector<double> (*ListTimes)(const std::string& file) = nullptr;
-  /// Lists the files that hold parts of the particles; null where that is the file itself.
+  /// Lists the files that hold parts of the particles; null if the file itself has them all.
   std::vector<std::string> (*ListParts)(const std::string& file) = nullptr;
 };
 using Formats = std::vector<FileFormat<Kind>>;
@@ -77,7 +77,8 @@ vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file, std::size_t)
   return LoadExtra().ReadSurface(file);
 }
 
-/// The time of the list itself, or else that of its first piece, as all pieces are of one time.
+/// Returns the time of the list itself or, if it has none, of its first piece; all pieces are of
+/// one time.
 std::vector<double> ListTimesOfPieces(const std::string& file)
 {
   const std::vector<double> times = ListTimesOfVtk(file);
@@ -116,10 +117,10 @@ const Formats DataFormats = {
   { ".obj", { ReadSurface } },
 };
 
-/// Files that are known by how they begin, whatever their names end in.
+/// Files that are known by their beginning, whatever their names end in.
 const Kind Gadget = { ReadGadget, ListTimesOfGadget, ListGadget };
 
-/// Finds how a file is read; null where it is none of these.
+/// Finds how a file is read; null if it has none of these formats.
 const Kind* KindOf(const Formats& formats, const std::string& file)
 {
   if (&formats == &ParticleFormats && IsGadget(file))
@@ -174,7 +175,7 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
   }
 }
 
-/// The array with its texts as numbers, where --only chooses words of it.
+/// Returns the array with its texts as numbers, if --only chooses words in it.
 vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstractArray* array)
 {
   const auto chosen = ChosenWords().find(array->GetName());
@@ -201,8 +202,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// The points' arrays alone, all that is used of the data: no cells (one per particle, for
-/// nothing), and nothing that was not checked.
+/// Returns only the points' arrays, which are all that is used: without cells (one per particle,
+/// for nothing), and without anything unchecked.
 vtkSmartPointer<vtkPointSet> TakeParticles(
   const std::string& file, vtkPointSet* all, bool haveVertices)
 {
@@ -212,7 +213,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
-  static bool isSaid = false; // of a film's steps once
+  static bool isSaid = false; // said once, with the first of a film's steps
   if (others > 0 && !isSaid)
   {
     isSaid = true;
@@ -238,8 +239,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   return particles;
 }
 
-/// The name of a file without the number of a step, and this number: NAME#N is step N of the file
-/// NAME, unless a file has that name.
+/// Splits NAME#N, step N of the file NAME, into name and number, unless a file has the whole name.
 std::pair<std::string, std::size_t> StepOf(const std::string& name)
 {
   std::error_code error;
@@ -271,7 +271,7 @@ void ReadSet(const std::string& name, ParticleSets& sets)
     sets.Sets.emplace_back(points);
     if (haveVertices)
     {
-      sets.Sets.back() = TakeParticles(file, points, true); // so much less to keep
+      sets.Sets.back() = TakeParticles(file, points, true); // these need not be kept
     }
   }
 }
@@ -283,7 +283,7 @@ bool IsList(const std::string& name)
   return format && format->Process.ListParts;
 }
 
-/// The pieces of a list of them, or the file itself.
+/// Lists the pieces of a list of pieces, or the file itself.
 std::vector<std::string> ListParts(const std::string& name)
 {
   const auto [file, step] = StepOf(name);

@@ -15,7 +15,7 @@ class vtkDataSet;
 class vtkPointSet;
 struct vtkSPHPeriod;
 
-/// ".vtp, .vtu, ... or .vtk": the endings of the files that ReadParticles knows.
+/// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .vtk".
 std::string ParticleFileEndings();
 
 /// The words that --only NAME=WORD chooses, by the names of their arrays. An array of texts with such a
@@ -50,19 +50,19 @@ bool IsSource(const struct stat& file);
 struct ParticleSets
 {
   std::vector<std::string> Files;
-  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< none is empty
+  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< empty: a step without particles is refused
   bool HaveVertices = false;
-  bool IsList = false; ///< of pieces, which may hold copies of others' particles
+  bool IsList = false; ///< pieces may hold copies of other pieces' particles
 };
 
 /// The part that this one of `count` processes reads: some pieces of a file that lists pieces, those
 /// behind the pieces of the processes before it; another file is the first one's.
 ParticleSets ReadParticlesPart(const std::string& file, int rank, int count);
 
-/// The particles, which may be none.
+/// Returns the particles, which may be none.
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
-/// Reads a data set of any class, with the same care; as it is, but for names.
+/// Reads a data set of any class with the same care; only names are changed.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 
 /// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
@@ -81,10 +81,10 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 /// The period for "--periodic auto", if one was found without a problem. Throws std::runtime_error where nothing was.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
-/// A hint where --periodic is not given and there is a period; else "".
+/// Returns a hint if --periodic is not given and there is a period, else "".
 std::string HintOfPeriod(vtkDataObject* particles);
 
-/// The text of --list-arrays: a line for each array of the particles, and for what a run would
+/// Returns the text of --list-arrays: a line for each array of the particles, and one for each thing that a run would
 /// find.
 std::string DescribeArrays(vtkPointSet& particles);
 

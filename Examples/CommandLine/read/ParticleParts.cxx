@@ -27,7 +27,7 @@ const char* const WallArrayName = "IsWall";
 namespace
 {
 
-/// The part without copies of other parts' particles.
+/// Returns the part without copies of other parts' particles.
 vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
 {
   auto own = vtkSmartPointer<vtkPolyData>::New();
@@ -51,7 +51,7 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   return own;
 }
 
-/// Each component's median; 0 for marks of copies, which walls are not.
+/// Returns each component's median; 0 for marks of copies, because walls are none.
 std::vector<double> Median(vtkDataArray* array)
 {
   std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
@@ -73,7 +73,7 @@ std::vector<double> Median(vtkDataArray* array)
   return median;
 }
 
-/// Both one after the other, in the fluid's type.
+/// Joins both, one after the other, in the fluid's type.
 vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
 {
   const vtkIdType count = fluid->GetNumberOfTuples();
@@ -110,7 +110,7 @@ vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPoin
       });
     for (std::size_t p = 0; p < own.size() && !areAlike; ++p)
     {
-      vtkNew<vtkDoubleArray> values; // arrays of several types would be left out by VTK
+      vtkNew<vtkDoubleArray> values; // VTK would leave out arrays that have different types
       values->DeepCopy(own[p]->GetPointData()->GetArray(name.c_str()));
       own[p]->GetPointData()->AddArray(values);
     }
@@ -145,7 +145,7 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
   all->SetPoints(points);
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
-    vtkDataArray* array = arrays->GetArray(i); // null where it is one of strings
+    vtkDataArray* array = arrays->GetArray(i); // null for an array of strings
     if (array)
     {
       all->GetPointData()->AddArray(

@@ -41,7 +41,7 @@ bool AreNumbers(const std::vector<View>& cells)
     [&number](View cell) { return cell.empty() || ToNumber(cell, number); });
 }
 
-/// Splits what may be names in a comment: x y z, or x, y, z, or [01 x] [02 y] [03 z].
+/// Splits a comment into possible names: x y z, or x, y, z, or [01 x] [02 y] [03 z].
 std::vector<View> WordsOf(View comment)
 {
   std::vector<View> words;
@@ -60,7 +60,7 @@ std::vector<View> WordsOf(View comment)
   return words;
 }
 
-/// Rows of values, after one of names, which may stand in a comment.
+/// Reads rows of values behind a row of names, which may be a comment.
 vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
 {
   constexpr std::size_t mostColumns = 10000;
@@ -69,7 +69,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
   Table table;
   std::vector<View> cells;
   std::string comment;
-  char separator = 0; // blanks, which may be tabs, count as one
+  char separator = 0; // blanks and tabs count as one separator
   while (lines.Next())
   {
     View line = Trimmed(lines.Get());
@@ -109,7 +109,8 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     FailToRead(file, "it has no row of values");
   }
   std::vector<std::size_t> positions = FindPositions(file, table);
-  const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0; // else names have to tell
+  // otherwise names must tell
+  const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0;
   for (std::size_t c = 0; c < std::min(first, table.size()) && positions.size() == c; ++c)
   {
     positions.push_back(c);
@@ -128,7 +129,7 @@ void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<doub
   particles->GetFieldData()->AddArray(array);
 }
 
-/// A count that a line says, or one below 0 that it does not.
+/// Returns the count that a line gives, or a negative number if it gives none.
 vtkTypeInt64 CountOf(View line)
 {
   vtkTypeInt64 count = -1;
@@ -192,15 +193,15 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
   return names;
 }
 
-/// One of several steps in a file: what stands before its particles.
+/// One of several steps in a file: what comes before its particles.
 struct Step
 {
   vtkTypeInt64 Count = 0;
   std::vector<std::string> Names; ///< empty: as many as the first row has values
-  std::vector<double> Cell;       ///< its three sides, as vectors; empty: it has none
+  std::vector<double> Cell;       ///< the cell's three sides, as vectors; empty: it has none
   std::array<double, 3> Origin = {};
   std::array<bool, 3> Periodic = {};
-  double Time = std::numeric_limits<double>::quiet_NaN(); ///< where it is told
+  double Time = std::numeric_limits<double>::quiet_NaN(); ///< if the file gives it
 };
 
 /// Goes to the next step; its particles are still to be read. Returns false if there is none.
@@ -254,8 +255,9 @@ bool StartsWith(View text, View start)
   return text.substr(0, start.size()) == start;
 }
 
-/// Reads the box of a dump: sides along the axes, or tilted (xy xz yz), where the first two numbers
-/// of a line are those of the box around the cell, or vectors with their origin (abc origin).
+/// Reads the box of a dump: sides along the axes; or tilted (xy xz yz), where the first two numbers
+/// of each line are the bounds of the box around the cell; or vectors with their origin (abc
+/// origin).
 void ReadBox(Lines& lines, std::vector<View> words, Step& step)
 {
   const std::string kind = lines.Where();
@@ -322,7 +324,7 @@ void ReadBox(Lines& lines, std::vector<View> words, Step& step)
 bool FindDumpStep(Lines& lines, Step& step)
 {
   step = {};
-  bool isTold = false; // of a time in its own unit
+  bool isTold = false; // the time has its own unit
   bool hasBegun = false;
   while (lines.Next())
   {
@@ -378,8 +380,8 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// The columns of positions of a step: as they are, unwrapped, or in units of the cell's sides,
-/// which are taken away.
+/// Returns the columns of a step's positions: as they are, unwrapped, or in units of the cell's
+/// sides, which are multiplied out.
 std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, const Step& step)
 {
   for (const char* kind : { "u", "s", "su" })
@@ -433,12 +435,13 @@ std::vector<double> PeriodOf(const Step& step)
   return period;
 }
 
-/// How the steps of a file are found; null where it is a table, which is one.
+/// Returns how the steps of a file are found; null for a table, which is one step.
 StepFinder FinderOf(const std::string& file)
 {
   Lines lines(file);
   const View first = lines.Next() ? lines.Get() : View();
-  const bool isCounted = EndsWith(file, "xyz") && CountOf(first) >= 0; // and no table of positions
+  // and it is not a table of positions
+  const bool isCounted = EndsWith(file, "xyz") && CountOf(first) >= 0;
   return StartsWith(first, "ITEM:") || EndsWith(file, ".lammpstrj") || EndsWith(file, ".dump")
     ? FindDumpStep
     : isCounted ? FindXyzStep
@@ -535,7 +538,7 @@ std::vector<double> ListTimesInText(const std::string& file)
   const StepFinder find = FinderOf(file);
   Lines lines(file);
   Step step;
-  std::error_code error; // which is told where the file is read
+  std::error_code error; // this is said when the file is read
   Steps known = { std::filesystem::file_size(file, error), {} };
   try
   {
@@ -560,7 +563,7 @@ std::vector<double> ListTimesInText(const std::string& file)
     {
       throw;
     }
-    // The steps before are good; what is wrong with this one is told where it is read.
+    // The steps before this one are good; what is wrong with this one is said when it is read.
     times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
   KnownSteps[file] = known;

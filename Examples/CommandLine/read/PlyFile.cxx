@@ -57,7 +57,7 @@ const std::map<std::string, NumberKind> NumberKinds = {
   { "float64", KindOf<double>() },
 };
 
-/// The vertices, or what stands before them.
+/// Reads the vertices, or skips the elements before them.
 struct Element
 {
   std::string Name;

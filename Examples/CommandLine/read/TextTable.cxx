@@ -56,7 +56,7 @@ bool ToNumber(View text, double& value)
   }
   if (end.ec == std::errc::result_out_of_range)
   {
-    value = std::strtod(std::string(text).c_str(), nullptr); // infinite, or 0
+    value = std::strtod(std::string(text).c_str(), nullptr); // an infinite number, or 0
   }
   return end.ec != std::errc::invalid_argument && end.ptr == text.data() + text.size();
 }
@@ -99,7 +99,7 @@ bool Lines::Next()
   }
   if (++this->Number == 1 && this->Line.compare(0, 3, "\xEF\xBB\xBF") == 0)
   {
-    this->Line.erase(0, 3); // a mark of UTF-8
+    this->Line.erase(0, 3); // UTF-8's byte order mark
   }
   if (this->Line.find('\0') != std::string::npos)
   {
@@ -177,8 +177,8 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 namespace
 {
 
-/// A name without what makes it a component (v:0, v_x, v.x, v[0], v(0), VelX), and which one it is;
-/// below 0: it is none.
+/// Returns a name without its component (v:0, v_x, v.x, v[0], v(0), VelX), and sets which component
+/// it is; below 0: none.
 int ComponentOf(const std::string& name, std::string& base)
 {
   const std::size_t n = name.size();
@@ -212,7 +212,8 @@ std::string NamesOf(const Table& table)
 struct Array
 {
   std::string Name;
-  std::vector<std::size_t> Columns; ///< none: they are positions, or belong to another array
+  std::vector<std::size_t> Columns; ///< empty: the columns are positions, or belong to another
+                                    ///< array
 };
 
 /// Lists arrays, each at its first column: columns alone, and vectors, whose names tell components.
@@ -297,13 +298,14 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
   const auto isLarge = [](double number) { return std::abs(number) >= 9007199254740992.0; };
   const bool areLarge = columns.size() == 1 &&
-    std::any_of(first.Numbers.begin(), first.Numbers.end(), isLarge); // doubles are 2 apart there
+    std::any_of(first.Numbers.begin(), first.Numbers.end(), isLarge); // here doubles are 2 apart
   const bool isIdentifier = columns.size() == 1 &&
     std::any_of(ends.begin(), ends.end(),
       [&letters](const char* end) { return letters == end || EndsWith(letters, end); });
   if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
-    return ArrayWith<vtkTypeInt64Array>(first.Whole); // which tells particles, or kinds, apart
+    return ArrayWith<vtkTypeInt64Array>(first.Whole); // such an array tells particles, or kinds,
+                                                      // apart
   }
   if (isIdentifier && areLarge)
   {
@@ -408,7 +410,7 @@ std::vector<std::string> NamesOf(const std::vector<View>& cells)
   {
     const std::size_t bracket = cell.find(" (");
     const View inside = bracket == View::npos ? View() : cell.substr(bracket + 2);
-    const bool isUnit = // and not a component, as in "v (x)"
+    const bool isUnit = // and no component, as in "v (x)"
       inside.size() != 2 || View("012345678xyzXYZ").find(inside[0]) == View::npos;
     std::string name(
       Trimmed(cell.substr(0, std::min(cell.find(" ["), isUnit ? bracket : View::npos))));

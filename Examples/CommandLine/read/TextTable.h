@@ -19,7 +19,8 @@ using View = std::string_view;
 View Trimmed(View text);
 std::string Small(View text);
 
-/// A number as it stands in tables: with a leading plus, a D of Fortran, or a comma; nan, inf.
+/// Reads a number as tables have it: perhaps with a leading plus, Fortran's D, or a decimal comma;
+/// nan, inf.
 bool ToNumber(View text, double& value);
 bool ToInteger(View text, vtkTypeInt64& value);
 
@@ -76,8 +77,8 @@ struct Column
 
   std::string Name;
   std::vector<double> Numbers;
-  std::vector<std::string> Words;  ///< of one that is not of numbers; else empty
-  std::vector<vtkTypeInt64> Whole; ///< of one that may have identifiers; else empty
+  std::vector<std::string> Words;  ///< texts of a column that has no numbers; else empty
+  std::vector<vtkTypeInt64> Whole; ///< texts of a column that may have identifiers; else empty
 
   void Add(View cell);
 };
@@ -87,14 +88,14 @@ using Table = std::vector<Column>;
 Table TableOf(const std::vector<std::string>& names);
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// The columns called x, y and z, with these letters behind: those that are there.
+/// Returns those of the columns x, y and z, with these letters behind the names, that exist.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
 /// The columns of positions; none where no name tells. Fails where some of x, y and z are there and
 /// others are not, unless these two are the whole table.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
-/// `positions`: the columns of positions; where there are none, names tell.
+/// `positions`: the columns of positions; if there are none, names tell them.
 vtkSmartPointer<vtkPolyData> ParticlesOf(
   const std::string& file, const Table& table, std::vector<std::size_t> positions);
 

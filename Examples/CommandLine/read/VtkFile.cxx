@@ -45,9 +45,9 @@ namespace
 
 using View = std::string_view;
 
-// The counts that a file declares.
+// ---- The counts that a file declares ----
 
-/// Shows a check the file's bytes, as they lie there.
+/// Gives a check the file's bytes as they are.
 void Inspect(const std::string& file, void (*check)(const std::string& file, View text))
 {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
@@ -88,7 +88,8 @@ std::vector<double> Numbers(View text)
   }
 }
 
-/// Refuses `count` times the value of what stands as `name` in a file that can hold `most`.
+/// Refuses the file if `count` times the value of `name` is more than `most`, which the file can
+/// hold.
 void CheckSize(const std::string& file, double most, View name, double value, double count = 1.0)
 {
   if (!(value >= 0.0) || !(value * count <= most))
@@ -157,7 +158,7 @@ void CheckXml(const std::string& file, View text)
   }
 }
 
-/// The words of a line, in small letters; none where it has values, as text or not.
+/// Returns the words of a line in small letters; none if it has values, as text or bytes.
 std::vector<std::string> DeclaringWords(View line)
 {
   const auto isPrinted = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r'; };
@@ -187,8 +188,8 @@ void CheckLegacy(const std::string& file, View text)
   static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
     "color_scalars", "texture_coordinates" };
   const double most = 8.0 * static_cast<double>(text.size());
-  std::string section = "point_data"; // that the attributes are in
-  double elements = 0.0;              // values of each
+  std::string section = "point_data"; // elements that have the attributes
+  double elements = 0.0;              // values of each element
   for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1)
   {
     end = std::min(text.find('\n', begin), text.size());
@@ -204,7 +205,7 @@ void CheckLegacy(const std::string& file, View text)
     const bool hasAttribute = attributes.count(first) > 0;
     for (const double number : numbers)
     {
-      if (isSection || first == "dimensions") // of an image, which may have no values
+      if (isSection || first == "dimensions") // points of an image, which may have no values
       {
         CheckSize(file, most, first, std::min(number, 0.0));
       }
@@ -359,7 +360,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t)
 
 std::vector<double> ListTimesOfVtk(const std::string& file)
 {
-  std::string head(1 << 16, '\0'); // field data behind it are not looked at
+  std::string head(1 << 16, '\0'); // field data behind the particles are not looked at
   std::ifstream stream(file, std::ios::binary);
   stream.read(&head[0], static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
@@ -397,7 +398,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
   }
   catch (const std::exception&)
   {
-    // A fault is told where all of the file is read.
+    // A fault is reported when the whole file is read.
   }
   Messages() = {};
   // Field data at the end of an XML file have the least and greatest value at its beginning.

@@ -58,11 +58,11 @@ const bool FoundAwaited = (FindAwaited(), true);
 /// Plain memory, for a handler that must not allocate any.
 char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
-char StackOfHandler[1 << 16]; // that of a recursion without end is full
+char StackOfHandler[1 << 16]; // after a recursion without end, the usual stack is full
 char HintOfDrivers[PATH_MAX + 256] = "";
-thread_local bool IsLoadingDrivers = false; ///< meanwhile another thread reads files
+thread_local bool IsLoadingDrivers = false; ///< files are read in another thread
 volatile std::sig_atomic_t ClearsLine = 0;
-volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< also where Silence has taken that
+volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< even if Silence has replaced it
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
@@ -89,8 +89,8 @@ void SayInHandler(const char* text)
   (void)ignored;
 }
 
-/// A reader went astray over a damaged file, or a driver. No output is lost: it is whole before it
-/// takes the place of another one.
+/// Handles a crash of a reader over a damaged file, or of a driver. No output is lost, because a
+/// new file is complete before it replaces another one.
 void EndByCrash(int number)
 {
   RemoveFiles();
@@ -116,7 +116,7 @@ void EndByCrash(int number)
   while (sigwait(&Awaited, &number) != 0)
   {
   }
-  FilesLock.lock(); // for ever: no other file is made
+  FilesLock.lock(); // for ever, so that no other file is made
   RemoveFiles();
   std::signal(number, SIG_DFL);
   sigset_t one;
@@ -142,7 +142,7 @@ void KeepWatchOfCrashes()
   {
     sigaction(number, &action, nullptr);
   }
-  std::set_terminate(std::abort); // without more lines
+  std::set_terminate(std::abort); // and writes no more lines
 }
 
 void PrepareForEnding()
@@ -160,7 +160,7 @@ void PrepareForEnding()
   {
     std::thread(EndBySignal).detach();
   }
-  catch (const std::system_error&) // no more threads: signals end the program at once
+  catch (const std::system_error&) // if there is no thread, signals end the program at once
   {
     pthread_sigmask(SIG_UNBLOCK, &Awaited, nullptr);
   }
@@ -289,7 +289,8 @@ bool TemporaryFile::Close()
 
 bool TemporaryFile::TakePlaceOf(const std::string& file)
 {
-  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not under the lock: it may hang
+  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not while the lock is held, because
+                                                          // this may hang
   {
     return false;
   }

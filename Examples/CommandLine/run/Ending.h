@@ -63,7 +63,7 @@ public:
 
   int GetDescriptor() const { return this->Descriptor; } ///< below 0: there is no file
 
-  /// False, and errno, where what was written could not be kept.
+  /// Returns false, and sets errno, if the written bytes could not be kept.
   bool Close();
   bool TakePlaceOf(const std::string& file);
 

@@ -39,7 +39,7 @@ vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
 {
   const std::vector<double>& ends = job.Slice.Line;
   const int count = job.Slice.Resolution;
-  double first = 0.0, last = 1.0; // of the way
+  double first = 0.0, last = 1.0; // share of the way
   for (int a = 0; job.Surface->GetUseBox() && a < 3; ++a)
   {
     const double* sides = job.Surface->GetBox() + 2 * a;
@@ -88,7 +88,7 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
     return MakeLine(job);
   }
   double bounds[6];
-  vtkNew<vtkSPHProbe> all; // walls, too
+  vtkNew<vtkSPHProbe> all; // walls count, too
   if (!all->FindFluidBounds(job.Probe->TakePresent(particles), bounds))
   {
     throw std::runtime_error(
@@ -126,7 +126,7 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
   return image;
 }
 
-/// The first vector, or the first array that is not everywhere the same.
+/// Returns the first vector, or else the first array that varies.
 std::string ArrayToShow(vtkDataSet* data)
 {
   std::string found;
@@ -147,7 +147,7 @@ std::string ArrayToShow(vtkDataSet* data)
   return found.empty() ? "WeightSum" : found;
 }
 
-/// Makes the points of a file that are not in --box like those where there is no fluid.
+/// Treats points of a file that are not in --box as points without fluid.
 void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
   const double* box = job.Surface->GetBox();
@@ -171,7 +171,7 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
   }
 }
 
-/// A line about the points or the image.
+/// Returns a line of text about the points, or about the image.
 std::string Describe(vtkDataSet* data)
 {
   std::ostringstream line;
@@ -219,7 +219,7 @@ std::string DrawField(
   if (job.IsProbe())
   {
     frame = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
-    vtkNew<vtkThreshold> valid; // elsewhere arrays are 0, which would look like values
+    vtkNew<vtkThreshold> valid; // without this, arrays would be 0 elsewhere, which looks like a value
     valid->SetInputData(frame);
     valid->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
@@ -246,7 +246,7 @@ std::string DrawField(
 namespace
 {
 
-/// The field at the points of a file at each time: a table with a row for each step and point.
+/// Makes a table of the field at the points of a file, with a row for each step and point.
 class PointTable : public Series
 {
 public:
@@ -353,8 +353,8 @@ private:
   }
 
   static constexpr const char* MaskName = "vtkValidPointMask";
-  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< others have none
-  std::vector<std::pair<std::string, int>> Columns; ///< arrays and components
+  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< other columns have none
+  std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
   std::string Text;
   GrowingFile File;
 };
@@ -372,7 +372,7 @@ void MakeField(Sharing& sharing)
   const bool isProbe = job.IsProbe();
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // other files have none
   sharing.OnFirst(
     [&]
     {

@@ -80,7 +80,8 @@ public:
         {
           throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
         }
-        // Nobody named the files beside a .pvd file: each is new, or a step of an older film.
+        // Nobody has named the files beside a .pvd file, so each must be new, or a step of an older
+        // film.
         for (const std::string& surface : this->Surfaces)
         {
           std::error_code error;
@@ -205,7 +206,7 @@ private:
     warnings.insert(warnings.end(), run.Warnings.begin(), run.Warnings.end());
   }
 
-  /// The step's file and picture, both or none.
+  /// Writes the step's file and picture: both or none.
   void Write(std::size_t i, const std::string& bytes,
     const std::function<std::string(const std::string& frame)>& draw)
   {
@@ -259,13 +260,13 @@ private:
   }
 
   const std::vector<std::string> Surfaces;
-  std::string Entries;                ///< of the .pvd file
-  std::vector<std::string> Reports;   ///< of all steps, where somebody wants them
-  vtkSmartPointer<vtkFieldData> Last; ///< of the last one that went well
+  std::string Entries;                ///< entries of the .pvd file
+  std::vector<std::string> Reports;   ///< rows of all steps, if a table is wanted
+  vtkSmartPointer<vtkFieldData> Last; ///< the last step that went well
   ColorScale Colors, FrameColors;
   std::string Pieces, Numbers; ///< tables
   GrowingFile ListFile, PieceFile, NumberFile;
-  std::unique_ptr<Picture> Drawn; ///< where pictures are asked for
+  std::unique_ptr<Picture> Drawn; ///< used if pictures are wanted
 };
 
 }

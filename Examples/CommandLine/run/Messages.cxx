@@ -11,8 +11,8 @@
 namespace
 {
 
-/// "ERROR: In F.cxx, line 1\nvtkClass (0x55): It failed.\n\n" -> "It failed.", and
-/// "Generic Warning: In F.cxx, line 1\nIt failed.\n\n" the same
+/// Returns the sentence: of "ERROR: In F.cxx, line 1\nvtkClass (0x55): It failed.\n\n" and of
+/// "Generic Warning: In F.cxx, line 1\nIt failed.\n\n" it is "It failed."
 std::string Sentence(const char* text)
 {
   std::string message = text ? text : "";
@@ -27,7 +27,7 @@ std::string Sentence(const char* text)
   }
   if (message.find(" returned failure for request: ") != std::string::npos)
   {
-    message = "VTK's reader gave up"; // where it says no more than that, and a page of addresses
+    message = "VTK's reader gave up"; // the message says no more, and has a page of addresses
   }
   std::replace(message.begin(), message.end(), '\n', ' ');
   std::replace(message.begin(), message.end(), '\r', ' ');
@@ -42,8 +42,8 @@ public:
   static Window* New();
   vtkTypeMacro(Window, vtkOutputWindow);
 
-  /// Warnings come here, too. The legacy readers only warn ("Error reading ascii data") where a file
-  /// ends in mid-array.
+  /// Warnings are kept here, too: if a file ends in mid-array, the legacy readers only warn ("Error
+  /// reading ascii data").
   void DisplayText(const char* text) override
   {
     const std::string sentence = Sentence(text);

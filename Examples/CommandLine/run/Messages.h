@@ -16,8 +16,8 @@ struct KeptMessages
   void Check(const std::string& error = "") const;
 };
 
-/// Those since they were last emptied. VTK has one window for all objects: from the first use on,
-/// its messages come here.
+/// Returns the messages since they were last emptied. VTK has one window for all objects: from the
+/// first use on, all messages come here.
 KeptMessages& Messages();
 
 #endif

@@ -39,7 +39,7 @@ namespace
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Steps = std::vector<ParticleTimes::Step>;
 
-/// The first step that is not before this time; there may be none.
+/// Returns the first step that is not before this time, or the end.
 Steps::const_iterator FindStep(const Steps& steps, double time)
 {
   return std::lower_bound(steps.begin(), steps.end(), time,
@@ -183,7 +183,7 @@ void AddStepWalls(
     else if (HasStepNumber(file))
     {
       const std::string name = std::filesystem::path(step.Files.front()).filename().string();
-      const auto numbers = Numbered(name).second; // 120 of WaterBody_120.vtp
+      const auto numbers = Numbered(name).second; // the 120 of WaterBody_120.vtp
       if (numbers.empty())
       {
         throw std::runtime_error("--walls " + file +
@@ -199,7 +199,7 @@ void AddStepWalls(
   }
 }
 
-/// The stored times, or those that were asked for.
+/// Returns the stored times, or the times that were asked for.
 std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
@@ -224,7 +224,7 @@ std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
   const double begin = steps.front().Time, end = steps.back().Time;
   for (double& time : times)
   {
-    // 3 * 0.1 is meant to be 0.3.
+    // 3 * 0.1 means 0.3.
     const double tolerance = 1e-12 * (end - begin);
     const auto next = FindStep(steps, time - tolerance);
     if (next != steps.end() && next->Time <= time + tolerance)
@@ -251,7 +251,7 @@ public:
   static StoredSteps* New();
   vtkTypeMacro(StoredSteps, vtkPolyDataAlgorithm);
 
-  const Steps* Known = nullptr; ///< in the order of time
+  const Steps* Known = nullptr; ///< ascending by time
   std::string Error;            ///< why the last step could not be read; empty if it could
 
 protected:
@@ -279,10 +279,10 @@ protected:
     const double time = info->Has(Pipeline::UPDATE_TIME_STEP())
       ? info->Get(Pipeline::UPDATE_TIME_STEP())
       : this->Known->front().Time;
-    auto step = FindStep(*this->Known, time); // one of the times that were offered
+    auto step = FindStep(*this->Known, time); // this is one of the offered times
     step = step == this->Known->end() ? step - 1 : step;
     vtkPolyData* output = vtkPolyData::GetData(outputVector);
-    output->Initialize(); // the step before it, so that there are never three
+    output->Initialize(); // drops the step before, so that no more than two are in memory
     this->Error =
       FailureOf([output, step] { output->ShallowCopy(ReadParticles(step->Files, true)); });
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), step->Time);
@@ -369,7 +369,7 @@ void ParticleTimes::Reset()
   this->Interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
   this->Interpolator->SetInputConnection(this->Source->GetOutputPort());
   const std::vector<double>& period = this->Shared.Options.Periodic;
-  const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // lengths alone count
+  const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // only lengths are known
   this->Interpolator->SetDetectPeriod(this->Shared.Options.DetectPeriod);
   if (!period.empty())
   {
@@ -388,7 +388,7 @@ std::string ParticleTimes::CheckTold()
   if (this->Shared.GetCount() == 1 &&
     !FailureOf([&] { this->At(0.5 * (this->Steps[0].Time + this->Steps[1].Time), told); }).empty())
   {
-    this->Reset(); // without ids the particles tell nothing
+    this->Reset(); // without ids, particles cannot be matched
   }
   for (const std::string& sentence : told)
   {
@@ -461,7 +461,7 @@ bool Series::MakeAll()
       Say("warning: " + untold);
     }
   }
-  std::map<std::string, int> counts; // of each sentence, which is said once, with the first step
+  std::map<std::string, int> counts; // sentences that were said already, with the first step
   for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
   {
     const std::string label = this->Label(i);
@@ -483,7 +483,7 @@ bool Series::MakeAll()
     for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
     {
       const std::string kind = error.empty() ? "warning: " : "";
-      // How many places are dry differs from step to step.
+      // The number of dry places differs from step to step.
       const mcor_says code = vtkSPHCodeOf(warning);
       const bool areDry = code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
       if (this->Shared.IsFirst() &&

@@ -11,7 +11,7 @@
 class StoredSteps;
 class vtkSPHTemporalInterpolator;
 
-/// A number of a time, with the digits that it was given with.
+/// Returns a number near the time with as few digits as it was given with.
 std::string TimeText(double time);
 
 /// The particles of a series at the times that it stores, or those that are asked for, between two
@@ -23,7 +23,7 @@ public:
   {
     double Time;
     std::vector<std::string> Files; ///< parts of one set of particles
-    std::vector<std::string> Walls; ///< likewise, of walls beside these
+    std::vector<std::string> Walls; ///< likewise, files of walls
   };
 
   /// Throws UsageError or std::runtime_error with one sentence.
@@ -34,10 +34,10 @@ public:
 
   const std::vector<double>& Get() const { return this->Times; }
 
-  /// The step of that time; null where it is between two.
+  /// Returns the step of that time; null if the time is between two.
   const Step* GetStored(double time) const;
 
-  /// Files that a time is made of, without walls.
+  /// Lists the files that a time is made of, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
   /// Opens all that is read, see OpenSources().
@@ -56,15 +56,15 @@ private:
   const Sharing& Shared;
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
-  bool AreTold = true; ///< by the files, a .pvd file or --time-step
+  bool AreTold = true; ///< the times are told: by the files, a .pvd file or --time-step
   Sharing::Particles Walls;
   std::vector<std::string>
-    WallFiles; ///< that Walls were read from: once where all steps have the same
+    WallFiles; ///< the files that Walls were read from: once, if all steps have the same
   vtkSmartPointer<StoredSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 
-/// Work on each time of the input, and what is said of it.
+/// Works on each time of the input, and says what happens.
 class Series
 {
 public:
@@ -73,7 +73,7 @@ public:
   Series(const Series&) = delete;
   void operator=(const Series&) = delete;
 
-  /// Where a time fails, says so, and does the others; returns false then.
+  /// If a time fails, says so and goes on with the others; returns false then.
   bool MakeAll();
 
 protected:
@@ -81,7 +81,7 @@ protected:
   virtual std::string Label(std::size_t i) const;
   virtual void MakeStep(
     std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
-  /// Takes note of a step that failed. The error of an only one is that of the program.
+  /// Notes that a step failed. If there is only one step, its error is the program's.
   virtual void Miss(std::size_t i, const std::string& error);
   /// Whether the times are numbers of the results, and not only the order of the steps.
   virtual bool IsOfTimes() const { return true; }

@@ -22,8 +22,8 @@
 namespace
 {
 
-/// JSON, as VTK's own library for it is private in some builds. Members are keys, empty in a list,
-/// and texts.
+/// Writes JSON, because VTK's own library for it is private in some builds. A member is a key,
+/// which is empty in a list, and a text.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
 /// Reads back as the same number; JSON has neither NaN nor infinity.
@@ -32,7 +32,7 @@ std::string Json(double number)
   return std::isfinite(number) ? DigitsOf(number) : "null";
 }
 
-/// An object, or a list, a member a line.
+/// Writes an object or a list, with one member on each line.
 std::string Json(const Members& members, const char* brackets = "{}")
 {
   std::string text;
@@ -86,7 +86,7 @@ const char* const StatisticNames[] = {
   "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds"
 };
 
-/// The numbers of an array; none where the run has no such array.
+/// Returns the numbers of an array; none if the run has no such array.
 std::vector<double> Numbers(vtkFieldData* run, const std::string& name)
 {
   std::vector<double> numbers;
@@ -110,7 +110,7 @@ std::string Text(vtkFieldData* run, const std::string& name)
   return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : "";
 }
 
-/// Gives the text that Fill() puts for a name.
+/// Returns the text that Fill() puts in the place of a name.
 std::string Value(vtkFieldData* run, const std::string& name)
 {
   const std::string text = Text(run, name), array = Text(run, name + "Array");
@@ -184,7 +184,7 @@ std::string JsonSeconds(vtkFieldData* run)
   return Json(members);
 }
 
-/// The program and its files; device, arrays and parameters of a run, if there is one.
+/// Lists the program and its files; and, if there is a run, its device, arrays and parameters.
 Members ListSetting(const Job& job, vtkFieldData* run)
 {
   Members setting = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
@@ -207,7 +207,7 @@ Members ListSetting(const Job& job, vtkFieldData* run)
   if (*filter->GetFluidArrayName())
   {
     static const char* const solids[] = { "weight", "ignore", "wall",
-      "auto" }; // by the filter's numbers
+      "auto" }; // numbers of the filter's enumeration
     Members fluid = { { "array", QuotedForJson(filter->GetFluidArrayName()) },
       { "value", Json(filter->GetFluidValue()) },
       { "solids", QuotedForJson(solids[filter->GetSolids()]) } };
@@ -226,7 +226,7 @@ Members ListSetting(const Job& job, vtkFieldData* run)
 std::string Fill(vtkFieldData* run, const std::string& form)
 {
   std::string text;
-  std::size_t begin = 0; // of an alternative
+  std::size_t begin = 0; // names of an alternative
   bool isComplete = true;
   for (std::size_t i = 0; i < form.size(); ++i)
   {

@@ -69,7 +69,7 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// The steps of a table, or the one of an image.
+/// Counts the steps of a table, or the one step of an image.
 class MeterTable : public Series
 {
 public:
@@ -142,7 +142,8 @@ private:
       for (std::size_t row = 0; row < sums.size(); ++row)
       {
         const double now = rates->GetValue(static_cast<vtkIdType>(row));
-        sums[row] += passed * 0.5 * (before[row] + now) + 0.0 * now; // no number where no flux is
+        // where there is no flux, there is no number
+        sums[row] += passed * 0.5 * (before[row] + now) + 0.0 * now;
         column->InsertNextValue(sums[row]);
       }
       table->AddColumn(column);
@@ -162,9 +163,9 @@ private:
 
   const bool IsFlux, IsImage;
   vtkSPHMeter* const Meter;
-  GrowingFile File; ///< nameless for an image
+  GrowingFile File; ///< has no name for an image
   double LastTime = 0.0;
-  std::vector<double> Rates[2], Sums[2]; ///< of volume and mass, for each section
+  std::vector<double> Rates[2], Sums[2]; ///< integrals of volume and mass, for each section
   std::string Text;
 };
 
@@ -187,7 +188,7 @@ std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
   return values.empty() ? std::vector<double>{ NoNumber } : values;
 }
 
-/// The number of the level with this iso value, which may be rounded to float.
+/// Returns the number of the level with this iso value, which may have been rounded to float.
 std::size_t LevelOf(const std::vector<Level>& levels, double iso)
 {
   const auto next = std::min_element(levels.begin(), levels.end(),
@@ -231,7 +232,7 @@ void MeasureLines(Run& run, const std::string& isoName)
   }
 }
 
-/// Adds an array of one number, to statistics or a table's row.
+/// Adds an array with one number to statistics, or to a table's row.
 void AddNumber(vtkFieldData* data, const std::string& name, double value)
 {
   vtkNew<vtkDoubleArray> array;
@@ -322,7 +323,7 @@ void AddPieces(
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
   split->SetParticlesData(surface->TakePresent(particles));
-  if (!surface->GetCapping()) // caps end pieces
+  if (!surface->GetCapping()) // pieces end at caps
   {
     split->SetPeriodicBounds(surface->GetPeriodicBounds());
   }
@@ -354,7 +355,7 @@ void AddPieces(
   }
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
-  for (const char* name : { "Area", "Volume" }) // those of the pieces that are left
+  for (const char* name : { "Area", "Volume" }) // numbers of the remaining pieces
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
     {
@@ -402,7 +403,7 @@ void AddFilmNumbers(
       vtkDataArray* array = run.Statistics->GetArray(name);
       return array ? array->GetComponent(0, 0) : NoNumber;
     };
-    const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
+    const bool hasRun = run.Statistics->HasArray("Triangles"); // otherwise there is no fluid
     run.Levels.front().Area = hasRun ? numberOf("Area") : 0.0;
     run.Levels.front().Volume = hasRun ? numberOf("Volume") : 0.0;
   }

@@ -29,20 +29,20 @@ void MakeSurface(Sharing& sharing);
 /// Names a step that fails, does the others, and returns false then.
 bool MakeFilm(Sharing& sharing);
 
-/// Measures the free surface along lines, or what flows through sections and what has flowed since
-/// the first time, at each time of the input, and writes the table, or, of a grid of gauges, an
-/// image. False if a step failed, of which all was said; the table has the others.
+/// Measures at each time of the input the free surface along lines, or what flows through sections and has flowed since
+/// the first time. Writes the table or, for a grid of gauges, an image. Returns false if a step failed, which was said;
+/// the table has the other steps.
 bool MakeMeterTable(Sharing& sharing);
 
-/// Writes a table of the field at the points of a file at each time. False if a step failed, of which all
-/// was said; the table has the others.
+/// Writes a table of the field at the points of a file at each time. Returns false if a step failed, which was said;
+/// the table has the other steps.
 bool MakePointTable(Sharing& sharing);
 
 /// Writes a data set with the field: its points are those of a file, of a slice or of a line, or
 /// pixels, through which it is seen.
 void MakeField(Sharing& sharing);
 
-/// Parts of these follow.
+/// The functions below are parts of the runs above.
 
 /// Makes the settings that depend on the input, for one of the job's filters. Returns the
 /// particles, with the arrays derived from theirs. Throws std::runtime_error with one sentence
@@ -66,9 +66,9 @@ struct Level
 struct Run
 {
   vtkSmartPointer<vtkPolyData> Surface;
-  vtkSmartPointer<vtkFieldData> Statistics; // of the surface, and of what the run cost
+  vtkSmartPointer<vtkFieldData> Statistics; // arrays of the surface, and of what the run cost
   std::vector<std::string> Warnings;        // sentences that the user should know
-  std::vector<Level> Levels; // of a film with a table of numbers, by ascending iso values
+  std::vector<Level> Levels; // levels of a film with a table of numbers, by ascending iso values
   double WallSeconds = 0.0;
 };
 
@@ -124,10 +124,10 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds);
 
-/// `run` is the last one that went well, or null.
+/// `run` is the last run that went well, or null.
 std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run);
 
-/// The most memory that this process has had so far; 0 where the system does not tell.
+/// Returns the most memory that this process has had so far; 0 if the system does not tell.
 double PeakResidentBytes();
 
 /// Gives the run's surface the array ComponentId, without the pieces that are to be left out, and

@@ -41,7 +41,7 @@ public:
     vtkMultiProcessController::SetGlobalController(this->Controller);
     for (vtkSPHAlgorithm* filter : job.All())
     {
-      filter->SetController(this->Controller); // they were made before MPI began
+      filter->SetController(this->Controller); // the numbers were found before MPI began
     }
   }
 
@@ -102,7 +102,7 @@ public:
       true);
   }
 
-  /// Puts the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
+  /// Sorts the parts by GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override
   {
     return vtkSPHMergeSurface(this->Controller, part);
@@ -184,7 +184,8 @@ private:
       this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
       job.DetectPeriod = false;
     }
-    if (job.Periodic.size() == 3) // lengths alone: all particles tell where it begins
+    if (job.Periodic.size() == 3) // lengths alone are known, so all particles tell where the period
+                                  // begins
     {
       job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
     }
@@ -192,12 +193,12 @@ private:
   }
 
   vtkNew<vtkMPIController> Controller;
-  const std::vector<double> Periodic; ///< as the job had it
+  const std::vector<double> Periodic; ///< the job's own setting
   const bool DetectPeriod;
 };
 #endif
 
-/// The first of these variables that is set, as a number.
+/// Returns the first of these variables that is set, as a number.
 [[maybe_unused]] int Number(const char* ofOpenMpi, const char* ofOthers, int otherwise)
 {
   const char* text = std::getenv(ofOpenMpi);

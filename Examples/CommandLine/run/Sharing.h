@@ -33,7 +33,7 @@ public:
   virtual int GetRank() const { return 0; }
   virtual int GetCount() const { return 1; }
 
-  /// The one that writes, and tells.
+  /// Whether this process writes the files and says what happens.
   bool IsFirst() const { return this->GetRank() == 0; }
 
   /// Does work on all processes, which may differ.
@@ -44,14 +44,14 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// This process's part of the particles of the only input, and of its walls; or of a time.
+  /// Returns this process's part of the particles: of the only input with its walls; or at a time.
   virtual Particles Read();
   virtual Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
-  /// The whole surface on the first process, null on others.
+  /// Returns the whole surface on the first process, null on others.
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 
-  /// The particles of all processes, in their order, on the first process.
+  /// Returns the particles of all processes, in their order, on the first process.
   virtual vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) { return particles; }
 
   Job& Options;

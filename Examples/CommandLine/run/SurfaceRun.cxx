@@ -41,7 +41,7 @@
 namespace
 {
 
-/// True, and the value, where the text is a constant and not the name of an array of the input.
+/// Returns true, and the value, if the text is a constant and not the name of an array of the input.
 bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
 {
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
@@ -111,7 +111,7 @@ vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, v
   filter->SetSmoothingLengthIsSupportRadius(false);
   filter->SetSmoothingLength(0.0);
   filter->SetSmoothingLengthArrayName("WidenedSmoothingLength");
-  if (widened->GetPointData()->HasArray("WideningVolume")) // where volumes are computed
+  if (widened->GetPointData()->HasArray("WideningVolume")) // if volumes are computed
   {
     filter->SetVolumeArrayName("WideningVolume");
   }
@@ -128,7 +128,7 @@ std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particl
 {
   std::vector<std::string> names;
   vtkPointData* data = particles->GetPointData();
-  const std::string& color = job.Picture.ColorBy; // all are listed where it is none of them
+  const std::string& color = job.Picture.ColorBy; // all arrays are listed if none of them can be held
   if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
     (!color.empty() && !data->HasArray(color.c_str())))
   {
@@ -152,14 +152,14 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
 {
   const std::vector<std::string>& names = job.AttributeNames;
   vtkPointData* data = particles->GetPointData();
-  filter->ClearExcludedArrays(); // of the step before
+  filter->ClearExcludedArrays(); // arrays of the step before
   if (!job.Walls.empty())
   {
     filter->AddExcludedArray(WallArrayName); // the same on the whole surface
   }
   for (const auto& words : ChosenWords())
   {
-    filter->AddExcludedArray(words.first); // has the numbers of texts
+    filter->AddExcludedArray(words.first); // an array that has the numbers of texts
   }
   for (const std::string& name : names)
   {
@@ -254,7 +254,7 @@ public:
   ~Progress()
   {
     std::fputs(this->IsShown ? "\r\033[K" : "", stderr);
-    this->End.set_value(); // then Waiting ends, and is awaited
+    this->End.set_value(); // then Waiting ends, and its thread is joined
   }
 
   void Take(vtkObject* caller, unsigned long, void*)
@@ -278,7 +278,7 @@ public:
     {
       while (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
       {
-        if (this->IsBuilding) // and does not compute long since
+        if (this->IsBuilding) // and has not computed for long
         {
           Say("the OpenCL driver compiles its programs for the first time, which may take a "
               "minute");
@@ -296,7 +296,7 @@ public:
   }
 
 private:
-  const std::string& Before; ///< the words before the line
+  const std::string& Before; ///< the words in front of the line
   const bool IsShown, IsQuiet;
   std::atomic<bool> IsBuilding{ false };
   bool HasBegun = false;
@@ -316,7 +316,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
     vtkSPHDerivatives* derivatives = job.Derivatives;
     SetParticles(derivatives, job, input);
     derivatives->ComputeStrainRateOn();
-    derivatives->ReplaceArraysOn(); // the next step is to find them under their names
+    derivatives->ReplaceArraysOn(); // the next step must find them under their names
     derivatives->SetInputData(input);
     derivatives->Update();
     const std::string error = derivatives->GetErrorMessage();
@@ -382,7 +382,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
   if (!sharing.Options.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
     run.Statistics->HasArray("ScalarRange") && values && values->GetNumberOfValues() > 0)
   {
-    filter->SetValue(0, values->GetComponent(0, 0)); // was chosen, and is kept for the next steps
+    filter->SetValue(0, values->GetComponent(0, 0)); // it was chosen here, and stays for the next steps
     if (!sharing.Options.Quiet && sharing.IsFirst())
     {
       std::cout << Fill(run.Statistics,
@@ -394,7 +394,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
   // They are in the statistics, too.
   const std::vector<std::string>& told = Messages().Warnings;
   run.Warnings.insert(run.Warnings.end(), told.begin(), told.end());
-  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
+  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // for all processes
   if (run.Surface->GetNumberOfCells() == 0 && !(triangles && triangles->GetComponent(0, 0) > 0))
   {
     const std::string reason =

@@ -19,8 +19,9 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Takes the values of this data set into the range, unless one was given: a film's colours have
-  /// that of all steps so far. Throws std::runtime_error where it has points and no such array.
+  /// Widens the range by the values of this data set, unless a range was given: a film's colours
+  /// cover all steps so far. Throws std::runtime_error if the data set has points but no such
+  /// array.
   void Include(vtkDataSet* data);
 
   /// The array of the data set that colours its points, or its cells; nullptr if there is none.
@@ -35,7 +36,7 @@ public:
   void SetName(const std::string& name) { this->Name = name; }
   vtkLookupTable* GetTable() const { return this->Table; }
 
-  /// Red, green and blue of the array's values.
+  /// Returns red, green and blue of the array's values.
   std::vector<unsigned char> Map(vtkDataArray* array) const;
 
 private:

@@ -18,7 +18,7 @@ class vtkTable;
 /// which holds data sets of this class.
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
-/// The bytes of a data set in the format of the file's ending. Throws std::runtime_error.
+/// Returns the bytes of a data set in the format of the file's ending. Throws std::runtime_error.
 std::string DataSetBytes(const std::string& file, vtkDataSet* data);
 
 /// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
@@ -27,7 +27,8 @@ void WriteDataSet(const std::string& file, vtkDataSet* data);
 /// Whether the ending of the name is that of a format which WriteSurface knows.
 bool IsSurfaceFile(const std::string& file);
 
-/// ".vtp, .stl, ... or .obj": the endings of these formats, for sentences and the help.
+/// Returns the endings of the formats that WriteSurface knows, ".vtp, .stl, ... or .obj", for
+/// sentences and the help.
 std::string SurfaceFileEndings();
 
 /// The bytes of a surface in the format of the file's ending. .stl and .obj have triangles
@@ -39,21 +40,21 @@ std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const Co
 /// The bytes of an XML file with a mark: a step of a film, which another film may replace.
 std::string MarkedStep(std::string bytes);
 
-/// Whether the file has this mark.
+/// Returns whether the file has this mark.
 bool IsFilmStep(const std::string& file);
 
-/// Whether files in this format hold arrays of any name.
+/// Returns whether files in this format hold arrays of any name.
 bool HoldsArrays(const std::string& file);
 
-/// A sentence about the arrays that a file in this format does not hold, those of the surface and
-/// more; empty if it has all.
+/// Returns a sentence about the arrays that a file in this format cannot hold; empty if it holds
+/// all.
 std::string LostArrays(
   const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more);
 
 /// Whether this is a .pvtp file, which lists one piece per process.
 bool IsInPieces(const std::string& file);
 
-/// OUT_3.vtp beside OUT.pvtp.
+/// Returns the name of a piece: OUT_3.vtp beside OUT.pvtp.
 std::string PieceName(const std::string& file, int rank);
 
 /// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.

@@ -44,7 +44,7 @@ public:
       for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
       {
         vtkAbstractArray* array = arrays->GetAbstractArray(i);
-        array->SetName(array->GetName() ? array->GetName() : ""); // VTK would take an address
+        array->SetName(array->GetName() ? array->GetName() : ""); // VTK would write an address
         this->Replace(
           array->GetName(), [array](const std::string& name) { array->SetName(name.c_str()); });
         for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)

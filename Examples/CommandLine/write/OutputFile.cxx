@@ -36,12 +36,12 @@ void Require(bool isGood, const std::string& file)
 struct Target
 {
   std::string Name;    ///< as given
-  std::string Path;    ///< symbolic links followed
-  int Descriptor = -1; ///< the open one that this is a name of (/dev/stdout, /dev/fd/3)
+  std::string Path;    ///< the path behind symbolic links
+  int Descriptor = -1; ///< the open descriptor that this is a name of (/dev/stdout, /dev/fd/3)
   bool Exists = false;
-  struct stat Status = {}; ///< where it exists
+  struct stat Status = {}; ///< identity of the file, if it exists
 
-  /// Whether a new file takes its place, or it is written to straight.
+  /// Whether a new file replaces it; otherwise bytes are written straight to it.
   bool IsReplaced() const
   {
     return this->Descriptor < 0 && (!this->Exists || S_ISREG(this->Status.st_mode));
@@ -79,7 +79,7 @@ Target Find(const std::string& name)
 {
   Target target;
   target.Name = target.Path = name;
-  const int mostLinks = 40; // as the kernel of Linux
+  const int mostLinks = 40; // the limit of Linux' kernel
   std::error_code error;
   for (int i = 0;; ++i)
   {
@@ -126,8 +126,8 @@ Target Find(const std::string& name)
   return target;
 }
 
-/// An identity that is equal for all names of one file. For a file that does not exist yet, it is
-/// its folder and its name there.
+/// Returns an identity that is the same for all names of one file. A file that does not exist yet
+/// is identified by its folder and its name.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 Identity Identify(const struct stat& status, const std::string& name = "")
@@ -146,7 +146,7 @@ Identity Identify(const Target& target)
   return Identify(folder, fs::path(target.Path).filename().string());
 }
 
-/// False, and errno, where that failed.
+/// Closes the file. Returns false, and sets errno, if that failed.
 bool WriteAll(int descriptor, const std::string& bytes)
 {
   for (std::size_t done = 0; done < bytes.size();)
@@ -181,7 +181,8 @@ void SetAttributes(int descriptor, const Target& target)
 
 }
 
-/// A file on its way: a new one that takes the target's place, or bytes for a target that is kept.
+/// An output under way: a new file that will replace the target, or bytes for a target that is
+/// kept.
 struct OutputFiles::Output
 {
   Target Place;
@@ -210,7 +211,7 @@ void CheckOutputs(const std::vector<std::string>& outputs)
     const Identity identity = Identify(target);
     if (target.Exists && S_ISCHR(target.Status.st_mode))
     {
-      continue; // nobody's own: /dev/null, a terminal
+      continue; // a device such as /dev/null, or a terminal
     }
     if (!found.insert(identity).second)
     {
@@ -236,7 +237,7 @@ void OutputFiles::Write(const std::string& file, const std::string& bytes)
   else
   {
     const std::string& path = output.Place.Path;
-    const std::size_t longest = 200; // of 255 bytes
+    const std::size_t longest = 200; // a name has at most 255 bytes
     output.File = std::make_unique<TemporaryFile>(
       FolderOf(path) + "/." + fs::path(path).filename().string().substr(0, longest) + ".");
     const int descriptor = output.File->GetDescriptor();

@@ -39,9 +39,9 @@ private:
 /// Writes one file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
-/// A file of all steps so far, that can be looked at while there are more and more of them, and
-/// where the program is ended. The file of a long series is not written after each step, but as
-/// often as it takes a twentieth of the time. A device or a pipe gets it once, at the end.
+/// A file of all steps so far, which can be read while the run goes on, and after the program is ended. For a long
+/// series it is not written after each step, but only as often as takes a twentieth of the time. A device or a pipe
+/// gets it once, at the end.
 class GrowingFile
 {
 public:

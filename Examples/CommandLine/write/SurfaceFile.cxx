@@ -37,7 +37,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Makes room for more bytes. Returns where.
+/// Makes room for more bytes. Returns their place.
 char* Grow(std::string& bytes, std::size_t more)
 {
   const std::size_t begin = bytes.size();
@@ -107,7 +107,7 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// Nine digits give every float back.
+/// With nine digits every float is read back exactly.
 void AppendLine(std::string& text, const char* word, const double (&vector)[3])
 {
   char line[96];
@@ -213,7 +213,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
        << points;
   vtkPointData* data = surface->GetPointData();
-  vtkNew<vtkFloatArray> nowhere; // of a surface without points
+  vtkNew<vtkFloatArray> nowhere; // a surface without points has none
   nowhere->SetNumberOfComponents(3);
   vtkDataArray* normals = data->GetNormals();
   vtkNew<vtkUnsignedCharArray> colors;
@@ -237,7 +237,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   }
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    vtkDataArray* array = data->GetArray(i); // text has no place
+    vtkDataArray* array = data->GetArray(i); // .ply has no place for texts
     const int components = array && array != normals ? array->GetNumberOfComponents() : 0;
     for (int c = 0; c < components; ++c)
     {

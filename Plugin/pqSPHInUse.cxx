@@ -50,7 +50,7 @@
 
 namespace
 {
-// As of the filter's own warning, which comes when the run has begun.
+// The number is that of the filter's own warning, which comes when the run has begun.
 constexpr double HUGE_CELLS = 1e9;
 
 // Properties on which the next update's range and number of cells depend.
@@ -66,10 +66,10 @@ const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "Ne
   "NextDimension", "NextFluid", "NextCells" };
 const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension" };
 
-// ParaView's, of the items of its lists of arrays: association and name.
+// The items of ParaView's lists of arrays have these roles: association and name.
 constexpr int ASSOCIATION = Qt::UserRole + 1, ARRAY_NAME = Qt::UserRole + 2;
 
-// With six digits, as the rest of the panel.
+// Numbers have six digits, as in the rest of the panel.
 double rounded(double value)
 {
   return QString::number(value).toDouble();
@@ -102,7 +102,7 @@ bool isNew(vtkSMProxy* filter)
 pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent)
   : pqPropertyWidget(proxy, parent)
 {
-  this->setShowLabel(true); // the group's, as a heading
+  this->setShowLabel(true); // the group's label, as a heading
   auto* all = new QVBoxLayout(this);
   all->setContentsMargins(0, 0, 0, 0);
   this->Button = new QToolButton(this);
@@ -163,7 +163,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
         domain, vtkCommand::DomainModifiedEvent, this, SLOT(offerMore()), Qt::QueuedConnection);
     }
   }
-  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
+  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel exists
   if (!proxy->GetProperty(NEXT[0]))
   {
     this->showValues();
@@ -189,9 +189,7 @@ void pqSPHInUse::beginNew()
     return;
   }
   SCOPED_UNDO_EXCLUDE();
-  this->WasEmpty = false; // as it has not been updated
-  // The pipeline has the filter's name without the words in brackets, which are for ParaView's
-  // search.
+  this->WasEmpty = false; // because it has not been updated
   auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   const QRegularExpression others("[^A-Za-z0-9]");
   QString name = item->getSMName(), label = filter->GetXMLLabel();
@@ -229,7 +227,7 @@ void pqSPHInUse::beginPlace()
   vtkPVDataInformation* data =
     vtkSMSourceProxy::SafeDownCast(input.GetAsProxy())->GetDataInformation(input.GetOutputPort());
   double low[3], high[3], middle[3], normal[3] = { 0.0, 0.0, 1.0 };
-  double filled = 1.0; // of space, or of the plane
+  double filled = 1.0; // bounds of space, or of the plane
   int longest = 0, up = 2, axes = 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -243,7 +241,7 @@ void pqSPHInUse::beginPlace()
   const double length = high[longest] - low[longest];
   if (!(length > 0.0))
   {
-    return; // not known
+    return; // the bounds are not known
   }
   for (int a = 0; a < 3; ++a)
   {
@@ -351,7 +349,7 @@ void pqSPHInUse::colourLate()
   const bool isEmpty = data->GetNumberOfPoints() + data->GetNumberOfRows() == 0;
   if (isFirst)
   {
-    this->WasEmpty = isEmpty; // a panel of what there was before
+    this->WasEmpty = isEmpty; // this is a panel of an older object
     return;
   }
   if (isEmpty && !this->WasEmpty)
@@ -382,7 +380,7 @@ void pqSPHInUse::colourLate()
 // is the domain of the list of iso values, which shows it and follows it.
 void pqSPHInUse::lookAhead()
 {
-  SCOPED_UNDO_EXCLUDE(); // nothing that a user did
+  SCOPED_UNDO_EXCLUDE(); // the user did nothing
   vtkSMProxy* filter = this->proxy();
   const auto twin = vtkSmartPointer<vtkSMProxy>::Take(
     filter->GetSessionProxyManager()->NewProxy(filter->GetXMLGroup(), filter->GetXMLName()));

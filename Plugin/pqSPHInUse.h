@@ -52,11 +52,11 @@ private: // NOLINT(readability-redundant-access-specifiers)
   void colourLate();
 
   QToolButton* Button;
-  bool HasLooked = false, WasEmpty = false; // at the output, the last one
+  bool HasLooked = false, WasEmpty = false; // at the last output
   QList<double> Given; // the iso value that the panel chose last; none: it does not choose
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
-  QTimer Pause; // between the last change and the look ahead
+  QTimer Pause; // waits between the last change and the look ahead
 };
 
 #endif

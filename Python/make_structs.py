@@ -23,8 +23,8 @@ def fail(sentence):
 
 
 def tokens_of(text):
-    """The declarations with one blank between all tokens, whatever lines they are on, and the comments. A comment's
-    token is @NUMBER; @<NUMBER where it begins on the line on which a declaration ends, to which it then belongs."""
+    """Returns the declarations, with one blank between all tokens whatever lines they are on, and the comments. A comment's token is @NUMBER; it is
+    @<NUMBER if the comment begins on the line on which a declaration ends, and then belongs to this declaration."""
     text = re.sub(r"^[ \t]*#(?:.*\\\n)*.*$", "", text, flags=re.M)
     tokens, comments, end = [], [], 0
     for token in re.finditer(r'/\*(.*?)\*/|"[^"]*"|\w+|\S', text, re.S):
@@ -69,7 +69,7 @@ class Header:
         """[(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
         the one that follows."""
         fields, before, behind = [], "", []
-        body = re.sub(r", @<?(\d+) ([^@;]*;)", r", \2 @<\1", body)  # in the midst of a declaration: as if behind it
+        body = re.sub(r", @<?(\d+) ([^@;]*;)", r", \2 @<\1", body)  # This comment is in the midst of a declaration, and counts as behind it.
         for is_behind, number, declaration in re.findall(r"@(<?)(\d+)|([^@;]+) ;", body):
             if declaration:
                 behind = self.read_fields(declaration.strip(), before)
@@ -100,13 +100,13 @@ class Header:
         return fields
 
     def parameter_type(self, text):
-        """As ctype() has it. A text that a function returns for the caller to free keeps its address."""
+        """Returns the type as ctype() does, but a text that the caller must free keeps its address."""
         base, stars = re.match(r"(?:const )?(\w+)((?: \*)*)", text).groups()
         pointers = stars.count("*") + ("[" in text)
         if (base, pointers) == ("void", 0):
             return "None"
         if base not in {*NUMBERS, *self.enums, *self.structs} or base == "char" and (
-                pointers == 2 or text == "char *"):  # mcor_context is a handle
+                pointers == 2 or text == "char *"):  # A mcor_context is a handle.
             base, pointers = "void", max(pointers, 1)
         return self.ctype(base, pointers, None)
 
@@ -156,13 +156,13 @@ class Rows:
             self.options[member], self.types[member] = ({}, scope.split(" | "), name), "Optional[Sequence[float]]"
         if len(self.options) != len(re.findall(r"^(?:OPTION|BOUNDS)\(", options, re.M)):
             fail("cannot read all rows of mcor_options.def")
-        self.options["capping"][0].clear()  # True or False in Python, where the number depends on the box
+        self.options["capping"][0].clear()  # These are True or False in Python, where the number depends on the box.
         self.types["capping"] = "bool"
         self.types.update((name[len("MCOR_OUT_"):].lower(), "bool") for name in header.enums["mcor_output"])
 
 
 def shape_of(struct, name, comment, constants):
-    """"[count][3], unit L" is ("count", 3); "[attribute_count] -> [count][components]" is a list."""
+    """Reads a shape: "[count][3], unit L" becomes ("count", 3), and "[attribute_count] -> [count][components]" a list."""
     match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
     if not match:
         fail(f"the comment on {struct}.{name} does not tell the shape of the array")
@@ -199,9 +199,9 @@ def python_module(header, rows):
 
 
 def c_checks(module, header):
-    """Offsets as ctypes computes them."""
+    """Returns the offsets that ctypes computes."""
     scope = {}
-    exec(compile(module, "_structs.py", "exec"), scope)  # what was just written
+    exec(compile(module, "_structs.py", "exec"), scope)  # This is the file that was just written.
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",
              '#include "mcor_find.h"', "#include <stddef.h>", ""]
     for struct, fields in header.structs.items():

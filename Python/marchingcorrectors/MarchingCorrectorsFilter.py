@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
-    # Loaded by ParaView, which knows no package. What else lies beside it must not be found with it.
+    # ParaView loads this file alone, and knows no package. Other modules beside it must not become importable.
     _folder = Path(__file__).resolve().parent
     _spec = spec_from_file_location("marchingcorrectors", _folder / "__init__.py",
                                     submodule_search_locations=[str(_folder)])
@@ -45,7 +45,7 @@ from marchingcorrectors._warnings import describe_warnings
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
 CONVERT = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": lambda text: text or ""}
-# Properties of the panel that are left out: the class sets them by own methods.
+# These properties of the panel are left out, because the class has methods of its own for them.
 OTHERS = "PanelComponent", "FreeSurfaceValue"
 
 
@@ -55,7 +55,7 @@ def read_panel():
 
 def read_properties():
     """The panel's properties of one value. name: (default, conversion, whether it has NameOn and NameOff, limits)"""
-    found = {"ScalarComponent": (-1, int, False, (-BIG, BIG)), "DetectArrays": (1, int, True, ())}  # not in the panel
+    found = {"ScalarComponent": (-1, int, False, (-BIG, BIG)), "DetectArrays": (1, int, True, ())}  # These are not in the panel.
     for each in read_panel().find(".//SourceProxy[@class='vtkMarchingCorrectors']"):
         name = each.get("command", "")[len("Set"):]
         if each.get("number_of_elements") != "1" or each.get("information_only") or name in OTHERS:
@@ -66,17 +66,17 @@ def read_properties():
             limits = int(domain.get("min", -BIG)), int(domain.get("max", BIG))
         convert, text = CONVERT[each.tag], each.get("default_values").replace("(automatic)", "")
         found[name] = convert(text), convert, each.find("BooleanDomain") is not None, limits
-    return {**found, "DetectFluid": (0, int, True, ())}  # the panel alone begins with 1
+    return {**found, "DetectFluid": (0, int, True, ())}  # Only the panel begins with 1.
 
 
 PROPERTIES = read_properties()
-# Findings of a run, which the panel shows again.
+# These are findings of a run, which the panel shows.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
 
 
 def with_properties(kind):
-    """SetX, GetX, XOn, XOff."""
+    """Defines SetX, GetX, XOn and XOff."""
     for name, (_, convert, is_flag, limits) in PROPERTIES.items():
         def set_it(self, value, name=name, convert=convert, limits=limits):
             value = convert(value)
@@ -139,7 +139,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self._kept, self._made = {}, {}  # data sets made of the input, and arrays of sums over neighbours
+        self._kept, self._made = {}, {}  # These are data sets made of the input, and arrays of sums over neighbours.
         self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
@@ -160,7 +160,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def RequestDataObject(self, request, inInfo, outInfo):
-        """A poly data, or blocks of them as the input has."""
+        """Makes a poly data, or blocks of poly data as the input has blocks."""
         data = self.GetInputData(inInfo, 0, 0)
         info = outInfo.GetInformationObject(0)
         blocks = isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART
@@ -225,7 +225,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return lib.mcor_sph_kernel_name(self.Kernel).decode()
 
     def _set_list(self, name, *entries):
-        """Adds these, or with none of them leaves nothing."""
+        """Adds these arrays; without any, ends with none."""
         setattr(self, name, [*getattr(self, name), *entries] if entries else [])
         self.Modified()
 
@@ -255,7 +255,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return "".join(f"{i}: {device}\n" for i, device in enumerate(devices()))
 
     def ReleaseDeviceMemory(self):
-        """In a run, which uses it: at its end."""
+        """Releases memory; during a run, which uses it, only at the run's end."""
         if self._in_run:
             self._release = True
         elif self._context:
@@ -282,7 +282,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return self._ahead
 
     def _look_at(self, points, ahead):
-        """Adds what can be known of these points: the range needs no smoothing length, the cells no scalar."""
+        """Adds what is known about these points: the range needs no smoothing length, the number of cells no scalar."""
         choice, none = self._choice(), Request(self, 9, points)
         with suppress(Unusable):
             fittest = Particles(choice, points, ["fluid", "array"], (none, none))
@@ -325,21 +325,21 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def _keep(self, make, data):
-        """make(data), which is kept as long as the data are the same."""
+        """Returns make(data), which is kept while the data stay the same."""
         state = data, [each.GetMTime() for each in list_all(data) if each]
         if self._kept.get(make, (None,))[0] != state:
             self._kept[make] = state, make(data)
         return self._kept[make][1]
 
     def _join(self, data):
-        """The data, or all blocks together."""
+        """Returns the data, or all blocks joined."""
         is_one = not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART
         return data if is_one else self._keep(join_blocks, data)
 
     def _process_blocks(self, given, output):
-        """A block that fails leaves its place empty, and the others as they are."""
-        data = given.NewInstance()  # an observer of the progress may take blocks out of the input, or change them
-        getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # the same blocks, before VTK 9.3, too
+        """Extracts block by block. A block that fails leaves its place empty; the others are made."""
+        data = given.NewInstance()  # An observer of the progress may remove blocks from the input, or change them.
+        getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # This gives the same blocks before VTK 9.3, too.
         output.CopyStructure(data)
         names, blocks, iterator = [], [], data.NewTreeIterator()
         for _, name, leaf, index in walk(data):
@@ -347,7 +347,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         iterator.InitTraversal()
         while not iterator.IsDoneWithTraversal():
             block = iterator.GetCurrentDataObject()
-            blocks.append(block.NewInstance() if blocks else block)  # data kept are the first one's own
+            blocks.append(block.NewInstance() if blocks else block)  # Kept data belong to the first block.
             if len(blocks) > 1:
                 blocks[-1].ShallowCopy(block)
             iterator.GoToNextItem()
@@ -365,7 +365,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             iterator.GoToNextItem()
         self.SetProgressShiftScale(0.0, 1.0)
         if self._is_aborted():
-            output.CopyStructure(data)  # not some blocks of a surface
+            output.CopyStructure(data)  # A surface with only some of the blocks is not returned.
 
     def _process(self, data, output):
         if data is not None and not isinstance(data, vtkPointSet):
@@ -416,7 +416,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     @staticmethod
     def _options(choice):
-        """The core's options, where a property says more than their values."""
+        """Returns the core's options, where a property means more than its value."""
         options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
         lib.mcor_set_default_options(ctypes.byref(options))
         for member, (_, _, name) in c.OPTIONS.items():
@@ -437,7 +437,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if not choice.CubeSizeMode:  # uniform
             options.level_limit = 0
         if choice.UseBox and not any(choice.Box):
-            options.box[0] = 5e-324  # refused, see the C++ filter
+            options.box[0] = 5e-324  # This is refused, as in the C++ filter.
         options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (
             choice.Solids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
@@ -452,7 +452,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         arguments.options = options
         values = self.FreeSurfaceValues if choice.FreeSurface else self.ContourValues
         iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
-        iso = [value for value in iso if value == value]  # an empty row of a panel's list is none
+        iso = [value for value in iso if value == value]  # An empty row of a panel's list does not count.
         if not iso:
             found = (None, 0.5) if choice.FreeSurface else particles.find_iso_value()
             iso = [found[1]] if found else []
@@ -486,7 +486,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if self._context is None or self._context_device != choice.Device:
                 self._signatures = (None, None)
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
-            if choice.KeepDeviceData:  # the scalar is kept in the order of the particles: new ones make a new scalar
+            if choice.KeepDeviceData:  # The kept scalar is in the order of the particles, so new particles need a new scalar.
                 before, self._signatures = self._signatures, particles.signatures()
                 self._versions[0] += before[0] != self._signatures[0]
                 self._versions[1] += before != self._signatures
@@ -537,13 +537,13 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
 
     def _warn_once(self, kind, sentence):
-        """The first of several blocks tells, as the others will have the same."""
+        """Says this for the first of several blocks only, because the others would say the same."""
         if sentence and kind not in self._warned:
             self._warned.add(kind)
             self._say(sentence, "Warning")
 
     def _fail(self, sentence):
-        """The sentences of all blocks are kept, one a line."""
+        """Keeps the sentences of all blocks, one on each line."""
         self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + in_panel(sentence)
         self._say(sentence, "Error")
 
@@ -559,12 +559,12 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
 
 def in_panel(sentence):
-    """With the panel's words for properties."""
+    """Says a sentence with the panel's words for properties."""
     return sentence.say(lib.mcor_label_word) if isinstance(sentence, Sentence) else sentence
 
 
 def paraview_plugin(kind):
-    """The panel is that of the C++ plugin: its XML, with the class put in place."""
+    """Returns the panel: the C++ plugin's XML, with this class in it."""
     root = read_panel()
     group = root.find("ProxyGroup[@name='filters']")
     for other in list(root):
@@ -586,6 +586,6 @@ def paraview_plugin(kind):
 
 
 paraview_plugin_name = "MarchingCorrectorsPython"
-if __name__ == Path(__file__).stem:  # not as a part of the package
+if __name__ == Path(__file__).stem:  # The file was loaded alone, not as a part of the package.
     paraview_plugin(vtkMarchingCorrectors)
     from marchingcorrectors._vtk_reader import SPHParticleReader  # noqa: F401

@@ -60,9 +60,9 @@ def __dir__() -> List[str]:
     return sorted([*__all__, "__version__", "io", "vtkMarchingCorrectors"])
 
 
-if not TYPE_CHECKING:  # whose checkers know the names above, and no others
+if not TYPE_CHECKING:  # Type checkers know the names above, and no others.
     def __getattr__(name):
-        """VTK's classes, and io, when they are asked for: NumPy users need no VTK."""
+        """Imports VTK's classes, and io, when they are asked for, because NumPy users need no VTK."""
         if name == "io":
             from importlib import import_module
 
@@ -74,6 +74,6 @@ if not TYPE_CHECKING:  # whose checkers know the names above, and no others
                 return find_class(name)
             except ImportError as error:
                 if _sys._getframe(1).f_globals.get("__name__") == "importlib._bootstrap":
-                    raise  # "from marchingcorrectors import ..." says this sentence
+                    raise  # "from marchingcorrectors import ..." shows this sentence.
                 raise AttributeError(str(error)) from None
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -22,7 +22,7 @@ def main(arguments):
     if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
         print(__doc__.strip(), file=sys.stderr)
         return 2
-    for name in ("SIGTERM", "SIGHUP"):  # ended so, too, it leaves no file behind
+    for name in ("SIGTERM", "SIGHUP"):  # If the process is ended like this, it leaves no file behind.
         number = getattr(signal, name, None)
         if number and signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, lambda number, _: sys.exit(128 + number))

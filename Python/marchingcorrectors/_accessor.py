@@ -43,7 +43,7 @@ ABOUT_PARTICLES = '''
 
 
 class Particles(Shared, total=False):
-    """Keywords of all methods."""
+    """Has the keywords of all methods."""
 
     fluid: Optional[Tuple[str, float]]
     attributes: Optional[Iterable[str]]
@@ -65,7 +65,7 @@ def _method(options: Sequence[str]) -> Callable[[Function], Function]:
 
 
 def _triangles_in(sections):
-    """The sections, with triangles in place of surfaces."""
+    """Returns the sections, with triangles in place of surfaces."""
     if isinstance(sections, pyvista.PolyData):
         return sections.points[sections.triangulate().faces.reshape(-1, 4)[:, 1:]].astype(np.float64)
     if isinstance(sections, Mapping):
@@ -74,7 +74,7 @@ def _triangles_in(sections):
 
 
 class PointData(FileParticles):
-    """The points of a data set as the functions take the particles of files: arrays are told by their names."""
+    """Makes the points of a data set particles like those of a file: their names tell what arrays are."""
 
     remedy = "fluid=('{name}', VALUE)"
 
@@ -122,7 +122,7 @@ class SphAccessor:
 
     @property
     def _particles(self) -> pyvista.DataSet:
-        """The data set, or the vertices in it, which are kept as long as it is the same."""
+        """Returns the data set, or the vertices in it; they are kept while the data set stays the same."""
         time = self._data.GetMTime()
         if self._taken[0] != time:
             taken = take_vertices(self._data)
@@ -209,7 +209,7 @@ class SphAccessor:
                      "lambda2": "Lambda2", "strain_rate": "StrainRate"}
             flow = _functions.flow(gradients)
             if found.statistics["dimension"] == 2:
-                del flow["lambda2"]  # the middle one of three eigenvalues
+                del flow["lambda2"]  # This is the middle one of three eigenvalues.
             for name, values in flow.items():
                 result.point_data[names[name]] = values.reshape(len(values), -1) if values.ndim > 1 else values
         return result
@@ -265,7 +265,7 @@ class SphAccessor:
                                 **words)
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
-        """Particles, and keywords for the functions of NumPy."""
+        """Returns particles, and keywords for the functions of NumPy."""
         particles, words = PointData(self._particles), dict(given)
         particles.check_smoothing_length(words)
         fluid, names = words.pop("fluid", None), words.pop("attributes", None)
@@ -280,7 +280,7 @@ class SphAccessor:
 
 @pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)
 class BlocksAccessor:
-    """As SphAccessor, of the points of all blocks as one set; names of blocks tell of walls."""
+    """Works like SphAccessor, on the points of all blocks as one set. Names of blocks tell walls."""
 
     def __init__(self, blocks: pyvista.MultiBlock):
         self._blocks = blocks

@@ -19,14 +19,14 @@ FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
 ABSENT = 2  # MCOR_ABSENT
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 WORDS = {int: "whole number", float: "number"}
-# As the header spells them: "cubic_spline" is "cubic".
+# The words are those of the header: "cubic_spline" is also "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
 
 
 def camel(name):
-    """As VTK spells it: "cube_size" is CubeSize."""
+    """Returns VTK's spelling: "cube_size" becomes CubeSize."""
     return "".join(part.capitalize() for part in name.split("_"))
 
 
@@ -35,7 +35,7 @@ def is_real(array):
 
 
 def as_array(values, role):
-    """np.asarray, with one sentence where that fails or would lose something."""
+    """Calls np.asarray, and raises one sentence if that fails or would lose something."""
     if np.ma.is_masked(values):
         raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
     parts = values if isinstance(values, (list, tuple)) else [values]
@@ -56,9 +56,9 @@ def as_array(values, role):
 
 
 def contiguous(values, role):
-    """float and double arrays that lie in one piece as they are, all others as a copy."""
+    """Returns float and double arrays that lie in one piece as they are, and all others as a copy."""
     array = as_array(values, role)
-    if array.dtype == object:  # as of a data frame whose columns are of several types
+    if array.dtype == object:  # A data frame with columns of several types gives such objects.
         with contextlib.suppress(TypeError, ValueError):
             array = array.astype(np.float64)
     if array.dtype.kind not in "fiub":
@@ -70,7 +70,7 @@ def contiguous(values, role):
 
 
 def as_points(values, role, shape):
-    """(count, 3); of nothing, any shape will do."""
+    """Returns an array of shape (count, 3). An empty array may have any shape."""
     if isinstance(values, (str, os.PathLike)):
         raise InvalidArgument(f"The array of {role} is '{values}'. To read a file, give marchingcorrectors.io.read('{values}').")
     if hasattr(values, "columns") and len(values.columns) != 3:
@@ -87,8 +87,8 @@ def as_points(values, role, shape):
 
 
 def as_named(attributes):
-    """{name: array} with text as names; of a data frame its columns. Of an array with a unit its numbers, of objects, as
-    data frames have them, text or numbers."""
+    """Returns {name: array} with texts as names. A data frame gives its columns; an array with a unit its numbers; an array of objects, as data
+    frames have them, text or numbers."""
     if attributes is None:
         return {}
     if not isinstance(attributes, Mapping) and hasattr(attributes, "columns"):
@@ -107,7 +107,7 @@ def as_named(attributes):
     return arrays
 
 
-SUMMED = "Density"  # of isosurface(), where there is no such array
+SUMMED = "Density"  # isosurface() has none if there is no such array.
 
 
 def choose(only, array_of):
@@ -130,13 +130,13 @@ def choose(only, array_of):
 
 
 class Arguments:
-    """Structures filled for one call. Keeps the arrays alive, which the core borrows."""
+    """Fills structures for one call, and keeps the arrays alive that the core borrows."""
 
     def __init__(self, positions):
         self.kept, self.present, self.kinds = [], None, {}
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
-        self.input.scalar_component = -1  # the magnitude
+        self.input.scalar_component = -1  # This means the magnitude.
         array = as_points(positions, "positions", "(particles, 3)")
         self.positions, self.count = array, len(array)
         self.input.count = self.count
@@ -151,7 +151,7 @@ class Arguments:
         return view
 
     def something(self):
-        """Memory for an empty array to point to: NULL would be a constant."""
+        """Gives an empty array memory to point to, because NULL would mean a constant."""
         self.kept.append(ctypes.create_string_buffer(32))
         return self.kept[-1]
 
@@ -196,7 +196,7 @@ class Arguments:
         self.input.solid = marks.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
 
     def find_present(self, within, only):
-        """Which particles are not left out; None where all are taken. only: None, or marks of those that are taken."""
+        """Returns which particles are not left out, or None if all are taken. only: None, or marks of the particles that are taken."""
         if only is not None:
             only = as_array(only, "array of only")
             if only.dtype != bool or only.shape != (self.count,):
@@ -211,7 +211,7 @@ class Arguments:
         return inside if only is None else inside & only
 
     def set_attributes(self, attributes):
-        """{name: array}, in the order of the core's results."""
+        """Sets the attributes, {name: array}, in the order of the core's results."""
         views = [self.per_particle(values, f"attribute '{name}'", str(name))
                  for name, values in attributes.items()]
         array = (c.mcor_array * max(len(views), 1))(*views)
@@ -221,7 +221,7 @@ class Arguments:
                       for view, (name, values) in zip(views, attributes.items())}
 
     def set_widening(self, found):
-        """Takes a mcor_widening. Its factors become the last attribute, without one of the kinds."""
+        """Takes a mcor_widening. Its factors become the last attribute, but belong to none of the kinds."""
         self.input.widening = self.view(take(found.factor, (found.count,)), "Widening")
         if found.volume:
             self.input.volume = self.view(take(found.volume, (found.count,)), None)
@@ -240,7 +240,7 @@ class Arguments:
         self.options.iso_count = len(values)
 
     def set_options(self, words):
-        """Options by their names in mcor.h, which were checked."""
+        """Sets options by their names in mcor.h, which were checked before."""
         for name in ISOSURFACE:
             if name in words:
                 target = self.options if hasattr(self.options, name) else self.input
@@ -251,7 +251,7 @@ class Arguments:
         lib.mcor_spell_out(ctypes.byref(self.options))
 
     def per_neighbours(self, function, *more):
-        """Numbers of (particles,) that a function of the core sums over their neighbours."""
+        """Returns numbers, (particles,), that a function of the core sums over neighbours."""
         values, why = np.empty(self.count), c.mcor_message()
         status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
@@ -261,7 +261,7 @@ class Arguments:
         return values
 
     def estimate_by_neighbours(self, word):
-        """word: neighbours, or neighbours=ETA."""
+        """Returns smoothing lengths by neighbours. word: "neighbours", or "neighbours=ETA"."""
         name, equals, ratio = word.partition("=")
         if name not in ("neighbours", "neighbors"):
             raise InvalidArgument(f"estimate_smoothing_length is '{word}'; it must be True, \"neighbours\" or "
@@ -272,7 +272,7 @@ class Arguments:
         self.input.estimate_smoothing_length = self.input.smoothing_length_is_support_radius = 0
 
     def sum_densities(self, name):
-        """The scalar "Density": from masses. Volumes follow from it, too, where no density is given."""
+        """Returns the scalar "Density", summed from masses. Volumes follow from it, too, if no density is given."""
         if name != SUMMED:
             raise InvalidArgument(f"The scalar is '{name}'; it must be an array of numbers, or \"{SUMMED}\", summed from masses.")
         densities = self.per_neighbours(lib.mcor_sum_densities)
@@ -281,7 +281,7 @@ class Arguments:
         return densities
 
     def bounds_of_period(self, period):
-        """Six bounds, also of three lengths: where the particles lie in them."""
+        """Returns six bounds. Where three lengths are given, the particles tell where the bounds begin."""
         if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
             raise InvalidArgument(f"periodic is {period!r}; it must be three lengths, 0 along axes that are not periodic, "
                                   "or six bounds (x0, x1, y0, y1, z0, z1).")
@@ -302,11 +302,11 @@ def place_period(lengths, extent):
 
 
 def set_option(target, name, kind, value):
-    """An array (box) counts where it is given."""
+    """Fills an option that is an array (box), which counts if it is given."""
     if "[" not in kind:
         converted = number(name, kind, value)
         setattr(target, name, converted)
-        if kind != "double" and getattr(target, name) != converted:  # ctypes drops the bits beyond
+        if kind != "double" and getattr(target, name) != converted:  # ctypes would drop higher bits.
             raise InvalidArgument(f"{name} is {value}, which is out of its range.")
         return
     if value is not None:
@@ -331,7 +331,7 @@ def convert(to, name, value):
 
 
 def number(name, kind, value):
-    """An option's value for the core: a word or its number, or any number."""
+    """Returns an option's value for the core, from a word, its number, or any number."""
     words = words_of(name)
     if isinstance(value, str) and (words or kind in c.ENUMS):
         word = value.lower().replace(" ", "_").replace("-", "_")
@@ -351,7 +351,7 @@ def number(name, kind, value):
 
 
 def take(pointer, shape):
-    """A copy of the core's array that NumPy owns; None where there is none."""
+    """Returns a copy of the core's array that NumPy owns, or None if there is none."""
     if not pointer:
         return None
     size = int(np.prod(shape))
@@ -362,12 +362,12 @@ def take(pointer, shape):
 
 
 def take_rows(pointer, count):
-    """A copy of the core's structures, with a column for each member."""
+    """Returns a copy of the core's structures, with a column for each member."""
     return take(pointer, (count,)) if count else np.empty(0, pointer._type_)
 
 
 def take_all(struct, result, sizes):
-    """The arrays of a result that stand by themselves, by name."""
+    """Returns the arrays of a result that need no other array, by name."""
     arrays = {}
     for name, shape in c.SHAPES[struct].items():
         if "->" not in shape and shape[0] in sizes and name != "attribute_not_finite":
@@ -376,14 +376,13 @@ def take_all(struct, result, sizes):
 
 
 def take_lines(surface):
-    """The arrays of lines, in two dimensions."""
+    """Returns the arrays of lines, in two dimensions."""
     return {"line_offsets": take(surface.line_offsets, (surface.line_count + 1,)),
             "line_points": take(surface.line_points, (surface.line_point_count,))}
 
 
 def take_each(pointers, arguments, shape, more=()):
-    """One array per attribute, float32 as the attribute was; those that the core left out are missing. Of a result of
-    nothing, it may give none."""
+    """Returns one array per attribute, float32 if the attribute was; attributes that the core left out are missing. An empty result may have none."""
     arrays = {}
     for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
         values = take(pointers[i], shape + components + more) if pointers else None
@@ -395,13 +394,13 @@ def take_each(pointers, arguments, shape, more=()):
 
 
 def left_out(result, arguments):
-    """{name: the first particle at which the attribute is not finite}."""
+    """Returns {name: the first particle at which the attribute is not finite}."""
     return {name: int(result.attribute_not_finite[i]) for i, name in enumerate(arguments.kinds)
             if result.attribute_not_finite and result.attribute_not_finite[i] >= 0}
 
 
 def statistics(struct):
-    """mcor_statistics as a dict; "seconds" is a dict by phase."""
+    """Returns mcor_statistics as a dict, in which "seconds" is a dict by phase."""
     values = {}
     for name, kind in struct._fields_:
         value = getattr(struct, name)

@@ -10,7 +10,7 @@ from .io._particles import Particles, usual
 
 
 def frames(begin, end, step):
-    """Times from begin to end, as numbers of 15 digits: 3 x 0.05 is 0.15."""
+    """Returns times from begin to end, as numbers of 15 digits: 3 x 0.05 is 0.15."""
     return [float(f"{begin + i * step:.15g}") for i in range(int(np.floor((end - begin) / step + 1e-9)) + 1)]
 
 
@@ -30,7 +30,7 @@ def between(before, after, first, last, time, velocity=None):
             raise InvalidArgument(f"{particles.file} has no ids of particles (Idp, ParticleId, id, ...), or one twice, so the time "
                                   f"{time:g} between steps cannot be made. Choose times of steps, or leave --times out.")
     _, *both = np.intersect1d(*ids, return_indices=True)
-    own = both[share >= 0.5]  # of the nearer step: those that are in the other one, too
+    own = both[share >= 0.5]  # These particles of the nearer step are in the other one, too.
     alone = np.setdiff1d(np.arange(len(near)), own)
     name = find_velocity(near.arrays, velocity)
     name = name if all(name in each.arrays for each in (before, after)) else None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions' common part: their keywords, particles of files in place of positions, and one call of the core."""
+"""Has what the functions share: their keywords, particles of files in place of positions, and one call of the core."""
 from __future__ import annotations
 
 import contextlib
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .io import Particles
 
     class Frame(Protocol):
-        """A table of columns, as of pandas."""
+        """Whether this is a table of columns, as of pandas."""
 
         @property
         def columns(self) -> Any: ...
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
     Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
     Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
 
-# Arguments for which particles of a file take the name of an array.
+# These arguments may name an array if the particles come from a file.
 ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIES)
 
 
 class Shared(Options, total=False):
-    """Keywords of all functions, and of PyVista's methods."""
+    """Has the keywords of all functions, and of PyVista's methods."""
 
     smoothing_length: Optional[ArrayLike]
     volume: Optional[ArrayLike]
@@ -62,7 +62,7 @@ class Keywords(Shared, total=False):
 
 
 def own_keywords(kind: Any) -> dict[str, Any]:
-    """{name: type} of a class of keywords, without the options."""
+    """Returns {name: type} of a class of keywords, without the options."""
     return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__}
 
 
@@ -182,7 +182,7 @@ def warn_of_missing(missing):
 
 @contextlib.contextmanager
 def called(function, kind, arguments, *more):
-    """Yields what a function of the core returns, which is freed at the end."""
+    """Yields what a function of the core returns, and frees it at the end."""
     context = arguments.context
     own = context is None
     if not own and not isinstance(context, Context):
@@ -204,7 +204,7 @@ def called(function, kind, arguments, *more):
 
 @contextlib.contextmanager
 def extracted(arguments):
-    """Yields the core's surface, of widened smoothing lengths if the options ask for that."""
+    """Yields the core's surface, with widened smoothing lengths if the options ask for that."""
     found = None
     if arguments.options.widen != 1:
         with called(lib.mcor_widen, c.mcor_widening, arguments) as widening:

@@ -24,7 +24,7 @@ from ._usd import is_usd
 
 
 def quantity(text):
-    """A number, or an array's name."""
+    """Reads a number, or an array's name."""
     try:
         return float(text)
     except ValueError:
@@ -73,9 +73,9 @@ def plane(text):
 
 
 for function in (period, named_line, named_value, named_range, plane):
-    function.__name__ = function.__doc__  # which argparse names where a value is wrong
+    function.__name__ = function.__doc__  # argparse names this function where a value is wrong.
 
-# The program's words for options are their names, or these; and values are the option's own, or these.
+# The program's words for options and values are the names in Python, or stand here.
 OTHER_WORDS = {"scalar_component": "component", "smoothing_length_is_support_radius": "support-radius", "sph_kernel": "kernel",
                "cube_size_factor": "cube-factor", "level_limit": "max-level", "boundary_detection": "boundary"}
 OTHER_VALUES = {"periodic": period, "dimension": {"auto": 0, "2": 2, "3": 3}, "field": {"shepard": "shepard", "sum": "sum"},
@@ -83,7 +83,7 @@ OTHER_VALUES = {"periodic": period, "dimension": {"auto": 0, "2": 2, "3": 3}, "f
 
 
 def value_of(name):
-    """None for a flag, a dictionary for words, else what makes the value of a text."""
+    """Returns None for a flag, a dictionary for words, else the function that reads a value."""
     words, kind = words_of(name), Options.__annotations__[name]
     if words:
         return {word: word for word in words} if kind == Literal[tuple(words)] else quantity
@@ -164,7 +164,7 @@ def make_parser(command):
 
 
 def find_words(given, names, particles):
-    """Keywords of the functions, which the file completes."""
+    """Returns keywords of the functions; the file completes them."""
     words = {}
     for word, (name, kind) in OPTIONS.items():
         value = getattr(given, name, None)
@@ -206,7 +206,7 @@ def find_words(given, names, particles):
             raise InvalidArgument(f"{particles.file}: {say('CELL_TILTED')} Leave out --periodic.")
         if particles.period is None:
             raise InvalidArgument(f"{particles.file} tells no period. Give --periodic LX,LY,LZ.")
-        del words["periodic"]  # which is taken
+        del words["periodic"]  # This one is taken.
     if getattr(given, "curvature", None):
         words.update(mean_curvature=True, gauss_curvature=True)
     if given.memory_limit is not None:
@@ -220,7 +220,7 @@ def attributes_of(given, particles, more=()):
 
 
 def surface_of(given, particles, more=()):
-    """The surface, and the words that made it."""
+    """Returns the surface, and the words that made it."""
     names = FREE_SURFACE if given.scalar is None else ISOSURFACE
     words = {**find_words(given, names, particles), "attributes": attributes_of(given, particles, more)}
     words.setdefault("iso_value", len(given.iso or ()) > 1)
@@ -251,7 +251,7 @@ def run_gauge(given, particles):
 
 
 def write_table(output, head, rows):
-    """NaN is an empty cell."""
+    """Writes a number; NaN becomes an empty cell."""
     if not output.lower().endswith(".csv"):
         raise InvalidArgument(f"The output is a .csv file, not '{output}'.")
     with open(output, "w", newline="") as file:
@@ -260,7 +260,7 @@ def write_table(output, head, rows):
 
 
 def run_probe(given, particles, points, make):
-    """make(pyvista): the data set of these points (points, 3)."""
+    """Calls make(pyvista), which returns the data set of these points (points, 3)."""
     found = probe(particles, points, attributes=attributes_of(given, particles), **find_words(given, PROBE, particles))
     arrays = found._point_arrays()
     ending = os.path.splitext(given.output)[1].lower()
@@ -303,9 +303,9 @@ def run_line(given, particles):
 
 
 def run(arguments):
-    """arguments: the command's name, and what follows it."""
+    """Runs a command. arguments: the command's name, and the words behind it."""
     joined = []
-    for word in arguments[1:]:  # argparse takes a list that begins with a negative number for an option
+    for word in arguments[1:]:  # argparse would take a list that begins with a negative number for an option.
         if joined and joined[-1].startswith("--") and re.match(r"-(inf|[\d.])", word):
             joined[-1] += "=" + word
         else:

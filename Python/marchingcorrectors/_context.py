@@ -32,7 +32,7 @@ class Context:
     def __init__(self, device: Union[None, str, int] = None) -> None:
         self._pid = os.getpid()
         self._lock = threading.Lock()
-        self._used_by = None  # the thread that has the lock
+        self._used_by = None  # This is the thread that holds the lock.
         self._handle = ctypes.c_void_p()
         self._wanted = "" if device is None else str(device)
         start()
@@ -46,7 +46,7 @@ class Context:
 
     @contextlib.contextmanager
     def _alone(self):
-        """Waits for other threads. A callback of the very call that is under way would wait for ever."""
+        """Waits for other threads. A callback of the present call would wait for ever."""
         if self._used_by == threading.get_ident():
             raise InvalidArgument("A progress callback cannot use the context whose call it belongs to. Use "
                                   "another Context there, or do it when the call has returned.")
@@ -67,7 +67,7 @@ class Context:
                 lib.mcor_release_memory(self._handle)
 
     def close(self) -> None:
-        """Gives the device back. Using the context afterwards is an error."""
+        """Releases the device. Using the context afterwards is an error."""
         # A forked child has the handle, but not the driver's threads.
         if self._handle and self._pid == os.getpid():
             with self._alone():
@@ -108,7 +108,7 @@ class Context:
             raise watch.failure
         if watch.interrupted:
             watch.before(*watch.interrupted)
-            raise KeyboardInterrupt  # a handler that returns: the run has ended all the same
+            raise KeyboardInterrupt  # A handler returned; the run has ended all the same.
         if error:
             raise error
 
@@ -143,7 +143,7 @@ class Watch:
         try:
             answer = self.progress(fraction, phase.decode())
             return int(answer is False or isinstance(answer, np.bool_) and not answer)
-        except BaseException as failure:  # raised again where the call returns
+        except BaseException as failure:  # The exception is raised again where the call returns.
             self.failure = failure
             return 1
 
@@ -153,7 +153,7 @@ _contexts_lock = threading.Lock()
 
 
 def default_context(device):
-    """One per device, whose programs the next call finds compiled; it keeps nothing else."""
+    """Returns a context for this device, whose compiled programs the next call uses; it keeps nothing else."""
     start()
     key = "" if device is None else str(device)
     with _contexts_lock:

@@ -19,7 +19,7 @@ from ._usd import Film, find_velocity, is_usd
 from .io._particles import TIMES
 from .io.vtk_xml import XmlFile, list_pieces, list_times
 
-# Options of films: name, the value's name, its type, and what it is.
+# Options of films: name, name of the value, type, and meaning.
 OPTIONS = (("--fps", "N", float, "frames of a second of film (24)"),
            ("--slow", "S", float, "seconds of film that a unit of time takes (1)"),
            ("--up", "y|z", str, "the axis that points up (z; y for SPlisHSPlasH's .bgeo)"),
@@ -34,7 +34,7 @@ def add_options(parser):
 
 
 def refuse_options(given):
-    """Of a single surface that is no USD file."""
+    """Raises the sentence for a single surface whose output is no USD file."""
     for word in (*(option[0] for option in OPTIONS), "--spray", "--times"):
         if getattr(given, word[2:].replace("-", "_"), None) is not None:
             raise InvalidArgument(f"{word} is for films: give an output that ends in .usdc, .usda or .usd.")
@@ -46,13 +46,13 @@ def open_film(given, inputs):
 
 
 def in_order(paths):
-    """By the numbers in their names, as the program takes them: drop_9 before drop_10."""
+    """Sorts files by the numbers in their names, as the program does: drop_9 before drop_10."""
     return sorted(paths, key=lambda path: [(0, int(part), "") if part.isdigit() else (1, 0, part)
                                            for part in re.split(r"(\d+)", str(path))])
 
 
 def run(given, inputs, steps, make):
-    """Adds each of the steps, which are pairs (label, what make() takes). Where one fails, says so, and does the others."""
+    """Adds each step, a pair of (label, argument of make()). If one fails, says so and adds the others."""
     failed = 0
     with open_film(given, inputs) as film:
         for i, (label, step) in enumerate(steps):
@@ -112,7 +112,7 @@ def run_particles(given, surface_of):
 
 
 def between_steps(steps, times, rate, velocity):
-    """Steps at these times, or, without any, at each frame of this rate from the first one on; no more than two are in memory."""
+    """Yields the steps at these times or, without times, at each frame of this rate from the first step on. No more than two steps are in memory."""
     before, number, label = None, 0, ""
     for label, load in steps:
         try:
@@ -152,7 +152,7 @@ def to_times(text):
     return sorted(found)
 
 
-to_times.__name__ = to_times.__doc__  # which argparse names where a value is wrong
+to_times.__name__ = to_times.__doc__  # argparse names this function where a value is wrong.
 
 
 # -- of surfaces --
@@ -175,7 +175,7 @@ def run_convert(arguments):
 
 
 def convert(given):
-    """Of .vtp files, or of lists of them."""
+    """Adds the surfaces in .vtp files, or in lists of them."""
     paths, steps = [Path(path) for path in in_order(given.input)], []
     for path in paths:
         times = list_times(path) if path.suffix.lower() == ".pvd" else {None: [path]}
@@ -193,7 +193,7 @@ def convert(given):
 
 
 def read_surface(paths):
-    """The time of VTK's XML poly data, None where it is not told, and the surface of all of their pieces."""
+    """Reads VTK's XML poly data: returns their time, None if there is none, and the surface of all pieces together."""
     time, points, triangles, line_points, lengths, arrays, count = None, [], [], [], [], {}, 0
     for path in [piece for path in paths for piece in (list_pieces(path) if path.suffix.lower() == ".pvtp" else [path])]:
         if path.suffix.lower() != ".vtp" or not path.is_file():

@@ -86,7 +86,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
             raise InvalidArgument('Give the scalar to contour, or call free_surface().')
         scalar = arguments.sum_densities(scalar) if isinstance(scalar, str) else scalar
         arguments.input.scalar = arguments.per_particle(scalar, "scalar")
-        arguments.input.scalar.name = None  # the core then says "the scalar"
+        arguments.input.scalar.name = None  # Then the core says "the scalar".
         if arguments.input.scalar.components == 1:
             arguments.input.scalar_component = 0
         if scalar_dot is not None:
@@ -118,7 +118,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
 
 
 def _describe_empty(arguments, found):
-    """A sentence for a surface of nothing that the core does not explain; "" where a box may just be elsewhere."""
+    """Returns a sentence about an empty surface that the core does not explain, or "" if a box may just be elsewhere."""
     values, options, n = arguments.options.iso_values, arguments.options, found.statistics
     if len(found.points) or not arguments.count or any(options.box):
         return ""
@@ -138,7 +138,7 @@ def _describe_empty(arguments, found):
 
 
 def take_surface(surface, arguments):
-    """A Surface of the core's."""
+    """Makes a Surface of the core's."""
     count = surface.point_count
     arrays = take_all("mcor_surface", surface,
                       {"point_count": count, "triangle_count": surface.triangle_count})
@@ -315,7 +315,7 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     """
     units = Units(positions)
     mass, density = map(words.get, ("mass", "density"))
-    if isinstance(scalar, str) and scalar == SUMMED:  # of particles without that array: the sum of their masses
+    if isinstance(scalar, str) and scalar == SUMMED:  # Without that array, the sum of the particles' masses is used.
         scalar = None
     arguments = prepare(units, words, beside=True)
     if not lib.mcor_is_given(ctypes.byref(arguments.input.mass)):

@@ -57,12 +57,12 @@ def _open():
 
 
 lib = _open()
-_free = ctypes.CDLL("ucrtbase" if os.name == "nt" else None).free  # of the C library that the core uses
+_free = ctypes.CDLL("ucrtbase" if os.name == "nt" else None).free  # This is the C library that the core uses.
 _free.restype, _free.argtypes = None, [ctypes.c_void_p]
 
 
 def take_text(pointer):
-    """A text of the core, which is freed; "" for NULL."""
+    """Returns a text of the core and frees it; "" for NULL."""
     if not pointer:
         return ""
     try:
@@ -72,18 +72,18 @@ def take_text(pointer):
 
 
 class Sentence(str):
-    """A sentence of the core, with Python's words for options. code: its name in mcor_says.def; text: with slots."""
+    """Is a sentence of the core, with Python's words for options. code: its name in mcor_says.def; text: the sentence with slots."""
 
     code: str
     text: bytes
 
     def say(self, word):
-        """With other words, of a mcor_word."""
+        """Fills the slots with other words, of a mcor_word."""
         return take_text(lib.mcor_fill_slots(self.text, word, None))
 
 
 def word_by(function):
-    """A mcor_word of function(name, value), which returns "" where it has no word."""
+    """Makes a mcor_word of function(name, value), which returns "" if it has no word."""
     def write(_, name, value, word, size):
         found = function(name.decode(), value.decode(errors="replace")).encode()[:size - 1]
         ctypes.memmove(word, found + b"\0", len(found) + 1)
@@ -94,7 +94,7 @@ def word_by(function):
 
 @word_by
 def _python_word(name, value):
-    """cube_size, dimension=3, precision="double"."""
+    """Returns Python's word: cube_size, dimension=3, precision="double"."""
     known = name in c.OPTIONS or name in c.SLOTS
     return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() else f'{name}="{value}"'
 
@@ -106,13 +106,13 @@ def _sentence(code, text):
 
 
 def say(code, *values):
-    """A Sentence of the core by its name, with these values."""
+    """Returns a Sentence of the core by its name, with these values."""
     text = lib.mcor_says_text(c.ENUMS["mcor_says"]["MCOR_SAYS_" + code])
     return _sentence(code, (text.decode().replace("%ll", "%") % values).encode(errors="replace"))
 
 
 def take_sentence(message):
-    """A message of the core, which is freed, as a Sentence; "" if there is none."""
+    """Returns a message of the core as a Sentence, "" if there is none, and frees it."""
     if not message.code:
         return ""
     sentence = _sentence(lib.mcor_says_name(message.code).decode(), message.text) if message.text else say("HOST_MEMORY")
@@ -121,11 +121,11 @@ def take_sentence(message):
 
 
 _state_lock = threading.Lock()
-_ready_in = None  # the process in which OpenCL was started
+_ready_in = None  # OpenCL was started in this process.
 
 
 def start():
-    """Before OpenCL is asked for anything."""
+    """Is called before anything is asked of OpenCL."""
     global _ready_in
     with _state_lock:
         if _ready_in is None:

@@ -47,7 +47,7 @@ class Gauges(Result):
 
 
 def _as_lines(lines, units):
-    """Names, and an array (lines, 2, 3)."""
+    """Returns names, and an array (lines, 2, 3)."""
     names = [str(name) for name in lines] if isinstance(lines, Mapping) else None
     values = list(lines.values()) if isinstance(lines, Mapping) else lines
     array = contiguous(units.lengths(values, "array of lines"), "array of lines").astype(np.float64)
@@ -121,7 +121,7 @@ def _numbers(values, shape, name, units=None):
 
 
 def _as_section(section, name, units):
-    """Shape, points (n, 3) and radius."""
+    """Returns shape, points (n, 3) and radius."""
     kinds = c.ENUMS["mcor_section_shape"]
     if isinstance(section, (tuple, list)) and len(section) and isinstance(section[0], str):
         if section[0] == "disc" and len(section) == 4:
@@ -140,7 +140,7 @@ def _as_section(section, name, units):
 
 
 def _as_sections(sections, units):
-    """Names, and structures, which must stay as long as what is kept."""
+    """Returns names and structures, with the arrays that must stay alive as long as these."""
     is_one = isinstance(sections, np.ndarray) or (
         isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
     if not is_one and not isinstance(sections, (Mapping, tuple, list)):
@@ -158,7 +158,7 @@ def _as_sections(sections, units):
 
 
 def _take_density(words, count):
-    """The density of each particle, or None; and the keywords, of which those stay that tell volumes."""
+    """Returns each particle's density, or None, and the keywords that tell volumes."""
     volume, mass, density = map(words.get, ("volume", "mass", "density"))
     known = volume is not None and not isinstance(volume, str)
     unused = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
@@ -167,7 +167,7 @@ def _take_density(words, count):
         if not all(np.shape(size) in ((1,), (count,)) for size in sizes):
             raise InvalidArgument(f"The mass has the shape {sizes[0].shape}, the volume {sizes[1].shape}; both are one number, or "
                                   f"one for each of {count} particles.")
-        with np.errstate(divide="ignore", invalid="ignore"):  # volumes of 0 are refused with a sentence
+        with np.errstate(divide="ignore", invalid="ignore"):  # Volumes of 0 are refused with a sentence.
             density = np.broadcast_to(sizes[0] / sizes[1], count)
     if density is not None and np.ndim(density) == 0:
         density = np.full(count, density)

@@ -13,9 +13,9 @@ from xml.etree import ElementTree
 from . import _structs as c
 from ._library import lib
 
-Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is written
+Function = TypeVar("Function", bound=Callable)  # Type checkers see the function as it is written.
 
-# Outputs are a bit set in mcor_options; here each bit is a member of its own.
+# Outputs are bits of one number in mcor_options; here each bit is a member.
 OUTPUTS = {name[len("MCOR_OUT_"):].lower(): bit for name, bit in c.ENUMS["mcor_output"].items()}
 
 
@@ -44,14 +44,14 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """The panel's words on a property, without a default that is no more than a word."""
+    """Returns the panel's words on a property, without a default that is only a word."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said
 
 
 PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))
-# Meanings of options; the panel's words serve for the others.
+# These are meanings of options; the panel's words serve for the others.
 WORDS = {
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
@@ -95,7 +95,7 @@ WORDS = {
 }
 WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS}, **WORDS}
 
-# Options that each function takes.
+# Each function takes these options.
 ISOSURFACE = tuple(Options.__annotations__)
 FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
@@ -109,7 +109,7 @@ DERIVATIVES, GAUGE, PROBE, PROJECT, WIDENING = (
 
 
 def words_of(name):
-    """{word: number} of an option, or of derivatives()' form."""
+    """Returns {word: number} of an option, or of derivatives()' form."""
     if name == "form":
         return {word[len("MCOR_GRADIENT_"):].lower(): number for word, number in c.ENUMS["mcor_gradient"].items()}
     return {"magnitude": -1} if name == "scalar_component" else c.OPTIONS.get(name, ({},))[0]
@@ -122,7 +122,7 @@ def kind_of(name):
 
 
 def default_of(name):
-    """As a user would write it."""
+    """Returns the value as a user would write it."""
     options = c.mcor_options()
     lib.mcor_set_default_options(ctypes.byref(options))
     value = -1 if name == "scalar_component" else getattr(options, name, 0)
@@ -135,14 +135,14 @@ def default_of(name):
 
 
 def did_you_mean(name, known):
-    """ Did you mean '...'?"""
+    """Returns " Did you mean '...'?"."""
     close = difflib.get_close_matches(str(name), [str(other) for other in known], 1)
-    if not close:  # "kernel" for sph_kernel
+    if not close:  # "kernel" is short for sph_kernel.
         close = [other for other in known if len(str(name)) > 3 and str(name).lower() in str(other).lower()][:1]
     return f" Did you mean '{close[0]}'?" if close else ""
 
 
-# Names in other packages, and names that people try first.
+# Other packages have these names, or people try them first.
 SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoothing_length",
             "support_radius": "smoothing_length_is_support_radius", "spacing": "volume", "dp": "volume", "dx": "volume",
             "rho": "density", "m": "mass", "value": "iso", "isovalue": "iso", "level": "iso", "threshold": "iso",
@@ -150,7 +150,7 @@ SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoo
 
 
 def check_names(function, given, options):
-    """TypeError, as Python raises it, for a keyword that there is not."""
+    """Raises the TypeError that Python raises for an unknown keyword."""
     parameters = inspect.signature(function).parameters
     for name in given:
         if name not in parameters:
@@ -162,7 +162,7 @@ def check_names(function, given, options):
 
 
 def describe(names):
-    """A line or more for each option."""
+    """Returns a line or more for each option."""
     lines = []
     for name in names:
         choices = " | ".join(f'"{word}"' for word in words_of(name))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Values of progress=: a function of the caller, or True for a bar."""
+"""Makes a function of the values of progress=: a function of the caller, or True for a bar."""
 import contextlib
 import sys
 
@@ -8,7 +8,7 @@ from ._library import InvalidArgument
 
 
 class TextBar:
-    """Without tqdm: one line on stderr that is written over, or a line per phase in a file."""
+    """Is the bar without tqdm: one line on stderr that is overwritten, or a line per phase in a file."""
 
     def __init__(self):
         self.phase, self.percent = "", -1
@@ -40,7 +40,7 @@ class TqdmBar:
 
 @contextlib.contextmanager
 def callback_of(progress):
-    """The function to call with a fraction and a phase, or None."""
+    """Returns the function to call with a fraction and a phase, or None."""
     if progress is None or progress is False:
         yield None
     elif progress is True:

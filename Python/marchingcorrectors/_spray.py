@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Spray: particles in small drops, or alone, which a film shows as balls beside the surface of the others."""
+"""Finds spray: particles in small drops, or alone. A film shows them as balls beside the surface of the others."""
 import dataclasses
 
 import numpy as np
@@ -47,7 +47,7 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
 
 
 def label_pieces(triangles, count):
-    """The lowest point of the piece of each point: pieces are triangles that share points."""
+    """Returns the lowest point of each point's piece; triangles that share points are one piece."""
     label = np.arange(count)
     edges = np.concatenate([triangles[:, :2], triangles[:, 1:]]).astype(np.int64)
     while True:
@@ -61,8 +61,8 @@ def label_pieces(triangles, count):
 
 
 def small_pieces(surface, label, positions, fluid, least):
-    """(piece, its particles) of each closed piece of fewer than `least`: those that it encloses, or that are nearest to its
-    points. A cavity is no such piece, but goes with the one around it."""
+    """Returns (piece, its particles) of each closed piece with fewer than `least`: the particles that it encloses, or that are nearest to its points.
+    A cavity is not such a piece; it goes with the piece around it."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))
@@ -86,14 +86,14 @@ def small_pieces(surface, label, positions, fluid, least):
 
 
 def is_closed(triangles):
-    """Whether each edge has a triangle on either side."""
+    """Returns whether each edge has a triangle on either side."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
     there, back = (np.sort(edges[:, i] << 32 | edges[:, 1 - i]) for i in range(2))
     return np.array_equal(there, back)
 
 
 def encloses(corners, points):
-    """Whether triangles go around each of the points: their solid angles from there add up to that of a sphere."""
+    """Returns whether triangles surround each of the points: their solid angles add up to that of a sphere."""
     a, b, c = np.moveaxis(corners[None] - points[:, None, None], 2, 0)
     la, lb, lc = (np.linalg.norm(each, axis=-1) for each in (a, b, c))
     dot = lambda one, other: np.einsum("...i,...i", one, other)  # noqa: E731
@@ -102,7 +102,7 @@ def encloses(corners, points):
 
 
 def without_points(surface, left_out):
-    """The surface without points, and triangles that have one."""
+    """Returns the surface without these points, and without triangles that have one."""
     if not left_out.any():
         return surface
     number = np.cumsum(~left_out) - 1
@@ -116,7 +116,7 @@ def without_points(surface, left_out):
 
 
 def find_widths(surface, words, count):
-    """Diameters of balls with the particles' volumes; where these are not given, of a spacing of h / 1.3."""
+    """Returns diameters of balls with the particles' volumes; without volumes, of a spacing of h / 1.3."""
     volume = words.get("volume")
     if volume is None or isinstance(volume, str):
         mass, density = words.get("mass"), words.get("density")

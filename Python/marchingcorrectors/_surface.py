@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def _same(one, other):
-    """Arrays are the same with the same elements, NaN included."""
+    """Whether two arrays have the same elements, NaN included."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return type(one) is type(other) and one.shape == other.shape and one.dtype == other.dtype \
             and one.tobytes() == other.tobytes()
@@ -34,7 +34,7 @@ def _same(one, other):
 
 
 class Result:
-    """A short repr(), and a == that compares all but the statistics, in which there are seconds."""
+    """Gives a short repr(), and a == that compares all but the statistics, which hold seconds."""
 
     __hash__ = None  # type: ignore[assignment]  # arrays can be changed
 
@@ -45,7 +45,7 @@ class Result:
                    if f.name != "statistics")
 
     def _names(self, left_out=()):
-        """Lists the arrays that are there."""
+        """Lists the arrays that exist."""
         names = []
         for f in fields(self):
             value = getattr(self, f.name)
@@ -127,8 +127,8 @@ class Surface(Result):
                                 and array.dtype.kind == "b"})
         for name, array in arrays.items():
             if name not in mesh.point_data and len(array):
-                mesh.point_data[name] = array  # what is true or false
-        mesh.set_active_scalars(None)  # colours are for the user to choose
+                mesh.point_data[name] = array  # The flags are true or false.
+        mesh.set_active_scalars(None)  # The user chooses the colours.
         return mesh
 
     def to_trimesh(self) -> trimesh.Trimesh:
@@ -224,7 +224,7 @@ def _save_csv(path, surface):
         values = (values.astype(np.uint8) if values.dtype == bool else values)[taken]
         columns[name] = [("" if each != each else each + 0.0) if values.dtype.kind == "f" else each for each in values.tolist()]
     with open(path, "w", newline="", encoding="utf-8") as file:
-        head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # no formulas
+        head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # Spreadsheets must not take a text for a formula.
         csv.writer(file, lineterminator="\n").writerows([head, *zip(*columns.values())])
 
 
@@ -239,7 +239,7 @@ def _save_ply(path, surface):
     for names, array in named:
         if array is not None and array.dtype.kind in "fiub":
             array = array.astype(np.uint8) if array.dtype == bool else array
-            array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)  # PLY has no int64
+            array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)  # PLY has no int64.
             for name, column in zip(names, array.reshape(len(array), len(names)).T):
                 name = re.sub("[\0- ]", "_", name)
                 while name in columns:

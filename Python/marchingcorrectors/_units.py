@@ -6,14 +6,14 @@ from ._library import InvalidArgument
 
 
 def unit_of(thing):
-    """None where it has none."""
+    """Returns the unit of an array, or None."""
     unit = getattr(thing, "units", None)
     unit = getattr(thing, "unit", None) if unit is None else unit
     return unit if unit is not None and callable(getattr(thing, "to", None)) else None
 
 
 def plain(thing):
-    """Its numbers, in its own unit."""
+    """Returns the numbers of an array, in its own unit."""
     for name in ("magnitude", "value"):
         if hasattr(thing, name):
             return getattr(thing, name)
@@ -25,7 +25,7 @@ def without_unit(thing):
 
 
 def convert(thing, unit, role, reference):
-    """The numbers of `thing` in the unit that `reference` has, None being no unit."""
+    """Returns the numbers of `thing` in the unit of `reference`; None means no unit."""
     if isinstance(thing, (list, tuple)) and any(unit_of(part) is not None for part in thing):
         return [convert(part, unit, role, reference) for part in thing]
     own = unit_of(thing)
@@ -37,12 +37,12 @@ def convert(thing, unit, role, reference):
                               "Give both with units, or both as plain numbers.")
     try:
         return plain(thing.to(unit))
-    except Exception as error:  # each library has its own
+    except Exception as error:  # Each library has its own exception.
         raise InvalidArgument(f"The {role} in {own} cannot be converted to {unit}: {error}") from None
 
 
 class Units:
-    """Takes the arguments of one call as they were given, and makes plain numbers of them."""
+    """Takes the arguments of one call as they are, and makes plain numbers of them."""
 
     def __init__(self, positions):
         self.length = unit_of(positions)
@@ -53,7 +53,7 @@ class Units:
                        "array of positions")
 
     def quantities(self, given):
-        """{smoothing_length, volume, mass, density}: mass / density is a volume in the positions' unit."""
+        """Returns {smoothing_length, volume, mass, density}; mass / density is a volume in the positions' unit."""
         mass, density = given["mass"], given["density"]
         if mass is not None and density is not None:
             own = unit_of(mass)
@@ -67,16 +67,16 @@ class Units:
                 "mass": without_unit(mass), "density": without_unit(density)}
 
     def options(self, words):
-        """cube_size, box and periodic are lengths."""
+        """Converts cube_size, box and periodic, which are lengths."""
         return {name: self.lengths(value, name) if name in ("box", "periodic") or name == "cube_size" and value
                 else value for name, value in words.items()}
 
 
 def scalar_and_iso(scalar, scalar_dot, iso):
-    """Plain numbers; the iso value in the scalar's unit, or in that of the dot product."""
+    """Returns plain numbers; the iso value is in the scalar's unit, or in the dot product's."""
     unit, other = unit_of(scalar), unit_of(scalar_dot)
     if scalar_dot is not None and (unit is None) != (other is None):
-        convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # which refuses
+        convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # This call raises the refusal.
     if unit is not None and other is not None:
         unit = unit * other
     return without_unit(scalar), without_unit(scalar_dot), convert(iso, unit, "iso value", "scalar")

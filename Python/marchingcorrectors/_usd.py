@@ -17,7 +17,7 @@ from .io._outputs import Outputs
 from .io._particles import FileError, usual
 
 ENDINGS = (".usdc", ".usda", ".usd")
-UNSAVED = 2 ** 25  # bytes of steps that wait to be written
+UNSAVED = 2 ** 25  # So many bytes of steps may wait to be written.
 
 
 def is_usd(path: Any) -> bool:
@@ -25,7 +25,7 @@ def is_usd(path: Any) -> bool:
 
 
 def find_velocity(arrays: Any, name: Optional[str] = None) -> Optional[str]:
-    """The name of the array that is the velocity, by its usual names; None where there is none."""
+    """Returns the name of the array that is the velocity, by its usual names, or None."""
     if name is not None and name not in arrays:
         raise InvalidArgument(f"There is no array '{name}' to be the velocity.{did_you_mean(name, arrays)} Arrays: "
                               f"{', '.join(arrays) or 'none'}.")
@@ -74,7 +74,7 @@ class Film:
                             "usd-core.") from None
         self.path, self.fps, self.slow, self.up, self.meters_per_unit = os.fspath(path), fps, slow, up, meters_per_unit
         self.velocity, self.steps = velocity, 0
-        self._first = self._last = None  # time codes
+        self._first = self._last = None  # These are time codes.
         self._parts: Dict[str, _Part] = {}
         self._stage: Any = None
         self._outputs, self._unsaved, self._left_out = Outputs(inputs, [path]), 0, set()
@@ -105,7 +105,7 @@ class Film:
         """
         if self._stage is None:
             self._open()
-        code = round(float(time) * self.fps * self.slow, 6)  # so that a whole frame is no bit beside it
+        code = round(float(time) * self.fps * self.slow, 6)  # Then a whole frame is off by less than a bit.
         if not np.isfinite(code) or self._last is not None and code <= self._last:
             raise InvalidArgument(f"The time {time:g} does not come after that of the step before. Put the steps in order, or give the "
                                   "time between them (in a shell --time-step).")
@@ -127,7 +127,7 @@ class Film:
                     self._parts[name] = _Part(self._stage, kind, name)
             for name, part in self._parts.items():
                 self._unsaved += part.write(code, wanted[name][1] if name in wanted else {}, self._first)
-        except BaseException:  # no half of a step stays
+        except BaseException:  # A step is written whole or not at all.
             for part in self._parts.values():
                 part.clear(code)
             raise
@@ -150,7 +150,7 @@ class Film:
         self._stage.SetStartTimeCode(code)
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Velocities, and arrays as primvars."""
+        """Sets velocities, and arrays as primvars."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)
@@ -159,7 +159,8 @@ class Film:
                 if name not in self._left_out:
                     warn(f"The array '{name}' is left out of {os.path.basename(self.path)}, whose integers have 32 bits.")
                 self._left_out.add(name)
-            elif array.dtype.kind in "fiub" and (name != "velocity" or self.slow == 1 or velocities is None):  # Blender's name of velocities
+            # Blender knows velocities by this name.
+            elif array.dtype.kind in "fiub" and (name != "velocity" or self.slow == 1 or velocities is None):
                 width = int(np.prod(array.shape[1:]))
                 kind = "Float" if array.dtype.kind == "f" else "Int"
                 values["primvars:" + name] = (f"{kind}{width}" if 1 < width < 5 else kind, of_points(array))
@@ -173,7 +174,7 @@ class Film:
                         **self._common(arrays, velocities)}
 
     def _lines_of(self, surface, arrays, velocities):
-        """Curves, half as wide as the median of their pieces is long."""
+        """Makes curves, half as wide as the median of their pieces is long."""
         at = surface.line_points
         points, counts = surface.points[at], np.diff(surface.line_offsets)
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)[np.setdiff1d(
@@ -215,7 +216,7 @@ class Film:
             is_whole = False
             raise
         finally:
-            self._parts, self._stage, self._layer = {}, None, None  # which close the file
+            self._parts, self._stage, self._layer = {}, None, None  # This closes the file.
             self._outputs.__exit__(None if is_whole else Exception)
 
     def close(self) -> None:
@@ -230,8 +231,8 @@ def _extent(points, more=0.0):
 
 
 class _Part:
-    """A prim, all of whose attributes have a value at each time code: what a step lacks is blocked there, as the value of
-    the step before would hold on."""
+    """Is a prim whose attributes all have a value at each time code. What a step lacks is blocked there; otherwise the value of the step before would
+    stay."""
 
     def __init__(self, stage, kind, name):
         from pxr import UsdGeom
@@ -243,10 +244,10 @@ class _Part:
         elif kind == "BasisCurves":
             UsdGeom.BasisCurves(self.prim).CreateTypeAttr("linear")
             UsdGeom.BasisCurves(self.prim).CreateWrapAttr("nonperiodic")
-        self.attributes, self.names = {}, set()  # {our name: (attribute, array type of USD)}
+        self.attributes, self.names = {}, set()  # {our name: (attribute, USD's type of array)}
 
     def write(self, code, values, first):
-        """values: {name: (type, array)}; first: the film's first time code. Returns their bytes."""
+        """Sets values: {name: (type, array)}; first: the film's first time code. Returns their bytes."""
         from pxr import Sdf
 
         has_points, is_new, size = bool(values) and len(values["points"][1]) > 0, not self.attributes, 0
@@ -289,7 +290,7 @@ def _nothing(name, usd):
 
 
 def _to_usd(usd, array):
-    """The array as one of USD's type."""
+    """Returns the array as one of USD's type."""
     from pxr import Vt
 
     width = next((int(letter) for letter in usd.replace("Int64", "") if letter.isdigit()), 1)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 
 def _is_from_pypi(vtkmodules):
-    """VTK's wheels bring no headers, so that no C++ class can have been built against one; a class
-    built against another VTK must not be loaded beside it."""
+    """Returns whether VTK comes from a wheel. Wheels bring no headers, so no C++ class can have
+    been built against one, and a class built against another VTK must not be loaded beside it."""
     folder = Path(vtkmodules.__file__).resolve().parent.parent
     return any(folder.glob("vtk-*.dist-info"))
 
@@ -25,11 +25,12 @@ def find_class(name):
 
             module = import_module(".vtkMarchingCorrectors", __package__)
         except ImportError:
-            pass  # of another Python, or its VTK is gone
+            pass  # The class was built for another Python, or its VTK is gone.
     if module is None and name == "vtkMarchingCorrectors":
         module = import_module(".MarchingCorrectorsFilter", __package__)
     if module is None or not hasattr(module, name):
         raise ImportError(f"{name} is there in C++ only: build the sources with CMake for this VTK.")
     found = getattr(module, name)
-    setattr(package, name, found)  # in place of the module of this name, which importing left there
+    # This replaces the module of this name, which importing has left there.
+    setattr(package, name, found)
     return found

@@ -16,8 +16,7 @@ from .io._cells import VERTICES, find_vertices
 
 
 def walk(tree, empty=False):
-    """(data, name, whether it is a leaf, flat index) of all nodes; partitions are called by the name of what they are
-    parts of."""
+    """Yields (data, name, whether it is a leaf, flat index) of all nodes. Partitions have the name of the node that they belong to."""
     iterator, whole, last = tree.NewTreeIterator(), "", 0
     iterator.VisitOnlyLeavesOff()
     iterator.SetSkipEmptyNodes(not empty)
@@ -33,12 +32,12 @@ def walk(tree, empty=False):
 
 
 def sets_of(data):
-    """The data set itself, or the blocks, that are point sets with points."""
+    """Returns the data set itself, or the blocks, that are point sets with points."""
     return [each for each in list_all(data) if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
 
 
 def cells_of(points):
-    """The cells that begin with all vertices, and the types of all."""
+    """Returns the cells that come before all others and are vertices, and the types of all cells."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -51,7 +50,7 @@ def cells_of(points):
 
 
 def add_values(data, count, chosen, made):
-    """These of the arrays that have `count` values, unless there is one of that name."""
+    """Adds the arrays that have `count` values, unless one of that name exists."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
             add_nearest(made, name_of(array), array, chosen)
@@ -97,24 +96,24 @@ def take_vertices(data, have=None):
     particles.SetPoints(vtkPoints())
     particles.GetPoints().SetData(numpy_to_vtk(vtk_to_numpy(data.GetPoints().GetData())[chosen], deep=True))
     add_values(data.GetPointData(), count, chosen, particles.GetPointData())
-    add_values(data.GetCellData(), len(types), found[chosen], particles.GetPointData())  # of their vertices
+    add_values(data.GetCellData(), len(types), found[chosen], particles.GetPointData())  # These are arrays of the vertices.
     particles.SetFieldData(data.GetFieldData())
     return particles
 
 
 def describe_mesh(data, taken):
-    """A sentence where points of the data are no particles; else ""."""
+    """Returns a sentence if points of the data are no particles, else ""."""
     left, count = (sum(points.GetNumberOfPoints() for points in sets_of(each)) for each in (taken, data))
     return say("MESH_NODES", count - left, count, "", "") if left < count else ""
 
 
 def list_all(data):
-    """The data set, and all that it is made of."""
+    """Yields the data set, and all that it is made of."""
     return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
 
 
 def join_array(sets, like, joined):
-    """One after the other; not if a block lacks it that is no wall. What tells kinds of particles apart is not made up
+    """Joins an array's values, one block after the other; None if a fluid block lacks it. An array that tells kinds of particles apart is not filled
     for walls either."""
     made, name = like.NewInstance(), name_of(like)
     made.SetName(name)
@@ -157,6 +156,6 @@ def join_blocks(tree):
     if some:
         marks = np.array([wall for _, wall in sets], bool)
         add(joined.GetPointData(), WALL_BLOCK, np.repeat(marks, np.array([each.GetNumberOfPoints() for each, _ in sets], int)))
-    for data in reversed(list_all(tree)):  # of several arrays the first stays
+    for data in reversed(list_all(tree)):  # If several arrays have one name, the first stays.
         joined.GetFieldData().PassData(data.GetFieldData())
     return joined

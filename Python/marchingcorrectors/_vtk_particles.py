@@ -14,7 +14,7 @@ from ._find import Found, as_bytes, choose_view, find_named
 from ._library import lib
 
 GHOSTS = "vtkGhostType"
-WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
+WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.
 
 
 class Unusable(Exception):
@@ -41,7 +41,7 @@ def abstract_arrays_of(data):
 
 
 def arrays_of(data):
-    """The arrays that hold numbers."""
+    """Returns the arrays that hold numbers."""
     return [array for array in abstract_arrays_of(data) if isinstance(array, vtkDataArray)]
 
 
@@ -76,7 +76,7 @@ def choose_array(arrays):
 
 
 def varies(array, on_surface):
-    """Whether there is more of it than the noise of what is contoured. Colours are those of magnitudes."""
+    """Whether the array varies more than the noise of the contoured one. Vectors have the colours of their magnitudes."""
     if on_surface is None or on_surface.GetNumberOfTuples() == 0:
         return False
     kind = -1 if array.GetNumberOfComponents() > 1 else 0
@@ -85,7 +85,7 @@ def varies(array, on_surface):
 
 
 def find_period(points):
-    """Six bounds that the field data tell of; None where they tell of none."""
+    """Returns the six bounds in the field data, or None."""
     found, period = [], (ctypes.c_double * 6)()
     for array in arrays_of(points.GetFieldData()):
         name, count = as_bytes(name_of(array)), array.GetNumberOfValues()
@@ -110,7 +110,7 @@ class Request:
         name = info.Get(vtkDataObject.FIELD_NAME()) or ""
         self.name = "" if name == "(automatic)" else name
         kind, data = vtkDataObject.FIELD_ATTRIBUTE_TYPE(), points.GetPointData()
-        # Arrays of cells may be those of the particles now, see take_vertices().
+        # Arrays of cells may have become the particles' arrays, see take_vertices().
         if self.name or not name and info.Has(kind):
             self.on_points = bool(self.name and data.HasArray(self.name)) or info.Get(vtkDataObject.FIELD_ASSOCIATION()) in (
                 vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)

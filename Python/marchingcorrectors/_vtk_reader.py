@@ -40,7 +40,7 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
 
     @smproperty.stringvector(name="Types", default_values="gas")
     def SetTypes(self, types):
-        """Types of GADGET's layout: names or numbers, with commas between them."""
+        """Reads types of GADGET's layout: names or numbers, with commas between them."""
         if types != self._types:
             self._types, self._kept = types, (None, None)
             self.Modified()
@@ -49,7 +49,7 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
     def GetTimestepValues(self):
         try:
             return [time for time, _, _ in self._list_steps()] or None
-        except io.FileError:  # RequestInformation says it
+        except io.FileError:  # RequestInformation says the sentence.
             return None
 
     def _read(self, name, step):
@@ -67,8 +67,8 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
             return io.read(name, step=step)
 
     def _list_steps(self):
-        """(time, file, number in it) of each. Times are what the files say where that rises from one to the next; else
-        numbers."""
+        """Returns (time, file, number in it) of each step. Times come from the files if they ascend from one to the next; otherwise they are 0, 1,
+        ..."""
         if self._steps is None:
             found = []
             for name in self._names:

@@ -11,12 +11,12 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from . import _structs as c
 from ._arrays import QUANTITIES, camel
 
-# Options of mcor_options that are left out: users do not look for them, or statistics tell them.
+# These options of mcor_options are left out: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 
 
 def add(data, name, values):
-    """An array of these values; of one text, number or tuple, with one tuple."""
+    """Returns an array of these values; one text, number or tuple gives one tuple."""
     values = np.asarray(values)
     if values.dtype.kind == "U":
         array = vtkStringArray()
@@ -30,7 +30,7 @@ def add(data, name, values):
 
 
 def build_cells(first, corners):
-    """With ids as vtkContourFilter's: some filters take a mesh with others for non-manifold."""
+    """Returns cells with ids of vtkContourFilter's type, because some filters take a mesh with others for non-manifold."""
     offsets, connectivity, cells = vtkTypeInt64Array(), vtkTypeInt64Array(), vtkCellArray()
     for array, values in ((offsets, first), (connectivity, corners)):
         array.SetNumberOfValues(len(values))
@@ -40,7 +40,7 @@ def build_cells(first, corners):
 
 
 def build_mesh(output, surface, arrays):
-    """Points, cells and arrays of a Surface; arrays: {name: array} for the points."""
+    """Returns points, cells and arrays of a Surface; arrays: {name: array} for the points."""
     points, data = vtkPoints(), output.GetPointData()
     points.SetData(numpy_to_vtk(surface.points, deep=True))
     output.SetPoints(points)
@@ -55,12 +55,12 @@ def build_mesh(output, surface, arrays):
         add(output.GetCellData(), "TriangleKeys", surface.triangle_keys)
     for name, values in arrays.items():
         add(data, name, values)
-    if "Normals" in arrays and (surface.line_offsets is None or surface.band_value is not None):  # lines were dark
+    if "Normals" in arrays and (surface.line_offsets is None or surface.band_value is not None):  # With normals, lines would be dark.
         data.SetActiveNormals("Normals")
 
 
 def add_nearest(data, name, array, nearest):
-    """Adds the values, of any type, of particles with these numbers."""
+    """Adds the values, of any type, of the particles with these numbers."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
     else:
@@ -91,7 +91,7 @@ def add_run(run, found, particles, arguments):
         if condition == "is_run":
             before = run.GetArray(name).GetComponent(0, 0) if run.HasArray(name) and how != "SAME" else 0
             add(run, name, [type(value)(max(before, value) if how == "MOST" else before + value)])
-        elif name and when[condition] and isinstance(value, tuple) and len(value) > 3:  # counts of levels
+        elif name and when[condition] and isinstance(value, tuple) and len(value) > 3:  # These are counts of levels.
             add(run, name, value[:max(1 + np.max(np.nonzero(value), initial=0), 1)])
         elif name and when[condition]:
             add(run, name, [value])
@@ -141,7 +141,7 @@ def add_parameters(data, particles, arguments, wall_share):
 
 
 def describe(run):
-    """A line "Name: values" for each array."""
+    """Returns a line "Name: values" for each array."""
     lines = []
     for i in range(run.GetNumberOfArrays()):
         array = run.GetAbstractArray(i)

@@ -19,7 +19,7 @@ class InputWarning(UserWarning):
 
 
 def warn(sentence):
-    """At the caller's line, which is the first one outside of this package."""
+    """Warns at the caller's line, the first one outside of this package."""
     level, frame = 1, sys._getframe(0)
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
@@ -27,7 +27,7 @@ def warn(sentence):
 
 
 def describe_warnings(arguments, surface):
-    """{number: sentence} of what the core finds strange about a surface's input."""
+    """Returns {number: sentence} of what the core finds strange in a surface's input."""
     found = {}
     for number in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"]):
         sentence = take_sentence(lib.mcor_describe_warning(
@@ -38,7 +38,7 @@ def describe_warnings(arguments, surface):
 
 
 def warn_of_particles(arguments, statistics):
-    """Tells what concerns calls that make no surface, too."""
+    """Warns of what concerns calls without a surface, too."""
     kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
     for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
         if kinds[kind] in found:

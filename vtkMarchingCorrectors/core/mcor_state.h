@@ -308,7 +308,7 @@ typedef struct mcor_run
   double report_time; /* time of the last report */
   bool building_told; /* whether the last report was about building */
   double correction_count, correction_sum, correction_squares;
-  int64_t evaluations_counted; /* how many of vertices_corrected are counted */
+  int64_t evaluations_counted; /* sum of the evaluations of vertices_corrected */
   int64_t normals_lacking;     /* number of points without a normal so far */
 } mcor_run;
 

@@ -45,12 +45,12 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
         raise
     except ImportError as error:
         package = "vtk" if str(error.name).startswith("vtk") else str(error.name).partition(".")[0]
-        if package == "marchingcorrectors":  # a module of Python's is hidden by a script of its name, say
+        if package == "marchingcorrectors":  # A script of the same name may hide a module of Python's.
             raise
         raise FileError(f"{paths[0].name} needs the package {package}: pip install {package}.") from None
     except MemoryError:
         raise FileError(f"{paths[0].name} asks for more memory than there is: it is damaged, or too large.") from None
-    except Exception as error:  # of a damaged file each library has its own kinds
+    except Exception as error:  # For damaged files each library has its own exceptions.
         raise FileError(f"{paths[0].name} cannot be read: {' '.join(str(error).split())[:200]}") from None
 
 

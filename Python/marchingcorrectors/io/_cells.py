@@ -10,7 +10,7 @@ VERTICES = (1, 2)  # VTK's types of cells that are points
 
 
 def offsets_of(cells, count):
-    """Where cells begin in a list that has the number of points of each before them, and the list without these."""
+    """Returns where cells begin in a list that has each cell's number of points before its points, and the list without these numbers."""
     width = len(cells) // count if count else 0
     if count and width * count == len(cells) and (cells[::width] == width - 1).all():
         return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()
@@ -25,11 +25,11 @@ def offsets_of(cells, count):
 
 
 def find_vertices(types, offsets, points, count):
-    """For each of the points the first vertex that uses it, or -1."""
+    """Returns, for each point, the first vertex that uses it, or -1."""
     cells = np.repeat(np.arange(len(types)), np.diff(offsets))
     used = np.isin(types, VERTICES)[cells] & (points >= 0) & (points < count)
     found = np.full(count, -1)
-    found[points[used][::-1]] = cells[used][::-1]  # of several the first
+    found[points[used][::-1]] = cells[used][::-1]  # If several vertices use a point, the first counts.
     return found
 
 

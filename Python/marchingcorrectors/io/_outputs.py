@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Output files by the rules of the program marching-correctors: written beside their places, then all take them."""
+"""Writes output files by the program's rules: beside their places, then all are moved there together."""
 import os
 import secrets
 import shutil
@@ -13,7 +13,7 @@ STEP_MARK = b"<!-- a step of a film by marching-correctors -->"
 
 
 def _identity(path):
-    """Equal for all names of one file; a file that does not exist yet is named by its folder and its name there."""
+    """Returns an identity that is the same for all names of one file. A file that does not exist yet is identified by its folder and its name."""
     try:
         status = os.stat(path)
         return status.st_dev, status.st_ino
@@ -32,7 +32,7 @@ class Outputs:
     """
 
     def __init__(self, inputs, outputs, steps=()):
-        self._written = []  # (where it is, where it goes) of each
+        self._written = []  # Each entry is (where the file is, where it goes).
         read = {_identity(path) for path in inputs if os.path.exists(path)}
         found = set()
         for path in (*outputs, *steps):
@@ -50,7 +50,7 @@ class Outputs:
                 raise FileError(say("FILM_STEP_TAKEN", path))
 
     def write(self, path, data):
-        """Bytes; no more than one file of them is in memory."""
+        """Writes bytes; no more than one file of them is in memory."""
         with _sentences(path), open(self.beside(path), "wb") as file:
             file.write(data)
             file.flush()
@@ -58,18 +58,17 @@ class Outputs:
                 os.fsync(file.fileno())
 
     def beside(self, path):
-        """Where that file is to be written: in a folder of its own beside the place, under its name; a device or a pipe
-        where it is."""
+        """Returns where that file is to be written: in a new folder beside its place, under its name; a device or a pipe is written where it is."""
         with _sentences(path):
             target = os.path.realpath(path)
             if os.path.exists(target):
                 if not os.path.isfile(target):
                     return str(path)
-                with open(target, "r+b"):  # asks the system, which may forbid it
+                with open(target, "r+b"):  # This asks the system, which may forbid it.
                     pass
             folder, name = os.path.dirname(target), os.path.basename(path)
             own = os.path.join(folder, f".{name[:50]}.{secrets.token_hex(4)}")
-            self._written.append((os.path.join(own, name), target))  # first, since a signal may end the program anywhere
+            self._written.append((os.path.join(own, name), target))  # This comes first, because a signal may end the program anywhere.
             os.mkdir(own, 0o700)
             return self._written[-1][0]
 
@@ -92,24 +91,24 @@ class Outputs:
                 shutil.rmtree(os.path.dirname(self._written[-1][0]), ignore_errors=True)
                 self._written.pop()
         finally:
-            if self._written:  # a signal came
+            if self._written:  # A signal came.
                 self._clear()
 
 
 def _copy_mode(old, new):
-    """And owner and group, where that is allowed."""
+    """Sets mode, and owner and group if that is allowed."""
     status = os.stat(old)
     mode = stat.S_IMODE(status.st_mode)
     if hasattr(os, "chown"):
         try:
             os.chown(new, status.st_uid, status.st_gid)
         except OSError:
-            mode &= 0o707  # another group must not gain what the old one was allowed
+            mode &= 0o707  # Another group must not gain what the old one was allowed.
     os.chmod(new, mode)
 
 
 class _sentences:
-    """Tells what the system says of a file, with the file's name."""
+    """Raises what the system says of a file, with the file's name."""
 
     def __init__(self, path):
         self._path = path

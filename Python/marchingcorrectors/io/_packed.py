@@ -6,21 +6,21 @@ from pathlib import Path
 
 from ._particles import FileError
 
-LIMIT = 1000  # deflate packs no more than that
+LIMIT = 1000  # Deflate cannot pack more densely.
 
 
 def ending_of(path):
-    """In small letters, of what is in the file: .csv of a.csv.gz."""
+    """Returns the ending, in small letters, of the file that is packed: .csv for a.csv.gz."""
     path = Path(path.stem) if path.suffix.lower() == ".gz" else path
     return path.suffix.lower()
 
 
 def inflate(path, data, least=None):
-    """What is packed in data, or its first bytes, `least` or more."""
+    """Unpacks data, or at least its first `least` bytes."""
     if not data.startswith(b"\x1f\x8b"):
         return data
     found, left = [], LIMIT * len(data) + 1024
-    while data and left > 0 and (least is None or not found):  # parts, one behind the other, as parallel programs write them
+    while data and left > 0 and (least is None or not found):  # Parallel programs write several parts, one behind the other.
         unpacker = zlib.decompressobj(31)
         try:
             found.append(unpacker.decompress(data, left if least is None else least))

@@ -13,40 +13,40 @@ from .._library import Error, lib, say
 from .._options import did_you_mean, words_of
 from .._warnings import warn
 
-# Solvers' names of their kernels begin so, letters and digits alone; the first that fits counts. Wendland's are PySPH's,
-# too: WendlandQuintic is C2.
+# Solvers' names for their kernels begin like this, in letters and digits alone; the first that fits counts. Wendland's names are also PySPH's:
+# WendlandQuintic is C2.
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
 
 GHOSTS = "vtkGhostType"
 NO_VALUE = np.empty(0, np.float32)
-TIMES = ("TimeValue", "TIME", "Time", "time")  # arrays of field data, in VTK's files
+TIMES = ("TimeValue", "TIME", "Time", "time")  # In VTK's files these are arrays of field data.
 
 
 class FileError(Error, ValueError):
     """A file is damaged, empty, or in no format that is known here."""
 
     def __init__(self, sentence):
-        """One line, whatever names a damaged file may have in it."""
+        """Makes one line of a text, whatever names a damaged file may have put into it."""
         plain = "".join(letter if letter.isprintable() else "?" for letter in str(sentence))
         super().__init__(plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:])
 
 
 def find_kernel(name):
-    """The word of sph_kernel for what a file calls its kernel; None where it is none of ours."""
+    """Returns the word of sph_kernel for a file's name of its kernel, or None."""
     plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
     return next((word for start, word in KERNELS.items() if plain.startswith(start)), None)
 
 
 def support_factor(name):
-    """Support radius / smoothing length of what a file calls its kernel; of one that is unknown, 2, as of most."""
+    """Returns support radius / smoothing length for a file's name of its kernel; 2, as most have, if it is unknown."""
     known = find_kernel(name)
     return lib.mcor_support_factor(words_of("sph_kernel")[known]) if known else 2.0
 
 
 class Lazy(Mapping):
-    """{name: array}; an array is read at its first use, and kept. read: {name: function}."""
+    """Is {name: array}; an array is read when it is first used, and kept. read: {name: function}."""
 
     def __init__(self, read, file):
         self._read, self._kept, self._file = dict(read), {}, file
@@ -58,7 +58,7 @@ class Lazy(Mapping):
             try:
                 array = self._read[name]()
                 kind = {np.dtype(np.float16): np.float32, np.dtype(np.longdouble): np.float64}.get(array.dtype, array.dtype)
-                self._kept[name] = array.astype(kind, copy=False)  # of a type that all functions take
+                self._kept[name] = array.astype(kind, copy=False)  # This type is one that all functions take.
             except FileError:
                 raise
             except MemoryError:
@@ -102,7 +102,7 @@ class Particles:
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
-    remedy = "solid=particles['{name}'] != VALUE (in a shell --fluid {name}=VALUE)"  # where all count as fluid
+    remedy = "solid=particles['{name}'] != VALUE (in a shell --fluid {name}=VALUE)"  # All particles count as fluid here.
 
     def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
                  **more: Any) -> None:
@@ -209,13 +209,13 @@ class Particles:
 
 
 def usual(names, quantity):
-    """The name most usual for a quantity, of several; None where none is. The core knows them."""
+    """Returns the most usual of several names for a quantity, or None. The core knows them."""
     best = find_named([(name, NO_VALUE) for name in names], quantity, 1, 0)
     return None if best < 0 else names[best]
 
 
 def by_name(file, pairs):
-    """{name: thing}; of several of one name the last, as in VTK, with a warning."""
+    """Returns {name: thing}. If several have one name, the last counts, as in VTK, with a warning."""
     found, twice = {}, None
     for name, thing in pairs:
         twice = twice or (name if name in found else None)
@@ -226,8 +226,8 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """The points of a file at one of its times; times: those of all steps, None where it is no film. is_mesh: whether it has
-    cells, and none of them is a vertex; None where it has none."""
+    """The points of a file at one of its times. times: of all steps; None if it is no film. is_mesh: it has cells, but no vertex; None if it has no
+    cells."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None
@@ -237,8 +237,8 @@ class Body(NamedTuple):
 
 
 def join_bodies(bodies):
-    """Several as one, with the arrays that all have that have points; without points that are another's (vtkGhostType), and
-    without the points of meshes where there are vertices beside them."""
+    """Joins several to one, with the arrays that all non-empty ones have; without points that are another's (vtkGhostType), and without points of
+    meshes if there are vertices beside them."""
     meshes = [body for body in bodies if body.is_mesh] if any(body.is_mesh is False for body in bodies) else []
     if meshes:
         warn(f"{sum(len(body.points) for body in meshes)} points of pieces without vertices are nodes of meshes and no "
@@ -257,14 +257,14 @@ def join_bodies(bodies):
 
 
 def choose_step(file, step, times):
-    """Its number from the first one on; as in lists, -1 is the last one."""
+    """Returns the number of a step from the first one on; as in lists, -1 is the last one."""
     if not -len(times) <= step < len(times):
         raise FileError(f"{file} has no step {step}: it has {len(times)} of them.")
     return step % len(times)
 
 
 def period_of_field(field):
-    """Six bounds, or the nine numbers of a tilted cell, as convert writes them, of {name: array}; None where there are none."""
+    """Returns the six bounds, or the nine numbers of a tilted cell, in {name: array}, as convert writes them; or None."""
     bounds = np.ravel(field.get("PeriodicBounds", ()))
     return bounds.tolist() if len(bounds) in (6, 9) and np.isfinite(bounds).all() and bounds.any() else None
 

@@ -10,7 +10,7 @@ from ._particles import FileError
 
 
 def state_of(file):
-    """Another one where the file was written anew."""
+    """Returns a mark that changes when the file is written anew."""
     status = os.fstat(file.fileno())
     return status.st_ino, status.st_size, status.st_mtime_ns
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers that stand as text."""
+"""Reads numbers that stand as text."""
 import warnings
 
 import numpy as np
@@ -12,7 +12,7 @@ def parse_numbers(text, kind, count):
     """So many numbers with blanks between them, the first of bytes or of a memoryview, and where the last one ends.
     Raises ValueError. Time and memory grow with what is read alone, not with what follows it."""
     size = 16 * count + 64
-    while True:  # a longer piece, until it has so many words
+    while True:  # A longer piece is read until it has so many words.
         piece = bytes(text[:size])
         is_blank = np.append(IS_BLANK[np.frombuffer(piece, np.uint8)], len(piece) == len(text))
         ends = np.flatnonzero(is_blank[1:] & ~is_blank[:-1]) + 1
@@ -23,7 +23,7 @@ def parse_numbers(text, kind, count):
         raise ValueError(f"{len(ends)} numbers where there should be {count}")
     end = int(ends[count - 1]) if count else 0
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # NumPy warns where it stops at a word that is no number
+        warnings.simplefilter("error")  # NumPy warns when it stops at a word that is no number.
         values = np.fromstring(piece[:end], kind, sep=" ") if count else np.empty(0, kind)
     if len(values) != count:
         raise ValueError("a word is no number")

@@ -12,7 +12,7 @@ from .tables import POSITIONS, axes_of, body_of
 
 
 def array_of(file, name, data):
-    """From the bytes of a .npy file."""
+    """Reads an array from the bytes of a .npy file."""
     stream = io.BytesIO(data)
     version = np.lib.format.read_magic(stream)
     read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
@@ -44,7 +44,7 @@ def read_arrays(path):
     plain = {name: np.ascontiguousarray(values, values.dtype.newbyteorder("=")) for name, values in found.items()
              if values.ndim in (1, 2) and len(values) == count}
     if usual and found[usual[0]].ndim == 2 and found[usual[0]].shape[1] == 2:
-        plain[usual[0]] = np.pad(plain[usual[0]], ((0, 0), (0, 1)))  # of a plane
+        plain[usual[0]] = np.pad(plain[usual[0]], ((0, 0), (0, 1)))  # The positions lie in a plane.
     body = body_of(path.name, plain if usual else {name: np.empty(0) for name in found})
     alone = {name: values for name, values in found.items() if name not in plain}
     time = next((values for name, values in alone.items() if name.lower() in ("t", *(each.lower() for each in TIMES))

@@ -18,7 +18,7 @@ TEXT, DEPTH = 1, 8
 
 
 class Reader:
-    """All lengths are compared with what is left of the file before they are believed."""
+    """Compares all lengths with what is left of the file before they are believed."""
 
     def __init__(self, file, path):
         self.file, self.path, self.name, self.state = file, path, path.name, state_of(file)
@@ -73,7 +73,7 @@ class Reader:
         return name, RawArray(self.path, self.state, begin, dtype, count, columns)
 
     def item(self, depth=0):
-        """(values, arrays, [items])."""
+        """Returns (values, arrays, [items])."""
         if depth > DEPTH:
             raise FileError(f"{self.name} is damaged: its parts lie too deep in each other.")
         self.number()
@@ -114,7 +114,7 @@ def read_bi4(path):
 
 
 def period_of(values):
-    """PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) are none."""
+    """Reads PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) do not count."""
     axes = {1: "x", 2: "y", 3: "xy", 4: "z", 5: "xz", 6: "yz"}.get(values.get("PeriActive", values.get("PeriMode", 0)), "")
     low, high = values.get("MapPosMin"), values.get("MapPosMax")
     if not axes or not low or not high:

@@ -14,7 +14,7 @@ TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
 XYZ = (".xyz", ".extxyz", ".exyz")
 LISTS = (".pvtp", ".pvtu", ".pvd", ".series")
 DUMPS = (".dump", ".lammpstrj")
-PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # also as .gz
+PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # These endings may be followed by .gz.
 
 
 def read_list(path, step):
@@ -42,7 +42,7 @@ ENDINGS = (*READERS, ".gz")
 
 
 def reader_of(path):
-    """By the name's ending, but for what begins as a dump, and .xyz files that have no count and are tables."""
+    """Finds the format by the name's ending, except for files that begin as a dump, and .xyz files without a count, which are tables."""
     ending = ending_of(path)
     head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
     if head.startswith(b"ITEM:"):
@@ -90,7 +90,7 @@ def column(name, bodies, fluids):
 def read_bodies(paths, walls, step):
     every = paths + [path for path in walls if path not in paths]
     bodies = [load(path, step) for path in every]
-    if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # a step of a film may be empty
+    if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # A step of a film may be empty.
         raise FileError(f"{paths[0].name} has no points.")
     marked = [path in walls or not walls and len(every) > 1 and tells_of_walls(path.stem) for path in every]
     counts = [len(body.points) for body in bodies]

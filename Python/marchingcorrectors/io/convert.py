@@ -13,7 +13,7 @@ from ._particles import support_factor
 
 
 def plain(values):
-    """Makes arrays of types that VTK has: half precision becomes single, long double double."""
+    """Returns the array in a type that VTK has: half precision becomes single, long double double."""
     values = np.asarray(values)
     kind, size = values.dtype.kind, values.dtype.itemsize
     if kind == "f" and size not in (4, 8):

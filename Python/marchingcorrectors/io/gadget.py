@@ -13,7 +13,7 @@ TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_h
 
 
 def number(attributes, name, default=None):
-    """An attribute's first number."""
+    """Returns an attribute's first number."""
     try:
         value = np.ravel(attributes[name])[0]
         return value.item() if isinstance(value, np.generic) and value.dtype.kind in "fiub" else float(value)
@@ -29,7 +29,7 @@ def text(value):
 def files_of(path, count):
     """All files of a snapshot that is in several, NAME.0.hdf5, ..., or NAME.0, ..."""
     found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5|)", path.name)
-    if count <= 1 or not found:  # 0 in some that are whole
+    if count <= 1 or not found:  # Some whole files say 0.
         return [path]
     if count > 65536:
         raise FileError(f"{path.name} claims to be one of {count} files.")
@@ -87,12 +87,12 @@ def period_of(file, box):
     return [bound for end in ends for bound in (0.0, end)] if any(ends) else None
 
 
-# GIZMO's numbers, those of a kernel that is here.
+# These are GIZMO's numbers of the kernels that exist here.
 GIZMO_KERNELS = {3: "cubic", 4: "quartic", 5: "quintic", 6: "Wendland C2", 7: "Wendland C4", 9: "Wendland C6"}
 
 
 def kernel_of(file, header):
-    """As SWIFT names it, by GIZMO's number, or by GADGET-4's macro; None where the file does not tell."""
+    """Finds the kernel: by SWIFT's name, GIZMO's number, or GADGET-4's macro; None if the file does not tell."""
     scheme = attributes(file, "HydroScheme")
     if "Kernel function" in scheme:
         return text(scheme["Kernel function"])
@@ -148,7 +148,7 @@ def read_gadget(path, types):
 
 
 def find_parts(files, group):
-    """Where the particles are, and the names of arrays of numbers that all of them have."""
+    """Returns where the particles are, and the names of arrays of numbers that all files have."""
     import h5py
 
     parts, names = [], None

@@ -34,7 +34,7 @@ def order_of(head):
 
 
 class BinaryFile:
-    """The header, and where arrays lie: {label: RawArray}."""
+    """Reads the header, and where arrays lie: {label: RawArray}."""
 
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -51,7 +51,7 @@ class BinaryFile:
             raise FileError(f"{path.name} has no positions.")
 
     def record(self):
-        """Begin and number of bytes of the next one, or None at the end."""
+        """Returns begin and number of bytes of the next record, or None at the end."""
         before = self.file.read(4)
         if not before:
             return None
@@ -65,7 +65,7 @@ class BinaryFile:
         return begin, size
 
     def label(self):
-        """The name of the next array, in format 2; None at the end."""
+        """Returns the name of the next array, in format 2, or None at the end."""
         found = self.record()
         if found is None:
             return None
@@ -90,7 +90,7 @@ class BinaryFile:
             raise FileError(f"{self.path.name} claims {min(self.counts)} particles of a type.")
 
     def read_arrays(self):
-        """(label, RawArray) of each that is known, or fits."""
+        """Yields (label, RawArray) of each array that is known, or fits."""
         total, gas = sum(self.counts), self.counts[0]
         with_masses = sum(count for count, mass in zip(self.counts, self.masses) if not mass)
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), total), "MASS": with_masses}
@@ -112,7 +112,7 @@ class BinaryFile:
             yield label, RawArray(self.path, self.state, begin, kind, count, columns)
 
     def load(self, label, kind):
-        """One array of the particles of a type."""
+        """Returns one array of the particles of a type."""
         if label == "MASS" and self.masses[kind]:
             return np.full(self.counts[kind], self.masses[kind])
         if label not in self.arrays:
@@ -125,7 +125,7 @@ class BinaryFile:
         return array.rows(begin, self.counts[kind]).load()
 
     def labels_of(self, kind):
-        """The arrays that particles of a type have."""
+        """Returns the arrays that particles of a type have."""
         whole, gas = sum(self.counts), self.counts[0]
         return [label for label, array in self.arrays.items() if label in ("POS", "MASS") or array.count == whole
                 or (kind == 0 and array.count == gas)]

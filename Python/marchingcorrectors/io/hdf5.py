@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""HDF5 by h5py: data sets of this file alone."""
+"""Reads HDF5 by h5py: only data sets in this file."""
 import math
 import os
 from typing import NamedTuple, Optional
@@ -10,7 +10,7 @@ import numpy as np
 from ._particles import FileError, check_claim
 
 
-KEEP_SIZE = (2, 3)  # filters of HDF5 that do not pack: bytes shuffled, a checksum
+KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or add a checksum.
 
 
 def get(group, place):
@@ -39,7 +39,7 @@ def is_numbers(thing):
 
 
 def data_set(group, place):
-    """A data set of numbers."""
+    """Opens a data set of numbers."""
     data = get(group, place)
     if data is None or not is_numbers(data):
         raise FileError(f"{os.path.basename(group.file.filename)}: '{place}' is missing, or does not hold numbers.")
@@ -60,7 +60,7 @@ def check_storage(data):
 
 
 class Part(NamedTuple):
-    """Some of an array's particles: those of one group of one file that keep (None: all) marks."""
+    """Some of an array's particles: those of one group of one file for which `keep` is true (None: all)."""
     file: os.PathLike
     group: str
     count: int
@@ -74,7 +74,7 @@ class Part(NamedTuple):
 
 
 def load(parts, name):
-    """One array of several parts, each read into its place: where all of a part are kept, no copy is made."""
+    """One array made of several parts, each read into its place; a part that is kept whole is not copied."""
     import h5py
 
     result, begin = None, 0
@@ -97,7 +97,7 @@ def load(parts, name):
 
 
 def names_of(group, count):
-    """Arrays of numbers with so many rows."""
+    """Lists arrays of numbers with so many rows."""
     check_claims([group])
     return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
 

@@ -15,7 +15,7 @@ from ._text import parse_numbers
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
          "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
          **{f"vtktype{sign}int{bits}": f"{'u' if sign else 'i'}{bits // 8}" for sign in ("u", "") for bits in (8, 16, 32, 64)}}
-LISTS = {"VERTICES": 1, "LINES": 3, "POLYGONS": 7, "TRIANGLE_STRIPS": 6, "CELLS": 0}  # and VTK's types of such cells
+LISTS = {"VERTICES": 1, "LINES": 3, "POLYGONS": 7, "TRIANGLE_STRIPS": 6, "CELLS": 0}  # These are VTK's types of such cells.
 COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS": 1, "PEDIGREE_IDS": 1, "EDGE_FLAGS": 1}
 
 
@@ -45,7 +45,7 @@ class Legacy:
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
 
     def line(self):
-        """The words of the next line that has some."""
+        """Returns the words of the next line that has some."""
         while self.at < len(self.data):
             end = self.data.find(b"\n", self.at, self.at + 1000)
             end = min(len(self.data), self.at + 1000) if end < 0 else end
@@ -64,7 +64,7 @@ class Legacy:
         if code is None or count < 0 or not 0 < columns <= 1000:
             raise self.damaged()
         size = count * columns * (2 if self.text else np.dtype(code).itemsize)
-        if size > left + self.text:  # each a digit and a blank, but for the last
+        if size > left + self.text:  # Each is a digit and a blank; the last has no blank.
             raise self.damaged()
         if self.text:
             values, end = parse_numbers(memoryview(self.data)[self.at:], code, count * columns)
@@ -75,7 +75,7 @@ class Legacy:
         return values.reshape(count, columns) if columns > 1 else values
 
     def skip_strings(self, count, in_lines):
-        """A line each; or behind its length, of whose first byte two bits tell how many bytes it has: 8, 4, 2 or 1."""
+        """Reads texts: in text files one on each line; in others behind its length, whose first two bits tell how many bytes it has: 8, 4, 2 or 1."""
         for _ in range(count):
             if in_lines:
                 self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1
@@ -87,14 +87,14 @@ class Legacy:
         return np.empty(0)
 
     def put(self, into, name, values):
-        """As VTK, which writes blanks and the like as %20, and of two arrays of one name keeps the last."""
+        """Decodes a name as VTK does: blanks and the like are written as %20. Of two arrays with one name the last stays."""
         name = unquote_to_bytes(name).decode(errors="replace")
         if name in self.arrays and into is self.arrays:
             self.twice = name
         into[name] = values
 
     def section(self, words, into):
-        """Reads what words begin; into: where arrays go. Returns where those after it go."""
+        """Reads the section that these words begin; into: where arrays go. Returns where later arrays go."""
         word, rest = words[0].upper(), words[1:]
         if word == "POINTS":
             self.points = self.values(rest[1], rest[0], 3)
@@ -139,13 +139,13 @@ class Legacy:
         return words
 
     def skip_metadata(self):
-        """It ends with an empty line."""
+        """Skips metadata, which end with an empty line."""
         end = re.compile(rb"\n\r?\n").search(self.data, self.at)
         self.at = end.end() if end else len(self.data)
 
 
 def cells_of(legacy):
-    """Types, where the points of each cell begin, and these points; of lists in the order of VTK's cells."""
+    """Reads types, where each cell's points begin, and these points; lists are in the order of VTK's cells."""
     types, offsets, points = [], [np.zeros(1, int)], []
     for name in LISTS:
         if name in legacy.cells and len(legacy.cells[name][0]):
@@ -161,7 +161,7 @@ def read_legacy(path):
         legacy = Legacy(path)
     except (FileError, MemoryError):
         raise
-    except Exception:  # words that are no numbers, or too few
+    except Exception:  # Some words are no numbers, or there are too few.
         raise FileError(f"{path.name} is damaged, or ends too early.") from None
     count = len(legacy.points)
     time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
@@ -169,5 +169,5 @@ def read_legacy(path):
                 float(np.ravel(time)[0]) if len(time) else None, period_of_field(legacy.field))
     try:
         return take_vertices(path.name, body, *cells_of(legacy), legacy.cell_arrays) if legacy.cells else body
-    except (ValueError, IndexError):  # damaged ones tell nothing
+    except (ValueError, IndexError):  # Damaged cells tell nothing.
         return body

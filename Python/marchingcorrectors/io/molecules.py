@@ -14,17 +14,17 @@ STYLES = {"atomic": "", "bond": "molecule", "angle": "molecule", "molecular": "m
           "dpd": "theta", "mdpd": "rho", "edpd": "temperature cv", "peri": "volume density", "rheo": "status rho",
           "rheo/thermal": "status rho energy", "smd": "molecule volume mass kradius cradius x0 y0 z0"}
 BEHIND = {"dipole": ["mux", "muy", "muz"]}
-BEFORE_TYPE = ("bond", "angle", "molecular", "full")  # the molecule stands before the type
+BEFORE_TYPE = ("bond", "angle", "molecular", "full")  # The molecule stands before the type.
 
 
 def read_gro(path, step):
-    """Columns of characters: the width of a number is the distance of two points."""
+    """Reads columns of characters: the distance of two decimal points is the width of a number."""
     lines, at, starts, times = lines_of(path), 0, [], []
     while at < len(lines):
         if not lines[at].strip() and all(not line.strip() for line in lines[at:]):
             break
         count = whole_number(path.name, lines, at + 1)
-        rows_of(path.name, lines, at + 2, count + 1)  # and the box
+        rows_of(path.name, lines, at + 2, count + 1)  # The box is a line, too.
         time = re.search(r"\bt=\s*(\S+)", lines[at])
         time = numbers_of(time[1]) if time else []
         times.append(time[0] if len(time) == 1 else float(len(times)))
@@ -55,7 +55,7 @@ def read_gro(path, step):
 
 
 def sections_of(path, lines):
-    """The head, {word: numbers before it}, and {section: (its style, its first line)}."""
+    """Returns the head, {word: numbers before it}, and {section: (its style, its first line)}."""
     head, sections = {}, {}
     for i, line in enumerate(lines[1:], 1):
         text, _, remark = line.partition("#")

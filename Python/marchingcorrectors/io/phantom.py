@@ -30,11 +30,11 @@ def make(path, array, positions, names, values):
     factor, mass = float(values.get("hfact", [1.2])[0]), float(values["massoftype"][0])
 
     def density():
-        with np.errstate(over="ignore", divide="ignore"):  # of damaged ones: infinite
+        with np.errstate(over="ignore", divide="ignore"):  # In damaged files these are infinite.
             ratio = factor / array("h").astype(float)
             return mass * (ratio * ratio * ratio)
 
-    arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # all that is here is gas
+    arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # All that is left is gas.
     arrays.setdefault("density", density)
     return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=mass,
                      density="density", time=float(values["time"][0]) if "time" in values else None,
@@ -44,7 +44,7 @@ def make(path, array, positions, names, values):
 def read_native(path):
     try:
         import sarracen
-    except ImportError:  # scikit-learn, which it does not ask for, goes by another name
+    except ImportError:  # The package scikit-learn, which sarracen does not require, is imported by another name.
         raise FileError(f"{path.name} is a dump of Phantom's own format, which the packages sarracen and scikit-learn read: "
                         "pip install sarracen scikit-learn.") from None
 

@@ -34,7 +34,7 @@ def read_pysph(path):
     solid = np.repeat(walls, counts)
 
     def array(name):
-        """Walls take no part in a field: where they have no such array, it is 0 there."""
+        """Returns one array of all sets. Walls take no part in a field, so it is 0 where they lack it."""
         there = [name in each for _, each in sets.values()]
         found = load([part for part, has in zip(parts, there) if has], name)
         if all(there):

@@ -20,7 +20,7 @@ IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
 
 def lines_of(path):
     data = read_bytes(path)
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # as Excel's "Unicode text"
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # Excel calls this "Unicode text".
         data = data.decode("utf-16", errors="replace").encode()
     if b"\0" in data:
         raise FileError(f"{path.name} is no text.")
@@ -29,7 +29,7 @@ def lines_of(path):
 
 
 def to_number(cell):
-    """As tables have them: nothing, a D of Fortran, a decimal comma; None where it is none."""
+    """Reads a number as tables have it: nothing, Fortran's D, a decimal comma; None if it is none."""
     cell = cell.strip()
     if not NUMBER.fullmatch(cell):
         return None if cell else np.nan
@@ -48,14 +48,14 @@ def check_width(file, count):
 
 
 def columns_of(file, lines, names, separator=None):
-    """{name: array} of rows of values."""
+    """Returns {name: array} of rows of values."""
     try:
-        if any("_" in line for line in lines):  # which Python takes for a part of a number
+        if any("_" in line for line in lines):  # Python takes this for a part of a number.
             raise ValueError
         values = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2).T if lines else np.empty((len(names), 0))
         if values.shape != (len(names), len(lines)):
             raise ValueError
-    except ValueError:  # words, gaps, commas, or lines of different lengths
+    except ValueError:  # The rows have words, gaps, commas, or different lengths.
         rows = [split(line, separator) for line in lines]
         odd = next((i for i, row in enumerate(rows) if len(row) != len(names)), None)
         if odd is not None:
@@ -86,7 +86,7 @@ def numbers_or_words(file, cells, separator):
 
 
 def as_integers(values, cells):
-    """By their own digits, of which no double has all from 2^53 on; as they are where one is no integer."""
+    """Reads integers by their own digits, because doubles lose some from 2^53 on. If one is no integer, returns the numbers as they are."""
     if (np.abs(values) < 2 ** 53).all():
         return values.astype(np.int64) if (values == np.floor(values)).all() else values
     words = cells()
@@ -96,7 +96,7 @@ def as_integers(values, cells):
 
 
 def join_vectors(columns):
-    """Columns that are components of one array, by their names."""
+    """Joins columns that are components of one array, as their names say."""
     groups = {}
     for name in columns:
         found = COMPONENT.fullmatch(name)
@@ -116,17 +116,17 @@ def join_vectors(columns):
 
 
 class NoPositions(FileError):
-    """No name of a column tells of positions."""
+    """Raises the sentence for a table in which no name tells positions."""
 
 
 def axes_of(columns, behind=""):
-    """The columns called x, y and z, with these letters behind: those that are there."""
+    """Returns those of the columns x, y and z, with these letters behind the names, that exist."""
     found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
     return [name for name in found if name is not None]
 
 
 def body_of(file, columns, positions=(), **more):
-    """positions: names of their columns, where names do not tell."""
+    """positions: names of the columns of positions, if names do not tell."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         usual = [name for wanted in POSITIONS for name in arrays
@@ -151,7 +151,7 @@ def body_of(file, columns, positions=(), **more):
 
 
 def name_columns(file, cells):
-    """Without units in brackets; each another."""
+    """Returns names without units in brackets, each different."""
     check_width(file, len(cells))
     names = {}
     for i, cell in enumerate(cells):
@@ -167,7 +167,7 @@ def number_columns(count):
 
 
 def read_table(path):
-    """Rows of values, after one of names, which may stand in a comment."""
+    """Reads rows of values behind a row of names, which may be a comment."""
     comment, rows = "", []
     for line in lines_of(path):
         start = line.lstrip()[:1]
@@ -216,7 +216,7 @@ def rows_of(file, lines, begin, count):
 
 
 def value_of(comment, key):
-    """The text behind KEY= in the second line of extended XYZ, with or without quotes."""
+    """Returns the text behind KEY= in the second line of extended XYZ, with or without quotes."""
     found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
     return (found[1] if found[1] is not None else found[2]) if found else ""
 
@@ -266,7 +266,7 @@ def read_xyz(path, step):
 
 
 def period_of(cell, origin, is_periodic):
-    """Six bounds, of axes without a period 0; or the sides of the cell, nine numbers, where one with a period is tilted."""
+    """Returns six bounds, 0 for axes without a period; or the cell's sides, nine numbers, if a side with a period is tilted."""
     bounds = [0.0] * 6
     for a, side in enumerate(cell):
         if is_periodic[a] and any(side[b] for b in range(3) if b != a):
@@ -277,8 +277,8 @@ def period_of(cell, origin, is_periodic):
 
 
 def read_box(file, words, lines, at):
-    """The cell's sides as vectors, where it begins, and which are periods: sides along the axes, or tilted (xy xz yz), where the
-    first two numbers of a line are those of the box around the cell, or vectors with their origin (abc origin)."""
+    """Returns the cell's sides as vectors, where it begins, and which sides are periods. A dump gives sides along the axes; or tilted (xy xz yz),
+    where the first two numbers of a line are the bounds of the box around the cell; or vectors with their origin (abc origin)."""
     flags = words[-3:] if len(words) >= 3 and all(re.fullmatch("[pfsm]{2}", word) for word in words[-3:]) else []
     kind = " ".join(words[:len(words) - len(flags)])
     if kind not in ("", "xy xz yz", "abc origin"):
@@ -298,7 +298,7 @@ def read_box(file, words, lines, at):
 
 
 def read_lammps(path, step):
-    """Items, each a line of its name, and lines of what it says. TIME is in the run's unit, TIMESTEP a number."""
+    """Reads the items of a dump: a line with the name, then lines with the content. TIME is in the run's unit, TIMESTEP is a number."""
     lines, at, steps, head = lines_of(path), 0, [], {}
     while at < len(lines):
         words, at = lines[at].split(), at + 1
@@ -331,7 +331,7 @@ def read_lammps(path, step):
     names = name_columns(path.name, words)
     columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
     cell, origin, periodic = head.get("box", (np.empty((0, 3)), None, None))
-    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # as they are, unwrapped, as shares of the cell's sides
+    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # Positions may be as they are, unwrapped, or shares of the cell's sides.
     positions = next((each for each in found if len(each) == 3), ())
     if positions in found[2:]:
         if origin is None:

@@ -23,12 +23,12 @@ from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
-CELLS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6, "Cells": None}  # in the order of VTK's cells, and types of such
+CELLS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6, "Cells": None}  # These are in the order of VTK's cells, with types of such cells.
 BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 
 
 def decode_base64(text):
-    """Decodes one piece after the other, each with padding at its end."""
+    """Decodes one base64 piece after the other, each with padding at its end."""
     text = text.translate(None, b" \t\r\n")
     if text.translate(None, BASE64):
         raise ValueError("letters that are not base64's")
@@ -40,7 +40,7 @@ def unpack_lz4(packed, size):
     from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
 
     compressor = vtkLZ4DataCompressor()
-    compressor.AddObserver("ErrorEvent", lambda *_: None)  # its result tells
+    compressor.AddObserver("ErrorEvent", lambda *_: None)  # The result tells.
     found = compressor.Uncompress(np.frombuffer(packed, np.uint8), len(packed), size)
     return b"" if found is None else vtk_to_numpy(found).tobytes()
 
@@ -52,7 +52,7 @@ UNPACK = {"vtkZLibDataCompressor": lambda packed, size: zlib.decompressobj().dec
 
 
 class Array:
-    """A DataArray's attributes, and its text."""
+    """Holds a DataArray's attributes, and its text."""
 
     def __init__(self, attributes, count):
         self.name, self.format = attributes.get("Name", ""), attributes.get("format", "ascii")
@@ -69,7 +69,7 @@ class Array:
 class XmlFile:
     def __init__(self, path):
         self.data = path.read_bytes()
-        self.pieces, self.field, self.file = [], [], {}  # a piece: {"Points": arrays, ..., "count": number of points}
+        self.pieces, self.field, self.file = [], [], {}  # A piece is {"Points": arrays, ..., "count": number of points}.
         self.offsets, self.path, self.array = [], [], None
         appended = re.search(rb"<AppendedData\b([^>]*)>\s*_", self.data)
         self.begin = appended.end() if appended else len(self.data)
@@ -125,7 +125,7 @@ class XmlFile:
         self.array = None if tag == "DataArray" else self.array
 
     def add_text(self, text):
-        if self.array is not None and self.path[-1] == "DataArray":  # and not in what it says about itself
+        if self.array is not None and self.path[-1] == "DataArray":  # This must not be in what the array says about itself.
             self.array.text.append(text)
 
     def values(self, array):
@@ -137,12 +137,12 @@ class XmlFile:
         return values.reshape(array.count, array.columns) if array.columns > 1 else values
 
     def body(self, file, piece):
-        """The particles of a piece."""
+        """Returns the particles of a piece."""
         arrays = by_name(file, ((array.name, array) for array in piece["PointData"]))
         body = Body(self.values(piece["Points"][0]), {name: self.values(array) for name, array in arrays.items()})
         try:
             return self.without_mesh(file, body, piece)
-        except (ValueError, LookupError):  # damaged cells tell nothing
+        except (ValueError, LookupError):  # Damaged cells tell nothing.
             return body
 
     def without_mesh(self, file, body, piece):
@@ -163,7 +163,7 @@ class XmlFile:
                              {array.name: self.values(array) for array in piece["CellData"]})
 
     def bytes_of(self, array):
-        """A header, as it stands before the numbers, and what it says of them."""
+        """Reads the header that stands before the numbers."""
         if array.format == "binary":
             data = decode_base64("".join(array.text).encode())
         else:
@@ -199,7 +199,7 @@ class XmlFile:
 
 
 def read_xml(path):
-    """It may have no points."""
+    """Reads the points; there may be none."""
     try:
         file = XmlFile(path)
         bodies = [file.body(path.name, piece) for piece in file.pieces if piece["count"]]
@@ -214,7 +214,7 @@ def read_xml(path):
 
 
 def elements(path, tag):
-    """The attributes of all elements of this name."""
+    """Returns the attributes of all elements of this name."""
     found, parser = [], expat.ParserCreate()
 
     def take(name, attributes):
@@ -230,7 +230,7 @@ def elements(path, tag):
 
 
 def list_pieces(path):
-    """.pvtp and .pvtu: a list of files whose points are one set."""
+    """Reads .pvtp and .pvtu: a list of files whose points are one set."""
     names = [piece["Source"] for piece in elements(path, "Piece") if piece.get("Source")]
     wanted = path.suffix[:1] + path.suffix[2:]
     odd = next((name for name in names if not name.lower().endswith(wanted.lower())), None)
@@ -240,7 +240,7 @@ def list_pieces(path):
 
 
 def list_series(path):
-    """.vtk.series, ParaView's list of files and their times: {time: files}, in the order of time."""
+    """Reads .vtk.series, ParaView's list of files and times, as {time: files} in the order of time."""
     try:
         entries = json.loads(path.read_bytes())["files"]
         found = sorted(((float(each["time"] + 0), each["name"] + "") for each in entries), key=lambda pair: pair[0])
@@ -255,7 +255,7 @@ def list_series(path):
 
 
 def list_times(path):
-    """.pvd: {time: files}, in their order. A run that was repeated into the same folder adds its steps: the last count."""
+    """Reads .pvd as {time: files} in their order. A run that was repeated into the same folder adds its steps again: the last ones count."""
     entries, again = {}, []
     for entry in elements(path, "DataSet"):
         try:

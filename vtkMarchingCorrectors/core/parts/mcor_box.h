@@ -67,7 +67,7 @@ int mcor_list_images(
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* box.ring: how many cells around the owned ones are examined, too; and how many caps are made for. */
+/* box.ring: how many cells around the owned ones are examined, too. This is the usual number. */
 #define MCOR_BOX_RING 1
 int mcor_ring_of(const mcor_options* options); /* with a box */
 /* How far from a box a particle matters beyond its support, in cubes of its level. */

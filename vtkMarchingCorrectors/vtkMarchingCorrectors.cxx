@@ -105,7 +105,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 void vtkMarchingCorrectors::FillChoice(
   vtkMarchingCorrectorsChoice& choice, vtkRun& run)
 {
-  if (!this->FreeSurface) // which contours no array: all of their values need not be seen
+  if (!this->FreeSurface) // a free surface contours no array, so not all values need be read
   {
     choice.Scalar = this->FindRequest(0, run.Own);
     choice.ScalarDot = this->FindRequest(1, run.Own);
@@ -330,7 +330,7 @@ bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput
   return true;
 }
 
-// Reads first what an observer of the progress may change during the run.
+// A progress observer may change this filter's settings, so they are copied first.
 void vtkMarchingCorrectors::Extract(
   vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output)
 {

@@ -104,13 +104,13 @@ public:
   enum CubeSizeModeType
   {
     UNIFORM = 0, ///< the cube size everywhere
-    ADAPTIVE = 1 ///< that times a power of 2, as fine as the particles are
+    ADAPTIVE = 1 ///< cube sizes times powers of 2, as fine as the particles are
   };
 
   enum TopologyType
   {
     TOPOLOGY_TABLE = 0, ///< Marching Cubes' table alone
-    TOPOLOGY_FIELD = 1  ///< as the field is on ambiguous faces and in ambiguous cells
+    TOPOLOGY_FIELD = 1  ///< the field decides on ambiguous faces and in ambiguous cells
   };
 
   enum BoundaryDetectionType
@@ -506,19 +506,19 @@ private:
   void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
   bool TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput& input);
-  /** Finds the arrays of Widen() for this process's particles, and statistics of them. */
+  /** Finds the arrays of FindWidening() for this process's particles, and their statistics. */
   bool FindWidening(vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input, mcor_options options,
     mcor_surface& surface, vtkPolyData* output);
-  /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
+  /** largestFloat: the largest coordinate of all ranks' points, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
   bool Take(vtkRun& run, vtkMarchingCorrectorsInput& input);
   void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkRun& run);
   void FillOptions(mcor_options& options);
-  /** Findings of the next update, ahead of it. */
+  /** What the next update would find. */
   struct vtkAhead
   {
     double ScalarRange[2] = { 0.0, 0.0 };
@@ -533,7 +533,7 @@ private:
     const mcor_statistics& statistics);
 
   vtkAhead Next;
-  vtkTimeStamp LookTime; // when that was found
+  vtkTimeStamp LookTime; // when these values were found
 };
 VTK_ABI_NAMESPACE_END
 

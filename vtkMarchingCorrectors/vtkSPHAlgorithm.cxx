@@ -121,7 +121,7 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
-// By its name alone, VTK 9.1 makes no vtkPointSet.
+// VTK 9.1 cannot make a vtkPointSet by its class's name.
 vtkSmartPointer<vtkDataObject> vtkSPHAlgorithm::NewOutput(
   const std::string& className, vtkDataObject* like)
 {

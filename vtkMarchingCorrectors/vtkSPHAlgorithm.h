@@ -137,7 +137,8 @@ struct vtkSPHParticlesChoice
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UnusedType; ///< a sentence: no fluid was chosen, and yet an array seems to tell it
-  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
+  vtkTypeBool IgnoreSolids = 0; ///< each filter has a setter of this, or another one that decides
+                                ///< it
   int Kernel = 0;
   int Dimension = 0;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
@@ -169,8 +170,8 @@ public:
 
   enum BlocksType
   {
-    TOGETHER = 0, ///< one set of particles
-    APART = 1     ///< each by itself
+    TOGETHER = 0, ///< all blocks are one set of particles
+    APART = 1     ///< each block is a set by itself
   };
 
   enum KernelType
@@ -555,7 +556,7 @@ protected:
    * the same. Collective if processes share a run.
    */
   vtkDataObject* TakeVertices(vtkDataObject* data);
-  /** Reports how many points of the data are no particles. Collective likewise. */
+  /** Reports how many points of the data are not particles. Collective if processes share a run. */
   void WarnOfMesh(vtkDataObject* data, vtkDataObject* taken);
 
   /**
@@ -563,7 +564,7 @@ protected:
    * together once and kept while they are the same. Null for other data.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
-  /** Does so ahead of an update, with data that may not be read so far. */
+  /** Does the same ahead of an update, with data that may not have been read yet. */
   vtkSmartPointer<vtkPointSet> TakeParticlesAhead(vtkDataObject* data);
   /** Does the same with the result of TakeVertices(). */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
@@ -607,7 +608,7 @@ protected:
   vtkMultiProcessController* Controller = nullptr;
 
   std::set<int> Warned;  // kinds of warnings that this run has given
-  std::string BlockName; // begins the messages about a block of composite data
+  std::string BlockName; // text before messages about a block of composite data
   vtkSmartPointer<vtkFieldData> RunStatistics;
   std::string Statistics;
   class vtkInternals;
@@ -619,7 +620,7 @@ private:
   vtkSPHAlgorithm(const vtkSPHAlgorithm&) = delete;
   void operator=(const vtkSPHAlgorithm&) = delete;
 
-  /** Makes a data object of this class, which may be that of another one. */
+  /** Makes a data object of this class; `like` may have the same class. */
   static vtkSmartPointer<vtkDataObject> NewOutput(
     const std::string& className, vtkDataObject* like);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);

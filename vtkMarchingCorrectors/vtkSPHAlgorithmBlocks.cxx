@@ -45,13 +45,14 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
   blocks->CompositeShallowCopy(input);
 #else
-  blocks->ShallowCopy(input); // the same blocks
+  blocks->ShallowCopy(input); // the same blocks as in the input
 #endif
   output->CopyStructure(blocks);
   const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(blocks->NewTreeIterator());
-  std::vector<vtkSmartPointer<vtkDataObject>> taken; // copies, but the first: data kept are its own
+  std::vector<vtkSmartPointer<vtkDataObject>> taken; // further blocks use copies, because kept data
+                                                     // belong to the first one
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
     vtkDataObject* block = iterator->GetCurrentDataObject();
@@ -262,7 +263,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
   return true;
 }
 
-// All processes that share a run would have to ask.
+// All processes that share a run would have to ask together.
 double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =

@@ -104,7 +104,7 @@ private:
 struct vtkSPHComponents::Content
 {
   double Particles = 0.0;
-  OrderlessSum Mass, Momentum[3]; ///< without masses, as if each were 1
+  OrderlessSum Mass, Momentum[3]; ///< without masses, each particle counts as 1
   bool HasMass = false, HasVelocity = false;
 
   double Velocity(int axis) const
@@ -253,7 +253,8 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     "z", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx",
     "vy", "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles = 16; // the others are about particles, which may be absent
+  constexpr size_t withoutParticles = 16; // the other arguments are about particles, which may be
+                                          // absent
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
   for (size_t c = 0; c < used; ++c)
@@ -271,7 +272,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
       continue;
     }
     const vtkSPHPiece& piece = pieces.Pieces[i];
-    double iso = NoNumber; // the points may have it rounded to float
+    double iso = NoNumber; // the points may have the value rounded to float
     for (vtkIdType v = 0; isoValues && v < listed->GetNumberOfValues(); ++v)
     {
       const double value = listed->GetComponent(v, 0);
@@ -395,7 +396,7 @@ int vtkSPHComponents::RequestData(
     auto* other = vtkPolyData::SafeDownCast(particles);
     if (other && other->GetNumberOfPolys() > 0 && mesh->GetNumberOfPolys() == 0)
     {
-      particles = std::exchange(mesh, other); // chosen the wrong way round
+      particles = std::exchange(mesh, other); // the inputs were exchanged
     }
     problem = FindProblem(mesh);
     if (problem.empty())

@@ -38,7 +38,7 @@ std::vector<double> InSpace(const mcor_derivatives& derivatives)
 /** The arrays that a run adds to the particles, as they were wanted when it began. */
 struct vtkSPHDerivatives::vtkWanted
 {
-  /** One of the arrays made of the gradient of a vector. */
+  /** An array that is made of the gradient of a vector. */
   struct Quantity
   {
     std::string Name;
@@ -77,10 +77,10 @@ struct vtkSPHDerivatives::vtkWanted
       mcor_decompose_gradients(gradients, derivatives.count, &flow);
       vtkSPHAddArray(data, quantity.Name.c_str(),
         vtkSPHAdoptReal(made, quantity.Components, derivatives.count, asFloat));
-      std::free(made); // where there are no particles
+      std::free(made); // made is left only if there are no particles
       if (quantity.Values == &mcor_flow::vorticity && from.Components == 3)
       {
-        data->SetActiveScalars(quantity.Name.c_str()); // the array that most users want to see
+        data->SetActiveScalars(quantity.Name.c_str()); // most users want to see this array
       }
     }
     if (this->Gradient)
@@ -125,7 +125,7 @@ vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particle
     this->ComputeGradient != 0, name(this->ResultArrayName) };
 }
 
-// Reads first what an observer of the progress may change during the run.
+// A progress observer may change this filter's settings, so they are copied first.
 void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);

@@ -24,7 +24,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Triangles of polygons, or lines. */
+/** Returns the triangles of polygons, or lines. */
 struct Shapes
 {
   std::string Name;

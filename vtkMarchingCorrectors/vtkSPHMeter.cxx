@@ -103,7 +103,7 @@ bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
   return true;
 }
 
-// Without fluid, each process measures for itself, of no particles, that there is none.
+// Without fluid, each process calls the core without particles, which finds nothing.
 void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* table = vtkTable::SafeDownCast(output);

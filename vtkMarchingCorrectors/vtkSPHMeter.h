@@ -80,7 +80,7 @@ protected:
     this->Modified();
   }
 
-  std::vector<Place> Places; // that were added
+  std::vector<Place> Places; // the places that were added
 
   ///@{
   /**
@@ -109,7 +109,7 @@ private:
   bool CheckNames(const std::vector<Place>& places);
   static std::vector<Place> Merge(vtkRun& run, const std::vector<Place>& mine);
 
-  vtkDataObject* More = nullptr; // the second input, while a run lasts
+  vtkDataObject* More = nullptr; // the second input, during a run
   double InputTime = 0.0;
 };
 VTK_ABI_NAMESPACE_END

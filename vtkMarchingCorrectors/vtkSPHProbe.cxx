@@ -104,7 +104,7 @@ private:
 
   vtkDataSet* Data;
   vtkSmartPointer<vtkDataArray> Stored;
-  std::unique_ptr<double[]> Copied; // not a vector, which would write zeros first
+  std::unique_ptr<double[]> Copied; // an array, because a vector would write zeros first
   vtkIdType Room = 0;
 };
 
@@ -241,8 +241,9 @@ public:
     data->AddArray(this->Mask);
   }
 
-  std::vector<std::int64_t> NotFinite; // of the interpolated arrays, as in mcor_samples
-  mcor_statistics Statistics = {};     // of the last points
+  std::vector<std::int64_t> NotFinite; // where interpolated arrays are not finite, as in
+                                       // mcor_samples
+  mcor_statistics Statistics = {};     // statistics of the last points
 
 private:
   /** An array of the output, and that of its gradient, if wanted. */
@@ -283,9 +284,9 @@ private:
   }
 
   const double Null;        // the value at points that are not valid
-  std::vector<Pair> Arrays; // in the order of the core's attributes
+  std::vector<Pair> Arrays; // their order is that of the core's attributes
   Pair Weight;
-  vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter
+  vtkNew<vtkCharArray> Mask; // chars, as in vtkProbeFilter
 };
 }
 
@@ -387,7 +388,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
       return;
     }
   }
-  // Reads here what an observer of the progress may change during the run.
+  // A progress observer may change this filter's settings, so they are copied here.
   Samples samples(*input, run->Options, this->ValidPointMaskArrayName,
     run->Points ? run->Points->GetNumberOfPoints() : 0,
     this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue);
@@ -432,7 +433,8 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
 {
   vtkPointData* from = run.Own->GetPointData();
-  std::vector<std::int64_t> uses(from->GetNumberOfArrays(), 0); // by processes
+  // how many processes use each array
+  std::vector<std::int64_t> uses(from->GetNumberOfArrays(), 0);
   for (int i = 0; output && i < from->GetNumberOfArrays(); ++i)
   {
     const bool isUsed =

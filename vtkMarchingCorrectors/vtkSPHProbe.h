@@ -100,12 +100,13 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
-  bool TakesTogether() const override { return false; } // points do not see each other
+  bool TakesTogether() const override { return false; } // each point is evaluated without the
+                                                        // others
 
-  /** Behind the points, where these are an input. */
+  /** The port of the particles: after the points, if these are an input. */
   int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }
 
-  vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
+  vtkSmartPointer<vtkPointSet> Particles; // during a run
 
 private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;

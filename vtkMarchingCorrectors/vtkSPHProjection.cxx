@@ -18,7 +18,7 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/** The axis of the world along which the image's axis k goes; -1 where they are turned. */
+/** Returns the axis of the world along which the image's axis k goes, or -1 if the image is turned. */
 int AxisOf(const mcor_projection& found, int k)
 {
   const double* axis = found.axes + 3 * k;
@@ -26,7 +26,7 @@ int AxisOf(const mcor_projection& found, int k)
   return one < axis + 3 ? static_cast<int>(one - axis) : -1;
 }
 
-/** Along x, y and z of the image. */
+/** Finds the extent along x, y and z of the image. */
 void FindExtent(const mcor_projection& found, int extent[6])
 {
   for (int k = 0; k < 3; ++k)

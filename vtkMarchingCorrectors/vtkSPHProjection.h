@@ -113,7 +113,7 @@ private:
   mcor_view MakeView() const;
   void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
 
-  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // asked of this process
+  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // extent that this process is asked for
 };
 VTK_ABI_NAMESPACE_END
 

@@ -34,7 +34,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
  */
 constexpr double Margin = 0.03;
 
-/** Points of a volume whose dimensions are not set. */
+/** How many points a volume has if its dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
 /** The range of a plane in a box, along the plane's axes u and v; empty if it misses the box. */
@@ -79,7 +79,7 @@ struct Rectangle
     }
     for (int edge = 0; edge < 24; ++edge)
     {
-      const int c = edge / 3, d = c | 1 << edge % 3; // the same where c is the edge's end
+      const int c = edge / 3, d = c | 1 << edge % 3; // d is c where c is the edge's end
       if ((heights[c] < 0.0) != (heights[d] < 0.0))
       {
         const double part = heights[c] / (heights[c] - heights[d]);
@@ -346,7 +346,7 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkNew<vtkCellArray> kept; // the quads without a corner that is not valid
+  vtkNew<vtkCellArray> kept; // keeps the quads whose corners are all valid
   vtkIdType size;
   const vtkIdType* corners;
   for (vtkIdType cell = 0; cell < slice->GetNumberOfPolys(); ++cell)

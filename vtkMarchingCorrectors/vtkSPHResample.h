@@ -107,8 +107,8 @@ private:
 
   int UsedDimensions[3] = { 1, 1, 1 };
   int FlatAxis = -1;
-  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // of a volume, asked of this process
-  bool HasPoints = true;                         // of a slice or a line
+  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // extent of a volume that this process is asked for
+  bool HasPoints = true;                         // whether this process has the points of a slice or line
 };
 VTK_ABI_NAMESPACE_END
 

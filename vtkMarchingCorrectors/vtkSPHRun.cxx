@@ -184,7 +184,7 @@ bool vtkSPHAlgorithm::vtkRun::Call(
   return this->Agree(message) && status == MCOR_OK;
 }
 
-// It reads first what an observer of the progress may change.
+// A progress observer may change this filter's settings, so they are copied first.
 int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
   const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
 {

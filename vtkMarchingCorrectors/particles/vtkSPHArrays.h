@@ -31,11 +31,10 @@ class vtkPointSet;
 /** Returns the array's name, empty for none. */
 std::string vtkSPHNameOf(vtkAbstractArray* array);
 
-/** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place
- * of one. */
+/** Returns the array's name, or "" for entries that lists of arrays, as in ParaView's panel, show in place of one. */
 std::string vtkSPHRealName(const std::string& name);
 
-/** "Point arrays: A, B." */
+/** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
 /** VTK's modification times are unique in a process: object and time identify a state. */
@@ -49,7 +48,7 @@ vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdT
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(
   vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
 
-/** Adds all arrays, in place of those of their names; scalars become the active ones. */
+/** Adds all arrays, and replaces arrays of the same names; scalars become the active ones. */
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
 /** Returns the points with these numbers, in this order. */
@@ -61,9 +60,9 @@ vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
 /** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);
-/** Takes over a sentence likewise, with its slots filled, see vtkSPHAlgorithm::SetWord(). */
+/** Takes over a sentence of the core likewise, with its slots filled, see vtkSPHAlgorithm::SetWord(). */
 std::string vtkSPHTakeText(mcor_message message);
-/** What fills the slots. */
+/** Fills the slots. */
 extern mcor_word vtkSPHWord;
 
 /** Hands a malloc'ed buffer over to a VTK array. */
@@ -177,7 +176,7 @@ private:
   std::vector<vtkSmartPointer<vtkAbstractArray>> Held;
 };
 
-/** The name of the fittest array to show; empty: there is none. */
+/** Returns the name of the most suitable array to show, or "". */
 std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks = nullptr);
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
 {

@@ -77,7 +77,8 @@ bool TellsOfWalls(const std::string& name)
 struct Leaf
 {
   vtkDataObject* Data; ///< null: the block is empty
-  std::string Name;    ///< its name, or that of the block that it is a partition of; empty: none
+  std::string Name;    ///< its name, or the name of the block that it is a partition of; empty:
+                       ///< none
   unsigned int Index;
 
   vtkPointSet* Points() const
@@ -93,7 +94,7 @@ struct Leaf
 std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 {
   std::vector<Leaf> leaves;
-  std::string whole; // a block whose partitions are the blocks up to index `last`
+  std::string whole; // blocks whose partitions are the blocks up to index `last`
   unsigned int last = 0;
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(tree->NewTreeIterator());
@@ -254,7 +255,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     joined->GetPointData()->AddArray(marks);
   }
   std::vector<vtkDataObject*> all = ListAll(tree);
-  std::reverse(all.begin(), all.end()); // the first of several arrays of one name stays
+  std::reverse(all.begin(), all.end()); // of several arrays with one name the first stays
   for (vtkDataObject* each : all)
   {
     joined->GetFieldData()->PassData(each->GetFieldData());

@@ -32,10 +32,11 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles
 struct vtkSPHPeriod
 {
   std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
-  std::string Array;          ///< the array that tells it, or, without a period, of a tilted cell
+  std::string Array;          ///< the array that tells the period or, if there is none, a tilted
+                              ///< cell
 };
 
-/** Finds it, see mcor_find_period. */
+/** Finds the period in field data, see mcor_find_period. */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 
 /** Whether an array of this name may tell a period. */

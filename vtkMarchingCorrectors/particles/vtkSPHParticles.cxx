@@ -245,7 +245,8 @@ bool vtkSPHParticles::IsMade(const char* name)
   return name && std::strncmp(name, MadeName, std::strlen(MadeName)) == 0;
 }
 
-// Neighbours may be other processes' particles: all get all. Particles that were sent have theirs.
+// Neighbours may be other processes' particles, so every process gets all particles. Particles that
+// another process sent bring their values.
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
   const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call)
 {
@@ -275,10 +276,10 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
       mine.push_back(this->Core.solid ? this->Core.solid[i] : 0);
     }
     std::vector<std::vector<double>> ranks = this->Description.Gather(mine);
-    ranks.insert(ranks.begin(), std::move(mine)); // one's own first
+    ranks.insert(ranks.begin(), std::move(mine)); // this process' own field data come first
     for (const std::vector<double>& rank : ranks)
     {
-      for (size_t a = 0; a < 3; ++a) // one rank may have the field data that tell of it
+      for (size_t a = 0; a < 3; ++a) // only one rank may have the field data that tell the period
       {
         options.periodic[2 * a + 1] =
           std::max(options.periodic[2 * a + 1], options.periodic[2 * a] + rank[a]);

@@ -52,7 +52,7 @@ struct vtkSPHWanted
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
 
-/** Marks the particles that the choice leaves; empty: all. An array that is not there leaves all. */
+/** Marks the particles that the choice keeps; empty: all. An array that does not exist keeps all. */
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
@@ -78,8 +78,8 @@ public:
   bool Collect(const vtkSPHWanted& wanted = {}, const mcor_ranks* ranks = nullptr);
 
   ///@{
-  /** The name under which what was made of neighbours goes to other processes with the particles, so
-   * that no array of theirs has it; whether this is one. */
+  /** Returns the name under which values made from neighbours travel to other processes with the
+   * particles, which no array of a file has; and whether a name is such a one. */
   static std::string NameMade(const std::string& name);
   static bool IsMade(const char* name);
   ///@}
@@ -91,7 +91,7 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /** "ParticleType = 0"; empty where all particles are fluid. */
+  /** Returns what tells the fluid, "ParticleType = 0"; empty if all particles are fluid. */
   std::string DescribeFluid() const;
 
   /** The array that serves for this; null: none does. */
@@ -105,17 +105,18 @@ public:
   std::string Error;
   std::string Unused; ///< a sentence: what is set has no effect
 
-  std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
-  std::vector<vtkSPHAttribute> FromNearest;       // identifiers, integers, strings
+  std::vector<vtkSPHAttribute> Interpolated;      // their order is that of Core.attributes
+  std::vector<vtkSPHAttribute> FromNearest;       // arrays of identifiers, integers, strings
   std::vector<std::uint64_t> ParticlesSignature;  // equal signatures: same particles
-  std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar, empty if none
+  std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar; empty: there is
+                                                  // none
   std::vector<std::uint64_t> AttributesSignature; // the same for the interpolated arrays
 
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Fills an array of this name by the core's function, unless there is one of the same particles;
-   * null, and Error, where it fails. */
+  /** Fills an array of this name by the core's function, unless it was filled for the same
+   * particles. Returns null, and sets Error, if that fails. */
   vtkSmartPointer<vtkDataArray> Compute(const char* name,
     const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call);
   bool ComputeNeeded();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: settings in PrintSelf(). */
+/** Private to the module: prints settings in PrintSelf(). */
 #ifndef vtkSPHPrint_h
 #define vtkSPHPrint_h
 
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-/** Prints members of the class: of CubeSize a line "Cube Size: 0.1". */
+/** Prints members of the class: CubeSize as a line "Cube Size: 0.1". */
 #define vtkSPHPrintMacro(...) vtkSPHPrint(os, indent, #__VA_ARGS__, __VA_ARGS__)
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -34,7 +34,7 @@ void vtkSPHPrintValue(ostream& os, const T (&values)[N])
   }
 }
 
-/** `names`: those of the values, with a comma between them. */
+/** `names`: names of the values, with a comma between them. */
 template <typename... ValueT>
 void vtkSPHPrint(ostream& os, vtkIndent indent, const char* names, const ValueT&... values)
 {

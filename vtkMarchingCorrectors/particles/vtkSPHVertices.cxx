@@ -57,7 +57,7 @@ struct Cells
   }
 };
 
-/** Adds these values of arrays that have `count`, unless there is one of that name. */
+/** Adds the arrays that have `count` values, unless an array of the same name exists. */
 void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkPointData* to)
 {
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
@@ -87,8 +87,8 @@ vtkSmartPointer<vtkDataObject> TakeOfSet(vtkPointSet* data, bool haveVertices)
   {
     return data;
   }
-  vtkNew<vtkIdList> taken, from;              // points, and the vertices whose values are theirs
-  std::vector<vtkIdType> vertexOf(count, -1); // for each point the first one that uses it
+  vtkNew<vtkIdList> taken, from;              // points, and the vertices whose values they get
+  std::vector<vtkIdType> vertexOf(count, -1); // for each point: the first vertex that uses it
   for (vtkIdType cell = 0; cells.HasVertices && cell < cells.List->GetNumberOfCells(); ++cell)
   {
     vtkIdType corners = 0;

@@ -95,7 +95,7 @@ void vtkSPHPieces::JoinSides()
   {
     const double period = this->Period[2 * a + 1] - this->Period[2 * a];
     const double tolerance = SideTolerance * period;
-    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // of points that triangles use
+    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // points that triangles use
     for (const auto& triangle : this->Triangles)
     {
       for (const vtkIdType point : triangle)

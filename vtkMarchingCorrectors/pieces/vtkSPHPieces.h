@@ -16,12 +16,12 @@ class vtkPolyData;
 /** One piece. Lengths are in the unit of the positions. */
 struct vtkSPHPiece
 {
-  vtkIdType Parent = -1; ///< of a cavity: the piece around it; -1: none
+  vtkIdType Parent = -1; ///< of a cavity: the piece around it; else -1
   bool Closed = true;    ///< each edge has a triangle on both sides
   bool Endless = false;  ///< closed only around a period, so that it has no volume
-  double Iso = 0.0;      ///< the value that its points have
+  double Iso = 0.0;      ///< the iso value of its points
   double Area = 0.0;
-  double Volume = 0.0; ///< if closed; negative for a cavity
+  double Volume = 0.0; ///< only of a closed piece; negative for a cavity
   double Centre[3] = { 0.0, 0.0, 0.0 };
   double Bounds[6] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN, VTK_DOUBLE_MAX, VTK_DOUBLE_MIN,
     VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
@@ -42,11 +42,11 @@ struct vtkSPHPiece
 class vtkSPHPieces
 {
 public:
-  /** isoValues: of the points; null: there is one for all. */
+  /** isoValues: the iso value of each point; null: there is only one. */
   vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const double period[6]);
 
   std::vector<vtkSPHPiece> Pieces;
-  std::vector<double> IsoValues; ///< of all pieces, ascending, each once
+  std::vector<double> IsoValues; ///< iso values of all pieces, ascending, each once
   std::vector<vtkIdType> PieceOfTriangle;
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
@@ -82,10 +82,10 @@ private:
   double Period[6];
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  std::vector<vtkIdType> Root;   // of points: joined by triangles; then one for each part
-  std::vector<vtkIdType> Twin;   // the point that stands for all those a period apart
-  std::vector<vtkIdType> Group;  // of parts, by their roots: joined across sides
-  std::vector<Shift> GroupShift; // of a part: periods to its group's first part
+  std::vector<vtkIdType> Root;   // each point's representative: first by triangles; later one for each part
+  std::vector<vtkIdType> Twin;   // the point that stands for all points a period apart
+  std::vector<vtkIdType> Group;  // representatives of parts that meet across sides
+  std::vector<Shift> GroupShift; // how many periods a part lies from its group's first part
   std::vector<char> GroupEndless;
 };
 VTK_ABI_NAMESPACE_END

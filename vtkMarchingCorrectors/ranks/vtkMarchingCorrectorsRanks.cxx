@@ -52,7 +52,7 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
-  // Takes what is global from the first rank that had work: it is the same on all of these.
+  // Takes what is global from the first rank that had work, because all such ranks have the same.
   const auto known = std::find_if(
     parts.begin(), parts.end(), [](const mcor_statistics& part) { return part.cube_size > 0.0; });
   mcor_statistics all = known == parts.end() ? mcor_statistics() : *known;
@@ -80,7 +80,8 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
       (one.correction_deviation * one.correction_deviation +
         one.correction_mean * one.correction_mean);
     vertices += corrected;
-    evaluations += std::round(corrected * (one.iterations_mean + 1.0)); // a whole number
+    // this one is a whole number
+    evaluations += std::round(corrected * (one.iterations_mean + 1.0));
   }
   points = std::max(points, 1.0);
   all.correction_mean = length / points;
@@ -150,7 +151,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   }
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  Numbers first(1, 0); // and, last, the number behind them
+  Numbers first(1, 0); // the last entry is the number behind all of them
   for (const Key& key : distinct)
   {
     first.push_back(first.back() + weight(key));
@@ -164,7 +165,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   {
     answers.emplace_back();
     auto at = distinct.begin();
-    for (const Key& key : theirs) // which ascend
+    for (const Key& key : theirs) // the numbers ascend
     {
       at = std::lower_bound(at, distinct.end(), key);
       answers.back().push_back(before + first[static_cast<std::size_t>(at - distinct.begin())]);
@@ -233,7 +234,8 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
   mcor_measures measures = {};
   const Numbers own(numbers->GetPointer(0), numbers->GetPointer(0) + numbers->GetNumberOfTuples());
   const auto first =
-    std::find(own.begin(), own.end(), std::int64_t(0)); // the first point of the whole surface
+    std::find(own.begin(), own.end(), std::int64_t(0)); // the first point of the whole surface is
+                                                        // the origin
   for (int a = 0; a < 3; ++a)
   {
     measures.origin[a] = first == own.end() ? std::numeric_limits<double>::infinity()
@@ -288,7 +290,7 @@ struct JoinedLines
   {
     const auto numberOf = [this](std::int32_t point)
     { return static_cast<std::int32_t>(this->Numbers->GetValue(point)); };
-    vtkNew<vtkIntArray> pieces, corners; // of lines, and of triangles, between points of the whole
+    vtkNew<vtkIntArray> pieces, corners; // pieces of lines, and triangles, by points of the whole
     pieces->SetNumberOfComponents(2);
     corners->SetNumberOfComponents(3);
     for (std::int64_t line = 0; line < surface.line_count; ++line)
@@ -359,12 +361,12 @@ struct JoinedLines
     output->GetCellData()->SetGlobalIds(cells);
   }
 
-  vtkIdType Count = 0; ///< of all lines
+  vtkIdType Count = 0; ///< number of all lines
   bool Failed = false; ///< memory ran out on any rank
 
 private:
   vtkSPHOwned<mcor_surface, mcor_free_surface> Whole; ///< all cells and points, on the first rank
-  const vtkSmartPointer<vtkIdTypeArray> Numbers;      ///< of this rank's points
+  const vtkSmartPointer<vtkIdTypeArray> Numbers;      ///< numbers of this rank's points
 };
 }
 
@@ -467,7 +469,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorr
     mcor_input core = input.Core;
     mcor_options asked = options;
     run.OfAll(core, asked);
-    asked.dimension = this->Dimension; // the user's choice, not what was found
+    asked.dimension = this->Dimension; // the user's choice counts, not what was found
     this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));
   }
   this->Summarize(input, options, surface.statistics);

@@ -38,7 +38,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
   const auto takeNumbers = [](vtkDataSetAttributes* data)
   {
     auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
-    if (vtkDataArray* ids = data->GetGlobalIds()) // of any type
+    if (vtkDataArray* ids = data->GetGlobalIds()) // arrays of any type
     {
       numbers->DeepCopy(ids);
       data->RemoveArray(ids->GetName());
@@ -125,14 +125,14 @@ vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   {
     return GatherSurface(ranks, part);
   }
-  auto whole = vtkSmartPointer<vtkPolyData>::New(); // the first rank has all, as of lines
+  auto whole = vtkSmartPointer<vtkPolyData>::New(); // for lines, the first rank has everything
   whole->ShallowCopy(part);
   whole->GetPointData()->RemoveArray("GlobalPointIds");
   whole->GetCellData()->RemoveArray("GlobalCellIds");
   return ranks.GetRank() == 0 ? whole : nullptr;
 }
 
-// The first rank has all of them, with what the table tells of them.
+// The first rank has all pieces, and all that the table says about them.
 vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
 {

@@ -101,7 +101,8 @@ public:
    */
   void ReduceRanges(double* ranges, int count)
   {
-    const auto negateGreatest = [ranges, count] // so that one message does for both
+    const auto negateGreatest = [ranges, count] // the sign is reversed, so that one message does
+                                                // for both
     {
       for (int i = 1; i < 2 * count; i += 2)
       {

@@ -215,8 +215,8 @@ struct Form
 {
   std::string Name;
   int Type;
-  std::vector<std::string> Labels; // of its components; empty: they have none
-  int Attribute;                   // of vtkDataSetAttributes, or -1
+  std::vector<std::string> Labels; // names of its components; empty: they have none
+  int Attribute;                   // attribute type of vtkDataSetAttributes, or -1
 
   bool IsLike(const Form& other) const
   {
@@ -225,7 +225,7 @@ struct Form
   }
 };
 
-/** The form of the positions, then of the point arrays. */
+/** Returns the forms of the positions and of all point arrays. */
 using Layout = std::vector<Form>;
 }
 
@@ -403,8 +403,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
-// Keeps the order of the arrays, and appends those that were computed, so that they are found
-// again.
+// Keeps the arrays in their order, and appends the computed ones, so that they are found again.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
 {
   std::vector<vtkAbstractArray*> arrays;

@@ -275,7 +275,8 @@ void vtkSPHRanksSpace::Cut(
     below += (middle++)->Work;
   }
   const double brick = BrickCubes * this->Globals->measured.cube;
-  const double side = middle == end ? 0.0 : std::floor(middle->At[axis] / brick); // or the next
+  // or at the next brick
+  const double side = middle == end ? 0.0 : std::floor(middle->At[axis] / brick);
   const std::int64_t less = goal - workUntil(findEnd(side * brick));
   const std::int64_t more = workUntil(findEnd((side + 1.0) * brick)) - goal;
   const double plane =
@@ -356,7 +357,7 @@ void vtkSPHRanksSpace::FindReached(const double at[3], double reach, std::vector
   }
 }
 
-// Adds those of so many ranks, from the first one on, whose boxes overlap this box.
+// Adds the ranks, of so many from the first one on, whose boxes overlap this box.
 void vtkSPHRanksSpace::FindOverlaps(
   const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const
 {
@@ -391,7 +392,7 @@ namespace
 {
 using Range = std::array<double, 2>; // least and greatest
 
-/** Cells around all fluid, with what all ranks have in them. */
+/** A grid of cells around all fluid, with what all ranks have in each cell. */
 struct CoarseGrid
 {
   explicit CoarseGrid(const mcor_measure& m)
@@ -432,7 +433,7 @@ struct CoarseGrid
   int CountSurfaces(const mcor_options& options, std::size_t cell) const
   {
     double low = this->Ranges[cell][0], high = this->Ranges[cell][1];
-    int ends = 0; // sides at which the fluid ends
+    int ends = 0; // how many sides the fluid ends at
     std::size_t stride = 1;
     for (const std::size_t size : this->Size)
     {
@@ -456,8 +457,8 @@ struct CoarseGrid
   double Edge;
   const double* const Low;
   std::size_t Size[3];
-  std::vector<std::int64_t> Counts; // of fluid particles
-  std::vector<Range> Ranges;        // of what is contoured
+  std::vector<std::int64_t> Counts; // number of fluid particles
+  std::vector<Range> Ranges;        // range of the contoured scalar
 };
 }
 
@@ -485,7 +486,7 @@ std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input&
     ranks.ReduceRanges(grid.Ranges.front().data(), count);
   }
   const double across = grid.Edge / globals.measured.cube;
-  std::vector<std::int64_t> shares; // of a cell's surface, for each of its particles
+  std::vector<std::int64_t> shares; // the cost of a cell's surface, for each of its particles
   for (std::size_t cell = 0; cell < grid.Counts.size(); ++cell)
   {
     const double particles = static_cast<double>(std::max<std::int64_t>(grid.Counts[cell], 1));

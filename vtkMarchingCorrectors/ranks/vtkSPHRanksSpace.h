@@ -23,8 +23,8 @@ struct vtkSPHRanksPlace
 {
   double At[3]; ///< in the first period
   std::int64_t Work;
-  vtkIdType Particle = -1; ///< its number; -1: a point
-  double Reach = 0.0;      ///< of the particle, without the least margin
+  vtkIdType Particle = -1; ///< number of the particle; -1: the work is for a point
+  double Reach = 0.0;      ///< reach of the particle, without the least margin
 };
 
 /**
@@ -54,7 +54,7 @@ public:
 
   bool IsShared() const { return !this->Boxes.empty(); }
 
-  /** Returns a rank's box, as in mcor_options; may hold nothing. */
+  /** Returns a rank's box in the form of mcor_options; it may hold nothing. */
   vtkSPHRanksBox GetBox(int rank) const;
 
   /** Returns the box that holds all ranks' boxes. */
@@ -66,9 +66,9 @@ public:
   /** Lists, for each rank, those of this rank's points that its box holds. */
   vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
-  std::int64_t OwnedParticles = 0; ///< of all ranks' particles, those in this rank's box
-  std::int64_t Particles = 0;      ///< these, and copies of others'
-  std::int64_t Work = 0;           ///< of the particles in this rank's box
+  std::int64_t OwnedParticles = 0; ///< number of all ranks' particles that lie in this rank's box
+  std::int64_t Particles = 0;      ///< number of these particles, and of copies of others'
+  std::int64_t Work = 0;           ///< work of the particles in this rank's box
 
 private:
   using Samples = std::vector<vtkSPHRanksPlace>::iterator;
@@ -85,14 +85,15 @@ private:
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;
   double Margin = 0.0; ///< the least by which a support may miss a box that needs the particle
-  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< of a period; 0: open
+  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< lengths of the periods; 0: open
   vtkSPHRanksBox Whole = {};
   struct Plane
   {
     int Axis;
     double At;
   };
-  std::vector<Plane> Planes; ///< by rank: below the upper one of two groups, which begins with it
+  std::vector<Plane> Planes; ///< by rank: the upper side of the lower of two groups, where the second group begins with
+                             ///< this rank
   std::vector<vtkSPHRanksBox> Boxes; ///< by rank
 };
 

@@ -25,7 +25,7 @@ class vtkPolyData;
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);
 
-/** Gives particles without points the arrays that those of other processes have. Collective. */
+/** Gives particles without points the arrays that other processes' particles have. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* particles);
 
@@ -46,7 +46,7 @@ inline void vtkSPHAwaitRanks(vtkMPIController* controller)
     controller->NoBlockSend(&sent, 1, (rank + step) % count, tag, sending);
     for (vtkMPICommunicator::Request* request : { &receiving, &sending })
     {
-      for (std::chrono::microseconds pause(10); !request->Test(); // less and less often
+      for (std::chrono::microseconds pause(10); !request->Test(); // asks less and less often
            pause = std::min(2 * pause, std::chrono::microseconds(1000)))
       {
         std::this_thread::sleep_for(pause);

@@ -208,7 +208,8 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   const bool good = this->Measure(particles, true);
   core.estimate_smoothing_length = core.smoothing_length_is_support_radius = 0;
   core.smoothing_length = {};
-  core.smoothing_length.constant = this->Globals.measured.h_estimate; // as if it had been given
+  // as if the user had given it
+  core.smoothing_length.constant = this->Globals.measured.h_estimate;
   return good;
 }
 
@@ -296,7 +297,7 @@ const std::uint8_t* vtkSPHAlgorithm::vtkSharedRun::MarkOwned()
   {
     this->Owned.push_back(this->Owns(this->Near, i) ? 1 : 0);
   }
-  this->Owned.push_back(0); // not null where there are none
+  this->Owned.push_back(0); // not null, even without particles
   return this->Owned.data();
 }
 
@@ -355,7 +356,7 @@ void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home
       home ? home->GetNumberOfPoints() : 0);
   for (const auto& array : came)
   {
-    found->AddArray(array); // in place of that of its name
+    found->AddArray(array); // replaces the array of the same name
   }
 }
 
@@ -415,7 +416,7 @@ void vtkSPHAlgorithm::vtkSharedRun::WarnOfParticles(
   if (this->IsFirst() && some != all.end())
   {
     mcor_input input = core;
-    this->OfAll(input, this->Options); // the last that the run does with them
+    this->OfAll(input, this->Options); // the last thing that the run does with them
     this->vtkRun::WarnOfParticles(input, *some);
   }
 }

@@ -58,11 +58,12 @@ public:
   void AddShares() override;
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
-  /** Sends particles, which the core has as `core`, to the ranks whose boxes need them. */
+  /** Sends particles, which `core` describes, to the ranks whose boxes need them. */
   void Scatter(const mcor_input& core, vtkPointSet* particles);
-  /** Makes of a rank's particles, of which the warnings read no positions, those of all ranks. */
+  /** Replaces this rank's particles by those of all ranks, as far as warnings read them: they read
+   * no positions. */
   void OfAll(mcor_input& core, mcor_options& options) const;
-  /** Names, and what this rank has done. */
+  /** Names of statistics, and this rank's numbers. */
   using Shares = std::vector<std::pair<const char*, std::int64_t>>;
   /** Lists what was exchanged: "RankParticles", "RankCopies" and "RankBytesSent". */
   Shares ListShares() const;
@@ -71,7 +72,7 @@ public:
 
   vtkSPHRanks Ranks;
   mcor_globals Globals = {};
-  std::vector<std::int64_t> Work; ///< of its own particles; empty: 1 each
+  std::vector<std::int64_t> Work; ///< the work of each of its own particles; empty: 1 each
   vtkSPHRanksSpace Space;
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
 
@@ -88,8 +89,9 @@ private:
   std::unique_ptr<vtkSPHParticles> Input;
   std::vector<std::uint8_t> Owned;
   vtkSmartPointer<vtkPolyData> Places;        ///< its points with finite coordinates
-  std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< those of these points
-  std::vector<vtkIdType> Numbers;             ///< of Places, or of its particles, among those given
+  std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< numbers of these points
+  std::vector<vtkIdType> Numbers;             ///< numbers of Places, or of its particles, among the
+                                              ///< given ones
   std::vector<vtkIdType> From;                ///< how many of these came from each rank
 };
 VTK_ABI_NAMESPACE_END

@@ -41,7 +41,7 @@ void vtkMarchingCorrectorsInput::TakeWidening(vtkDataArray* factors, vtkDataArra
   if (volumes)
   {
     this->Core.volume = vtkSPHView(volumes);
-    this->Core.volume.name = nullptr; // they were computed, and are told as such
+    this->Core.volume.name = nullptr; // they were computed, which the statistics say
   }
 }
 VTK_ABI_NAMESPACE_END

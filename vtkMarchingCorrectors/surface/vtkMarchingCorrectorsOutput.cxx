@@ -30,7 +30,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/// Least variation on a surface, as a share of an array's range among the particles; less is noise.
+/// A variation on the surface below this share of the array's range among the particles is noise.
 constexpr double LeastShare = 0.03;
 
 // Adds the array's name, as it was when the run began, and the value if one was used for all
@@ -104,7 +104,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
       vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
     }
   };
-  // VTK would draw lines dark by them.
+  // With normals, VTK would draw lines dark.
   const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
 #define ADD(bit, member, components, name, flag) add(name, s.member, components);
   vtkMarchingCorrectorsArrays(ADD)
@@ -142,7 +142,7 @@ void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& s, vtkPolyData* outpu
   vtkNew<vtkCellArray> triangles, lines;
   triangles->SetData(3, corners);
   output->SetPolys(triangles);
-  if (s.line_offsets) // in two dimensions
+  if (s.line_offsets) // there are lines, in two dimensions
   {
     vtkNew<vtkIdTypeArray> points, offsets;
     points->SetNumberOfValues(s.line_offsets[s.line_count]);
@@ -210,7 +210,7 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
 {
   vtkPointData* data = output->GetPointData();
   const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;
-  std::vector<double> ranges; // of each array on the surface and of the particles
+  std::vector<double> ranges; // range of each array on the surface, and among the particles
   for (const vtkSPHAttribute& attribute : attributes)
   {
     for (vtkDataArray* array : { data->GetArray(attribute.Name.c_str()),
@@ -353,7 +353,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
     vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }
-  // Values in use are statistics, see AddRun.
+  // Values in use are already statistics, see AddRun.
 #define WORD true
 #define FLAG false
 #define AT_LEAST_0 false

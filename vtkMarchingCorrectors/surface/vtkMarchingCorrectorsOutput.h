@@ -39,7 +39,7 @@ public:
   vtkMarchingCorrectorsOutput(
     const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface);
 
-  /** Names of the arrays that the core is asked to compute, in the output's order. */
+  /** Lists the names of the arrays that the core must compute, in the output's order. */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
   /** Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm. */

@@ -24,8 +24,8 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-const vtkIdType Grain = 8192;       // particles that are worth a thread
-const vtkIdType FewParticles = 100; // particles that tell nothing about the unit of velocities
+const vtkIdType Grain = 8192;       // so many particles are worth a thread
+const vtkIdType FewParticles = 100; // fewer particles tell nothing about the unit of velocities
 
 std::string Text(double value)
 {
@@ -399,7 +399,7 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
     return; // one step has no particles, and the other nothing to interpolate with
   }
   // Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
-  const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 in the later half
+  const double toFar = this->TimeScale * (far.Time - near.Time); // negative in the later half of the interval
   const double toTime = this->TimeScale * (time - near.Time);
   const bool curved = this->FollowsVelocities;
   vtkDataArray *const x0 = near.Particles->GetPoints()->GetData(),

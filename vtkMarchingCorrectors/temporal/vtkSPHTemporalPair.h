@@ -42,13 +42,13 @@ public:
 
   std::string Error;
   std::vector<std::string> Warnings; // warnings of the last Match(); empty if it kept the match
-  std::string IdName, VelocityName;  // of the arrays used
+  std::string IdName, VelocityName;  // names of the arrays used
 
 private:
   struct Step
   {
     vtkSmartPointer<vtkPointSet> Particles;
-    vtkSmartPointer<vtkDataArray> Ids, Velocities; // none: not used
+    vtkSmartPointer<vtkDataArray> Ids, Velocities; // null: not used
     double Time = 0.0;
     std::vector<vtkIdType> Partners; // number of each particle in the other step; -1: it has none
   };

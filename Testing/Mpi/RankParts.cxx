@@ -35,7 +35,7 @@ struct Part
 };
 
 /// Returns a number that looks random but is the same on every machine.
-std::uint32_t Shuffle(vtkIdType index)
+std::uint32_t PseudoRandom(vtkIdType index)
 {
   auto bits = static_cast<std::uint32_t>(index) * 2654435761u;
   bits ^= bits >> 15;
@@ -51,7 +51,7 @@ int Slab(double at, int count)
 const Part Parts[PartCount] = {
   { "scattered at random",
     [](const Particle& p, int count)
-    { return static_cast<int>(Shuffle(p.Index) % static_cast<std::uint32_t>(count)); } },
+    { return static_cast<int>(PseudoRandom(p.Index) % static_cast<std::uint32_t>(count)); } },
   { "all on one rank", [](const Particle&, int count) { return count - 1; } },
   { "slabs through the surface",
     [](const Particle& p, int count) { return Slab(p.At[1], count); } },

@@ -199,7 +199,7 @@ Data MakePoints(vtkPolyData* particles, const Case& tried)
 }
 
 /// Returns whether a result has anything but zeros.
-bool SaysSomething(vtkPolyData* whole)
+bool HasNonZeros(vtkPolyData* whole)
 {
   vtkDataArray* valid = whole->GetPointData()->GetArray("vtkValidPointMask");
   vtkDataArray* found = valid ? valid : whole->GetPointData()->GetArray("Gradients");
@@ -244,7 +244,7 @@ int Check(int number, bool some, const std::string& folder, vtkMPIController* co
   const Data points = MakePoints(particles, tried);
   // Each alone: VTK would send no points that are not numbers as they are.
   const Data whole = tried.Do(particles, points, nullptr);
-  if (!SaysSomething(whole))
+  if (!HasNonZeros(whole))
   {
     std::printf("%s: nothing to compare with\n", tried.Name);
     return 1;

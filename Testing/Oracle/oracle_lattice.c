@@ -99,7 +99,8 @@ static int64_t lattice_node_at(oracle_lattice* lattice, const int64_t at[3], int
 
 /* Returns whether bricks of half the size touch a point of the brick's border. sides[axis]: on which side of the brick
  * the point lies; 0: between. */
-static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, const int sides[3])
+static int lattice_touches_finer(
+  oracle_lattice* lattice, const lattice_brick* brick, const int sides[3])
 {
   for (int some = 1; some < 8; ++some)
   {
@@ -121,7 +122,7 @@ static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, co
 
 /* Takes one of the 3 x 3 x 3 places of a cell, half a cell apart. Returns where it is, and on which sides of the brick
  * it lies. */
-static void lattice_sides(
+static void lattice_place_in_brick(
   const lattice_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
 {
   const int64_t size = lattice_brick_size(brick->level);
@@ -146,8 +147,8 @@ int oracle_is_plain(oracle_lattice* lattice, int level, const int64_t at[3])
     const int place[3] = { n % 3, n / 3 % 3, n / 9 };
     int64_t p[3];
     int sides[3];
-    lattice_sides(&brick, at, place, p, sides);
-    plain = !lattice_finer(lattice, &brick, sides);
+    lattice_place_in_brick(&brick, at, place, p, sides);
+    plain = !lattice_touches_finer(lattice, &brick, sides);
   }
   return plain;
 }
@@ -176,8 +177,9 @@ void oracle_cell_at(oracle_lattice* lattice, int64_t b, int c, int add, lattice_
     }
     else if (middles < 3 && brick->level > 0)
     {
-      lattice_sides(brick, cell->at, place, p, sides);
-      cell->node[n] = lattice_finer(lattice, brick, sides) ? lattice_node_at(lattice, p, add) : -1;
+      lattice_place_in_brick(brick, cell->at, place, p, sides);
+      cell->node[n] =
+        lattice_touches_finer(lattice, brick, sides) ? lattice_node_at(lattice, p, add) : -1;
     }
   }
 }
@@ -300,7 +302,7 @@ static void lattice_descend(
   free(list);
 }
 
-/* Begins with the eight bricks around the origin, of a level at which they hold all supports. */
+/* Begins the descent with the eight bricks around the origin. Their level is so high that they hold all supports. */
 static void lattice_descend_all(lattice_descent* descent)
 {
   const particle_set* p = descent->field->particles;

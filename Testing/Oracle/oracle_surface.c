@@ -191,7 +191,7 @@ static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring,
 }
 
 /* Adds the pairs of a square's edges to `pairs`. */
-static void lattice_doubt(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
+static void lattice_add_pairs(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
   const int64_t* ring, int count)
 {
   int64_t edge[8];
@@ -228,7 +228,8 @@ static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cel
   lattice_link(lattice, cell, ring, count, joined > 0, links);
   if (!cell->certain || doubtful)
   {
-    lattice_doubt(lattice, cell->certain ? &lattice->either : &lattice->doubts, cell, ring, count);
+    lattice_add_pairs(
+      lattice, cell->certain ? &lattice->either : &lattice->doubts, cell, ring, count);
   }
 }
 
@@ -297,7 +298,7 @@ static void lattice_close_loops(
 /* ---- cells ---- */
 
 /* Fills in the cell's flags from its nodes. Returns 0 where the surface does not, or cannot, cross the cell. */
-static int lattice_judge(const oracle_lattice* lattice, lattice_cell* cell)
+static int lattice_classify_cell(const oracle_lattice* lattice, lattice_cell* cell)
 {
   int above = 0;
   int close = 0;
@@ -350,7 +351,7 @@ static void lattice_visit_cells(oracle_lattice* lattice, lattice_visit* visit)
 
 static void lattice_march_cell(oracle_lattice* lattice, lattice_cell* cell)
 {
-  if (!lattice_judge(lattice, cell))
+  if (!lattice_classify_cell(lattice, cell))
   {
     return;
   }
@@ -366,9 +367,9 @@ static void lattice_march_cell(oracle_lattice* lattice, lattice_cell* cell)
 }
 
 /* Marks as uncertain the edges of a cell that rounding may change or remove. */
-static void lattice_doubt_cell(oracle_lattice* lattice, lattice_cell* cell)
+static void lattice_doubt_edges(oracle_lattice* lattice, lattice_cell* cell)
 {
-  lattice_judge(lattice, cell);
+  lattice_classify_cell(lattice, cell);
   for (int n = 0; n < 27 && !cell->certain; ++n)
   {
     static const int stride[3] = { 1, 3, 9 };
@@ -457,6 +458,6 @@ void oracle_march(oracle_lattice* lattice, const oracle_field* field, const orac
   lattice->decider = by_field ? &decider : NULL;
   lattice_visit_cells(lattice, lattice_march_cell);
   lattice->decider = NULL;
-  lattice_visit_cells(lattice, lattice_doubt_cell);
+  lattice_visit_cells(lattice, lattice_doubt_edges);
   lattice_unite(lattice);
 }

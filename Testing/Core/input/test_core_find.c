@@ -253,7 +253,7 @@ static void test_scalar_and_attributes(void** state)
   assert_int_equal(find(&request, arrays, 7, &found), MCOR_OK);
   assert_true(found.which[MCOR_ROLE_SCALAR] == 2 && found.input.scalar_component == 0);
   assert_string_equal(found.iso_value_name, "Speed");
-  assert_int_equal(found.input.attribute_count, 4); /* without the iso value's own */
+  assert_int_equal(found.input.attribute_count, 4); /* the contoured array is not among them */
   mcor_free_found(&found);
   request.active = 1; /* ids are not fit */
   request.label = "along y";

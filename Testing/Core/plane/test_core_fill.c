@@ -194,7 +194,7 @@ static void fill_check_points(const plane_field* f, const mcor_surface* s)
 }
 
 /* Returns the area by sampling n x n points. */
-static double fill_sample(const plane_field* f, double iso, int n)
+static double fill_sample_area(const plane_field* f, double iso, int n)
 {
   double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
   for (int64_t i = 0; i < f->set->count; ++i)
@@ -263,7 +263,7 @@ static void test_free_surface(void** state)
       const plane_field field = { &set, &options, axis, NULL };
       assert_int_equal(report.loose, 0);
       check_close(report.area, report.enclosed, 1e-9, "enclosed");
-      check_close(report.area, fill_sample(&field, iso, 100), 2e-2, "sampled");
+      check_close(report.area, fill_sample_area(&field, iso, 100), 2e-2, "sampled");
       CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
       options.preview ? (void)0 : fill_check_points(&field, &surface);
     }
@@ -351,7 +351,7 @@ static void test_trimming(void** state)
     CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
     if (mode == 0 || mode == 2)
     {
-      check_close(report.area, fill_sample(&field, isos[0], 150), 2e-2, "sampled");
+      check_close(report.area, fill_sample_area(&field, isos[0], 150), 2e-2, "sampled");
     }
     CORE_CHECK(mode < 4 || report.area < 16 * 12.5, "%g reaches into the wall", report.area);
   }

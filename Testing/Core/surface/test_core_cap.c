@@ -94,7 +94,7 @@ static void check_points(const particle_set* all, const mcor_options* options,
 
 /* Checks that along each axis as many triangles, of the same total area, face up as down: a period's two caps are
  * alike. */
-static void check_alike(const mcor_surface* open, const mcor_surface* s)
+static void check_opposite_caps(const mcor_surface* open, const mcor_surface* s)
 {
   double area[3][2] = { { 0 } };
   int64_t count[3][2] = { { 0 } };
@@ -175,7 +175,7 @@ static void check_caps(
   }
   if (is_closed && capping == MCOR_CAP_PERIOD)
   {
-    check_alike(&open, &closed);
+    check_opposite_caps(&open, &closed);
   }
 }
 

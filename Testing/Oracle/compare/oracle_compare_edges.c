@@ -166,7 +166,7 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
 }
 
 /* Judges a vertex without an unmatched crossed edge: it is a cut, a second one on its edge, or one too many. */
-static void compare_leave(compare_state* state, int64_t v, int axis)
+static void compare_unmatched(compare_state* state, int64_t v, int axis)
 {
   const double* point = &state->surface->points[3 * v];
   const compare_place none = { 0 };
@@ -240,7 +240,7 @@ static void compare_assign(compare_state* state)
     if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {
       compare_candidates(state, &state->surface->points[3 * v], candidates, &axis);
-      compare_leave(state, v, axis);
+      compare_unmatched(state, v, axis);
     }
   }
 }

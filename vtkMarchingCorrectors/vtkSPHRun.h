@@ -79,7 +79,7 @@ public:
     }
   };
   Kept Particles, Scalar, Attributes, Widening;
-  vtkSmartPointer<vtkPointData> Factors; // what Widening stands for; null: nothing
+  vtkSmartPointer<vtkPointData> Factors; // the factors for the state Widening; null: there are none
   mcor_statistics FactorsStatistics = {};
 
 private:

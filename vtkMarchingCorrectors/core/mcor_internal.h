@@ -295,8 +295,8 @@ void mcor_release_mesh(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
-/* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated;
- * bricks.seeds: those that pairs mark. */
+/* Finds the cells that growth from pairs reaches (bricks.cells), and evaluates all of their nodes.
+ * bricks.seeds: the cells that pairs mark. */
 mcor_status mcor_find_reached(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);

@@ -78,8 +78,8 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 }
 
 /**
- * Sends back what the first rank knows of the whole: the pieces. Returns those of this rank's
- * elements. `numbers` become the elements' numbers among what stays. Collective.
+ * Sends back what the first rank knows about the whole: the pieces. Returns the pieces of this
+ * rank's elements. `numbers` become the elements' numbers among the ones that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)

@@ -45,7 +45,7 @@ public:
   /** Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm. */
   void BuildMesh(vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge = nullptr);
   /**
-   * Returns the points' largest coordinate, in magnitude, if that mesh has them as floats; else
+   * Returns the largest coordinate, in magnitude, of the mesh's points if they are floats; else
    * 0.
    */
   double FindLargestFloat(int precision) const;

@@ -26,7 +26,7 @@ namespace
 /// which is empty in a list, and a text.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
-/// Reads back as the same number; JSON has neither NaN nor infinity.
+/// Writes a number that is read back as the same; NaN and infinity, which JSON lacks, become null.
 std::string Json(double number)
 {
   return std::isfinite(number) ? DigitsOf(number) : "null";

@@ -31,7 +31,7 @@ typedef struct mcor_derive_run
   bool standard;
   mcor_derivatives* derivatives;
   mcor_buffer arrays;     /* fix [varying_count][grid.count], sorted */
-  mcor_point_batch batch; /* of particles */
+  mcor_point_batch batch; /* the points are particles */
   mcor_buffer moments, slopes;
   void *orders, *moment, *slope; /* views of the batch's `order`, and of moments and slopes */
   int first, count;              /* sorted particles in the batch */

@@ -156,7 +156,7 @@ class Arguments:
         return self.kept[-1]
 
     def per_particle(self, values, role, name=None, constant=False):
-        """An array of (particles,) or (particles, components), or one value for all of them."""
+        """Returns an array of (particles,) or (particles, components), or one value for all of them."""
         values = as_array(values, role)
         if constant and values.ndim == 0:
             view = c.mcor_array()
@@ -177,7 +177,7 @@ class Arguments:
             setattr(self.input, name, self.per_particle(values, name.replace("_", " "), constant=True))
 
     def set_solid(self, solid, present=None):
-        """present: None, or which particles are not left out."""
+        """Sets the marks of solid and absent particles. present: None, or which particles are not left out."""
         if solid is None and present is None:
             return
         self.present = present

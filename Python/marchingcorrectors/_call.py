@@ -155,7 +155,7 @@ def _attribute(attributes, name):
 
 
 def _drop_unused(given, options, warns):
-    """Leaves of volume, mass and density what makes the volumes, and tells of arguments that have no effect beside others."""
+    """Keeps of volume, mass and density what makes the volumes, and warns of arguments that have no effect beside others."""
     words = {"compute_volumes": isinstance(given["volume"], str),
              "estimate_smoothing_length": bool(options.get("estimate_smoothing_length"))}
     if words["compute_volumes"]:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the core finds among named arrays: mcor_find.h."""
+"""Has what the core finds among named arrays, see mcor_find.h."""
 import ctypes
 
 import numpy as np
@@ -16,12 +16,12 @@ OTHER = c.ENUMS["mcor_element"]["MCOR_ELEMENT_OTHER"]
 
 
 def as_bytes(text):
-    """For the core's messages; what has no place in UTF-8 (names of files, say) becomes "?"."""
+    """Encodes text for the core's messages; characters that UTF-8 cannot hold (in names of files, say) become "?"."""
     return text.encode(errors="replace")
 
 
 def list_named(arrays):
-    """The core's list of {name: array}, or of pairs. What is no array of numbers has a shape alone."""
+    """Makes the core's list of {name: array}, or of pairs. An array without numbers has only a shape."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
     named = (c.mcor_named * max(len(pairs), 1))()
     for each, (name, array) in zip(named, pairs):
@@ -36,18 +36,18 @@ def list_named(arrays):
 
 
 def find_named(arrays, quantity, components, count):
-    """The index of the array with the most usual name for a quantity; -1: none."""
+    """Returns the index of the array with the most usual name for a quantity, or -1."""
     named, many = list_named(arrays)
     return lib.mcor_find_named(named, many, c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], components, count)
 
 
 def choose_view(arrays, active=-1):
-    """The index of the array to show where nobody has chosen one; -1: none is fit."""
+    """Returns the index of the array to show if the user has chosen none, or -1 if none is suitable."""
     return lib.mcor_choose_view(*list_named(arrays), active, None)
 
 
 def tells_of_walls(name):
-    """Whether a block or body of this name holds walls."""
+    """Returns whether a block or body of this name holds walls."""
     return bool(lib.mcor_tells_of_walls(as_bytes(name)))
 
 
@@ -94,7 +94,7 @@ class Found:
         return (getattr(self.found, member) or b"").decode(errors="replace")
 
     def which(self, role):
-        """The index of the array; beyond the last one: number 0, 1 of those that were made. None: there is none."""
+        """Returns the index of the array. Arrays that the core made follow the last one, as numbers 0, 1. None: there is no array."""
         index = self.found.which[ROLES[role]]
         return None if index < 0 else index
 
@@ -105,7 +105,7 @@ class Found:
         return self.found.nearest[:self.found.nearest_count]
 
     def made(self, i):
-        """(name, array), a copy."""
+        """Returns (name, a copy of the array)."""
         made = self.found.made[i]
         kind = next(dtype for dtype, number in ELEMENTS.items() if number == made.type)
         size = made.tuples * made.components
@@ -115,13 +115,13 @@ class Found:
 
 
 def describe_unused(given, used, volumes=None, **words):
-    """A sentence about what is given by hand and has no effect; given, used: names of quantities."""
+    """Returns a sentence about what is given by hand and has no effect; given, used: names of quantities."""
     request = c.mcor_request(**words)
     return take_sentence(lib.mcor_describe_unused(ctypes.byref(request), role_bits(given), role_bits(used),
                                                   None if volumes is None else as_bytes(volumes)))
 
 
 def choose_volumes(given, known, **words):
-    """Which of these quantities make the volumes."""
+    """Returns which of these quantities make the volumes."""
     used = lib.mcor_choose_volumes(ctypes.byref(c.mcor_request(**words)), role_bits(given), role_bits(known))
     return {name for name in known if used & role_bits([name])}

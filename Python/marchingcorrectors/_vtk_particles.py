@@ -18,7 +18,7 @@ WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether 
 
 
 class Unusable(Exception):
-    """The sentence that says what is missing or wrong, and what was found nevertheless."""
+    """Is raised with the sentence that says what is missing or wrong, and holds what was found nevertheless."""
 
     def __init__(self, sentence, particles=None):
         super().__init__(sentence)
@@ -26,7 +26,7 @@ class Unusable(Exception):
 
 
 class NoNumbers:
-    """The shape of an array of text, say."""
+    """Has the shape of an array that has no numbers, as of text."""
 
     def __init__(self, array):
         self.shape = array.GetNumberOfTuples(), array.GetNumberOfComponents()
@@ -50,7 +50,7 @@ def is_single(array):
 
 
 def to_numpy(array):
-    """Its values where they lie; a copy of what does not lie in one piece."""
+    """Returns the array's values where they are, or a copy if they do not lie in one piece."""
     if not array.HasStandardMemoryLayout() or array.GetDataTypeAsString() == "bit":
         copy = vtkDataArray.CreateDataArray(3 if array.GetDataTypeAsString() == "bit" else array.GetDataType())
         copy.DeepCopy(array)
@@ -59,7 +59,7 @@ def to_numpy(array):
 
 
 def named(data):
-    """(name, values) of all arrays, for the core."""
+    """Returns (name, values) of all arrays, for the core."""
     return [(array.GetName(), to_numpy(array) if isinstance(array, vtkDataArray) else NoNumbers(array))
             for array in abstract_arrays_of(data)]
 
@@ -70,7 +70,7 @@ def detect(data, count, quantity, components=1):
 
 
 def choose_array(arrays):
-    """The fittest one to be looked at where nobody has chosen an array; None where none is."""
+    """Returns the most suitable array to show if the user has chosen none, or None."""
     best = choose_view([(array.GetName(), to_numpy(array)) for array in arrays])
     return None if best < 0 else arrays[best]
 
@@ -99,7 +99,7 @@ def find_period(points):
 
 
 class Request:
-    """A point array asked for by SetInputArrayToProcess: its name, or the index of the active one."""
+    """Returns the point array that SetInputArrayToProcess asks for: its name, or the index of the active one."""
 
     def __init__(self, algorithm, index, points):
         self.name, self.on_points, self.active = "", True, -1
@@ -167,7 +167,8 @@ class Particles:
         self.fluid_name = (self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_FLUID"]].name or b"").decode(errors="replace")
         self.scalar_name, self.iso_value_name = self._holder.text("scalar_name"), self._holder.text("iso_value_name")
         whole = self.scalar is not None and self.dot is None and (self.scalar.GetNumberOfComponents() == 1 or component < 0)
-        self.contoured = name_of(self.scalar) if whole else None  # the array that is the iso value on the surface, if one is
+        # This is the name of the array that equals the iso value on the surface, if there is one.
+        self.contoured = name_of(self.scalar) if whole else None
 
     @staticmethod
     def _wrap(name, values):
@@ -188,7 +189,7 @@ class Particles:
 
     @property
     def used(self):
-        """{quantity: array}"""
+        """Returns {quantity: array}."""
         found = {name: self.array_for(name) for name in QUANTITIES}
         if "SmoothingLength" in self._summed:
             found["smoothing_length"] = self._summed["SmoothingLength"]
@@ -204,7 +205,7 @@ class Particles:
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def _sum(self, options, name, function, take, *more):
-        """An array of this name of sums over neighbours; that of the last run of the same particles, if there is one."""
+        """Returns the array of this name with sums over neighbours; if the last run had the same particles, its array."""
         given = self.arguments()
         given.options, mass = options, self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_MASS"]]
         key = (*self.signatures()[0], options.sph_kernel, options.dimension, *options.periodic, *more)

@@ -27,9 +27,9 @@ NOT_IN_PROGRAM = {"blocks"}
 
 
 def words_of_program():
-    """{member: option}, as the rows of OptionTable.cxx have them."""
+    """Returns {member: option}, as the rows of OptionTable.cxx have them."""
     rows = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8").split('\n  { "--')[1:]
-    words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # as OptionWord says
+    words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # OptionWord does the same.
     for row in rows:
         members = [word for word in re.findall(r'"(\w+)"', row.split("DO(")[0]) if word in SLOTS]
         words.update({members[-1]: "--" + row.split('"')[0]} if members else {})
@@ -44,7 +44,7 @@ class Says(unittest.TestCase):
         self.assertEqual(sorted(set(TEXTS) - used), [], "nobody says these")
 
     def test_each_slot_has_words(self):
-        """Slots stand in the texts, and in C's strings, which become parts of texts."""
+        """Checks slots in the texts, and in C's strings that become parts of texts."""
         parts = {code: re.findall(r"\{[a-z_%][^{}]*\}", text) for code, text in TEXTS.items()}
         for file in SAID:
             if CORE in file.parents:
@@ -53,7 +53,7 @@ class Says(unittest.TestCase):
         for where, slots in parts.items():
             for slot in slots:
                 name = slot[1:-1].split(" ")[0]
-                if name == "%s":  # any option of mcor_options.def
+                if name == "%s":  # This stands for any option of mcor_options.def.
                     continue
                 found += 1
                 self.assertIn(name, SLOTS, f"{where}: a slot that no interface can fill")
@@ -62,7 +62,7 @@ class Says(unittest.TestCase):
         self.assertGreater(found, 50)
 
     def test_print_all(self):
-        """What each says; sentences that differ between interfaces have a line for each."""
+        """Lists what each interface says; a sentence that differs between interfaces has a line for each."""
         program, lines = words_of_program(), []
         for code, text in TEXTS.items():
             said = {"C, Python": fill(text, lambda name, value: name + (value and "=" + value)),

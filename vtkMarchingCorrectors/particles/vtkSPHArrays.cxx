@@ -305,7 +305,8 @@ std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks)
 
 mcor_array vtkSPHView(vtkDataArray* array)
 {
-  static const double none = 0.0; // an array without values has no pointer, which is a constant
+  static const double none = 0.0; // an array without values has no pointer, and the core would take
+                                  // it for a constant
   mcor_array view = {};
   view.type = array->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
   view.components = array->GetNumberOfComponents();

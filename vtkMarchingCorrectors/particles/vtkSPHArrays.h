@@ -165,7 +165,7 @@ class vtkSPHNamed
 {
 public:
   explicit vtkSPHNamed(vtkFieldData* arrays);
-  /** Of one array, which must hold numbers. */
+  /** Lists a single array, which must hold numbers. */
   explicit vtkSPHNamed(vtkAbstractArray* array) { this->Add(array); }
 
   std::vector<mcor_named> List; // in the order of the arrays
@@ -189,7 +189,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 /** Views an array of floats or doubles that lie one after another. */
 mcor_array vtkSPHView(vtkDataArray* array);
 
-/** The values of an array. */
+/** Gives access to the values of an array. */
 class vtkSPHReals
 {
 public:

@@ -21,13 +21,13 @@ namespace
 {
 const char* const MadeName = "vtkSPHMade:";
 
-/** A message of the core with its slots filled; empty for none. */
+/** Returns a message of the core with its slots filled; empty: there is none. */
 std::string Filled(const mcor_message& message)
 {
   return vtkSPHTakeText(mcor_fill_slots(message.text, vtkSPHWord, nullptr));
 }
 
-/** A copy of an array that the core made. */
+/** Returns a copy of an array that the core made. */
 vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
 {
   const bool isFloat = made.type == MCOR_ELEMENT_FLOAT32;
@@ -41,7 +41,7 @@ vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
   return copy;
 }
 
-/** The index of the array asked for, if it was not asked for by a name. */
+/** Returns the index of the array asked for, if it was not asked for by a name. */
 int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 {
   int index = request.Name.empty() && request.Array ? data->GetNumberOfArrays() - 1 : -1;
@@ -146,7 +146,7 @@ bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* rank
   this->AttributesSignature.clear();
   for (int i = 0; i < this->Core.attribute_count; ++i)
   {
-    if (this->Found.attributes[i] >= 0) // no constant
+    if (this->Found.attributes[i] >= 0) // the attribute is an array, not a constant
     {
       vtkAbstractArray* array = this->ArrayOf(this->Found.attributes[i]);
       this->Interpolated.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
@@ -292,7 +292,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
       }
     }
     all.count = static_cast<int64_t>(masses.size());
-    positions.push_back(0.0); // an empty array is no constant
+    positions.push_back(0.0); // the core would take an empty array for a constant
     masses.push_back(0.0);
     all.positions = { positions.data(), MCOR_FLOAT64, 3, 0.0, nullptr };
     all.mass.data = mass.data ? masses.data() : nullptr;

@@ -94,7 +94,7 @@ public:
   /** Returns what tells the fluid, "ParticleType = 0"; empty if all particles are fluid. */
   std::string DescribeFluid() const;
 
-  /** The array that serves for this; null: none does. */
+  /** Returns the array that has this role; null: none has. */
   vtkSmartPointer<vtkAbstractArray> ArrayFor(mcor_role role) const;
   std::string NameFor(mcor_role role) const;
 
@@ -103,7 +103,7 @@ public:
   mcor_found Found = {};
   mcor_input& Core = Found.input;
   std::string Error;
-  std::string Unused; ///< a sentence: what is set has no effect
+  std::string Unused; ///< a sentence, if something that is set has no effect
 
   std::vector<vtkSPHAttribute> Interpolated;      // their order is that of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // arrays of identifiers, integers, strings
@@ -124,8 +124,8 @@ private:
   std::vector<std::uint64_t> Sign() const;
 
   std::unique_ptr<vtkSPHNamed> Positions, Named; // the point arrays, held while the core reads them
-  vtkSmartPointer<vtkDataArray> Made[2];         // copies of Found.made
-  vtkSmartPointer<vtkDataArray> Lengths, Densities; // summed over neighbours
+  vtkSmartPointer<vtkDataArray> Made[2];         // arrays copied from Found.made
+  vtkSmartPointer<vtkDataArray> Lengths, Densities; // arrays summed over neighbours
 };
 VTK_ABI_NAMESPACE_END
 

@@ -140,7 +140,7 @@ class Particles:
         return len(self.positions)
 
     def __iter__(self) -> Iterator[str]:
-        """The names of the arrays."""
+        """Returns the names of the arrays."""
         return iter(self.arrays)
 
     def __contains__(self, name: object) -> bool:
@@ -153,7 +153,7 @@ class Particles:
         return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays) or 'none'}>"
 
     def _choose_volumes(self, words, beside):
-        """What is given of volume, mass and density takes the place of that quantity alone."""
+        """Replaces only those of volume, mass and density that are given."""
         sizes, compute = ("volume", "mass", "density"), {"compute_volumes": isinstance(words.get("volume"), str)}
         given = {name for name in sizes if words.get(name) is not None and not isinstance(words[name], str)}
         used = choose_volumes(given, given | {name for name in sizes if getattr(self, name) is not None}, **compute)
@@ -180,8 +180,8 @@ class Particles:
         return value
 
     def words(self, given, beside=False):
-        """Keywords of the functions for NumPy, which what is given goes before. beside: masses and densities are wanted
-        beside volumes."""
+        """Returns keywords of the functions for NumPy; arguments that are given replace these. beside: masses and densities are wanted beside
+        volumes."""
         words = dict(given)
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
             words["smoothing_length"] = self.quantity("smoothing_length")

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What is found among named arrays, and made of what is given by hand: volumes, types of elements, the
+/* What the core finds among named arrays, and what it makes of values given by hand: volumes, types of elements, the
  * fluid, the scalar, attributes, and sentences. */
 
 #include "core_fixture.h"
@@ -42,14 +42,14 @@ static mcor_status find(
   return mcor_find_input(request, &positions, arrays, count, NULL, found);
 }
 
-/* The rule of precedence: whatever is in the file, and whatever is given by hand. */
+/* The rule of precedence is tested for all combinations of what the file has and what is given by hand. */
 static void test_volumes(void** state)
 {
   (void)state;
   const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
-  /* file: letters of v, m, d that it has. given: v, m, d by name, M, D by value, c computed, p one volume.
-   * used: what makes the volumes. unused: what the sentence begins with; NULL: there is none. */
+  /* file: the file has the arrays of these letters (v, m, d). given: v, m, d by name, M, D by value, c computed, p one
+   * volume. used: what makes the volumes. unused: how the sentence begins; NULL: there is none. */
   const struct
   {
     const char *file, *given, *used, *unused;
@@ -106,7 +106,7 @@ static void test_volumes(void** state)
     CORE_CHECK(cases[c].unused ? strncmp(why, cases[c].unused, strlen(cases[c].unused)) == 0
                                : !found.unused.text,
       "file %s, given %s: %s", cases[c].file, given, why);
-    /* Masses and densities are known beside volumes. */
+    /* Masses and densities are known even if volumes are given. */
     assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
       strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
     mcor_free_found(&found);
@@ -159,7 +159,7 @@ static void test_elements(void** state)
   }
 }
 
-/* Fluid by the codes of DualSPHysics, by 0 and 1, by hand; and the particles that are left. */
+/* Fluid is found by the codes of DualSPHysics, by 0 and 1, and by hand; then particles are left out. */
 static void test_fluid(void** state)
 {
   (void)state;
@@ -221,7 +221,8 @@ static void test_fluid(void** state)
   mcor_free_found(&found);
 }
 
-/* The scalar: chosen by name, by its fitness, of three arrays, or summed; attributes; what a flow needs. */
+/* The scalar is chosen by its name, as the most suitable of three arrays, or summed; then attributes, and what a flow
+ * needs. */
 static void test_scalar_and_attributes(void** state)
 {
   (void)state;
@@ -255,7 +256,7 @@ static void test_scalar_and_attributes(void** state)
   assert_string_equal(found.iso_value_name, "Speed");
   assert_int_equal(found.input.attribute_count, 4); /* the contoured array is not among them */
   mcor_free_found(&found);
-  request.active = 1; /* ids are not fit */
+  request.active = 1; /* ids are not suitable */
   request.label = "along y";
   assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
   assert_int_equal(found.which[MCOR_ROLE_SCALAR], 7);

@@ -180,7 +180,7 @@ char* mcor_list_names(const mcor_named* arrays, int count)
   return list;
 }
 
-/* Joins vx, vy and vz, unless there is an array "Velocity". As float only where all are. */
+/* Joins vx, vy and vz to one vector, unless there is an array "Velocity". The vector is float only if all three are. */
 int mcor_join_velocity(mcor_finder* f)
 {
   mcor_named* made = f->found->made;
@@ -225,7 +225,7 @@ int mcor_join_velocity(mcor_finder* f)
   return data ? f->count : -1;
 }
 
-/* Returns the index if the array is there, and has numbers for all particles. */
+/* Returns the index if the array exists and has numbers for all particles; else -1. */
 static int mcor_check_named(mcor_finder* f, const char* words, const char* name, int index)
 {
   if (index < 0)
@@ -405,10 +405,10 @@ static void mcor_find_sizes(mcor_finder* f)
   }
 }
 
-/* The scalar by this name is summed from masses where there is no such array. */
+/* A scalar of this name is summed from masses if there is no such array. */
 #define MCOR_SUMMED "Density"
 
-/* Chooses the array to contour where none is given. All ranks do. */
+/* Chooses the array to contour if none is given. All ranks call it. */
 static int mcor_choose_scalar(mcor_finder* f)
 {
   const int active = f->request->active;
@@ -426,7 +426,7 @@ static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
   return (f->request->not_on_points & 1 << role) != 0;
 }
 
-/* Finds the array of the scalar; it may be summed instead. Returns -1 if it is neither, or needs none. */
+/* Finds the array of the scalar, which may be summed instead. Returns -1 if there is no array, or none is needed. */
 static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
 {
   mcor_found* found = f->found;
@@ -555,7 +555,7 @@ static void mcor_find_array(mcor_finder* f)
   }
 }
 
-/* Finds what a projection sees by: mass, or density where there is no mass; and the weight of a mean. */
+/* Finds the array that a projection integrates, mass or, without masses, density; and the weight of a mean. */
 static void mcor_find_column(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -579,8 +579,8 @@ static void mcor_find_column(mcor_finder* f)
   }
 }
 
-/* Finds an array of velocities by its usual names: of three components, of three arrays, or, in a plane,
- * of two components. */
+/* Finds velocities by their usual names: an array of three components, three arrays, or, in a plane, an array of two
+ * components. */
 static int mcor_find_velocity(mcor_finder* f)
 {
   const int64_t count = f->positions->tuples;
@@ -638,7 +638,7 @@ static bool mcor_is_listed(const char* list, const char* name)
   return false;
 }
 
-/* Names what is contoured, and the array of iso values. */
+/* Sets the name of what is contoured, and of the array of iso values. */
 static void mcor_name_scalar(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -660,7 +660,7 @@ static void mcor_name_scalar(mcor_finder* f)
   f->lacks_memory = f->lacks_memory || !full;
 }
 
-/* Ghost marks would hide triangles. */
+/* Ghost marks are left out, because they would hide triangles. */
 static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
 {
   return a->name && *a->name && strcmp(a->name, "vtkGhostType") != 0 &&

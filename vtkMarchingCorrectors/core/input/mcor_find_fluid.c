@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which particles are fluid, by an array that was given or by one that tells it clearly; and which of them
- * count at all. */
+/* Finds which particles are fluid, by an array that is given or that clearly tells it; and which particles count at
+ * all. */
 
 #include "mcor_finder.h"
 
@@ -35,7 +35,7 @@ int mcor_tells_of_walls(const char* name)
   return 0;
 }
 
-/* A value, and how often it occurs; count -1: there are too many values to be kinds of particles. */
+/* A value, and how often it occurs. count -1: there are more values than kinds of particles. */
 typedef struct mcor_kind
 {
   double value;
@@ -188,7 +188,8 @@ static bool mcor_has_within(const mcor_request* request)
   return has;
 }
 
-/* Whether some range of an array holds this particle, where ranges of it are wanted. `first`: the first of them. */
+/* Whether a particle is in some range of an array. Of several ranges of one array, any may hold; `first` is their
+ * first. */
 static bool mcor_is_in_a_range(const mcor_finder* f, int first, const mcor_named* array, int64_t i)
 {
   const double value = mcor_element_at(array, i, 0);
@@ -241,7 +242,7 @@ static bool mcor_mark_absent(mcor_finder* f, uint8_t* solid)
   return some;
 }
 
-/* "within 0,1,0,1,0,1 and left by Type=1:2" */
+/* Writes why particles are left out: "within 0,1,0,1,0,1 and left by Type=1:2". */
 static char* mcor_describe_choice(const mcor_finder* f)
 {
   const mcor_request* request = f->request;
@@ -313,7 +314,7 @@ void mcor_mark_particles(mcor_finder* f)
   }
 }
 
-/* Finds of each component the first value that is a number, and whether another one differs from it. */
+/* Finds, for each component, the first value that is a number, and whether another value differs from it. */
 static void mcor_find_variation(const mcor_named* a, int component, double* first, double* varies)
 {
   for (int64_t i = 0; i < a->tuples && !*varies; ++i)

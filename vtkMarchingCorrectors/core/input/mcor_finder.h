@@ -6,10 +6,10 @@
 #include "mcor_find.h"
 #include "mcor_input.h"
 
-/* The most usual names that a quantity has. */
+/* The most names that a quantity has. */
 #define MCOR_NAMES 14
 
-/* In place of an index. */
+/* Values that stand in the place of an index. */
 #define MCOR_FIND_POSITIONS (-2)
 
 /* The state of mcor_find_input. */
@@ -17,10 +17,10 @@ typedef struct mcor_finder
 {
   const mcor_request* request;
   const mcor_named *positions, *arrays;
-  int count; /* of arrays; an index from there on means found->made */
+  int count; /* number of the given arrays; greater indices mean found->made */
   const mcor_ranks* ranks;
   mcor_found* found;
-  mcor_array* views;        /* [count + 2], of arrays that were viewed before */
+  mcor_array* views;        /* [count + 2]: the arrays that were viewed already */
   int at[MCOR_ROLE_VALUES]; /* the arrays of quantities, whether or not the input has them */
   bool lacks_memory;
 } mcor_finder;
@@ -28,7 +28,7 @@ typedef struct mcor_finder
 /* Allocates memory that belongs to the result. */
 void* mcor_find_memory(mcor_finder* f, size_t bytes);
 
-/* Copies a name, as the array's owner may give it another one meanwhile; NULL stays NULL. */
+/* Copies a name, because the array's owner may change it meanwhile; NULL stays NULL. */
 const char* mcor_keep_name(mcor_finder* f, const char* name);
 
 /* Keeps the first message that says what is wrong; frees later ones. Returns -1, no index. */
@@ -41,7 +41,7 @@ static inline bool mcor_has_error(const mcor_finder* f)
 /* Returns what is given by hand for a role, or NULL; panels show words in place of none. */
 const char* mcor_given_name(const mcor_finder* f, mcor_role role);
 
-/* Finds the array of this name, which is not checked; -1: there is none. */
+/* Finds the array of this name without checking it; -1: there is none. */
 int mcor_find_by_name(const mcor_finder* f, const char* name);
 /* Finds the array of this name, with a number for each particle if components is 1; 0: any vector.
  * words: what it is for. */

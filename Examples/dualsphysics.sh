@@ -13,13 +13,13 @@ out=$1 dp=$2
 shift 2
 mkdir -p "$out"
 if [ $# -eq 0 ]; then
-  /usr/bin/python3 "$here/Data/make_particles.py" splash 20000 "$out/PartFluid_%04d.vtk" --steps 12
+  /usr/bin/python3 "$here/Data/make_particles.py" splash 20000 "$out/PartFluid_%04d.vtk" --steps 6
   set -- "$out"/PartFluid_*.vtk
 fi
 
 # PartVTK leaves out smoothing lengths: h is coefh x sqrt(3) x dp, and coefh 1 here. Volumes follow from the positions, so that drops keep
 # their surface.
-particles=(--smoothing-length "$(awk -v dp="$dp" 'BEGIN { print sqrt(3) * dp }')" --kernel wendland)
+particles=(--dp "$dp" --coefh 1 --volume computed --kernel wendland)
 marching-correctors "$@" "$out/film.pvd" --free-surface --smooth "${particles[@]}" --components "$out/pieces.csv"
 marching-correctors "$@" "$out/front.csv" "${particles[@]}" --gauge floor=0,0,0.1:1,0,0.1
 marching-correctors "$@" "$out/flux.csv" "${particles[@]}" --density 1000 --flux outwards=box:-0.4,0.4,-0.4,0.4,-0.3,0.5

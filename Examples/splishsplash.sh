@@ -13,7 +13,7 @@ out=$1 h=$(awk -v r="$2" 'BEGIN { print 2 * r }')
 shift 2
 mkdir -p "$out"
 if [ $# -eq 0 ]; then
-  /usr/bin/python3 "$here/Data/make_particles.py" splash 20000 "$out/ParticleData_Fluid_%d.vtk" --steps 12
+  /usr/bin/python3 "$here/Data/make_particles.py" splash 20000 "$out/ParticleData_Fluid_%d.vtk" --steps 6
   set -- "$out"/ParticleData_Fluid_*.vtk
 fi
 

@@ -110,9 +110,9 @@ extern "C"
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
-  /* Moves each period that does not hold the box, of ranks the whole box, so that it does: it
-   * is then in the middle, or begins with the period if it is no shorter. mcor_extract does this by
-   * itself unless globals are given, which are to be measured with the period that is moved. */
+  /* Moves each period that does not hold the box, of ranks the whole box, so that the box lies in
+   * the middle. A period shorter than the box stays. mcor_extract does this by itself unless globals
+   * are given, which are to be measured with the period that is moved. */
   void mcor_move_period(mcor_options* options);
 
   /* Measures an input for options.globals of later calls, in this or another context, with

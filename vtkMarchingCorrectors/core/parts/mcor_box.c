@@ -48,9 +48,9 @@ void mcor_move_period(mcor_options* options)
     double* period = options->periodic + 2 * a;
     const double length = period[1] - period[0], side = box[2 * a + 1] - box[2 * a];
     const bool is_beyond = box[2 * a] < period[0] || box[2 * a + 1] > period[1];
-    if (length > 0 && side < INFINITY && is_beyond)
+    if (length > 0 && side <= length && is_beyond)
     {
-      period[0] = box[2 * a] - fmax(length - side, 0) / 2;
+      period[0] = box[2 * a] - (length - side) / 2;
       period[1] = period[0] + length;
     }
   }

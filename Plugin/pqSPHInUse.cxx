@@ -21,14 +21,17 @@
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMDocumentation.h"
 #include "vtkSMDoubleVectorProperty.h"
+#include "vtkSMInputProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMPropertyIterator.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
+#include "vtkSMVectorProperty.h"
 #include "vtkSmartPointer.h"
 
 #include <QComboBox>
@@ -53,18 +56,12 @@ namespace
 // The number is that of the filter's own warning, which comes when the run has begun.
 constexpr double HUGE_CELLS = 1e9;
 
-// Properties on which the next update's range and number of cells depend.
-const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComponent",
-  "DotProductWith", "SmoothingLengthArray", "SmoothingLength", "EstimateSmoothingLength",
-  "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "DetectFluid", "Blocks", "Kernel",
-  "Dimension", "CubeSizeMode", "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox",
-  "BoxPosition", "BoxLength" };
-
 // Properties that tell what the next update would find. The panel shows them elsewhere, or begins
 // with them.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
-  "NextDimension", "NextFluid", "NextCells" };
-const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension" };
+  "NextDimension", "NextFreeSurface", "NextFluid", "NextCells" };
+const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension",
+  "NextFreeSurface" };
 
 // The items of ParaView's lists of arrays have these roles: association and name.
 constexpr int ASSOCIATION = Qt::UserRole + 1, ARRAY_NAME = Qt::UserRole + 2;
@@ -89,6 +86,23 @@ QString textOf(vtkSMProperty* property)
     isKnown = isKnown || (isNumber ? values.GetAsDouble(i) != 0.0 : !texts.back().isEmpty());
   }
   return isKnown ? texts.join(" to ") : QString("-");
+}
+
+// The names of all properties that a user sets, but for inputs and commands.
+QStringList namesOf(vtkSMProxy* filter)
+{
+  QStringList names;
+  const auto each = vtkSmartPointer<vtkSMPropertyIterator>::Take(filter->NewPropertyIterator());
+  for (each->Begin(); !each->IsAtEnd(); each->Next())
+  {
+    vtkSMProperty* property = each->GetProperty();
+    if (vtkSMVectorProperty::SafeDownCast(property) && !property->GetInformationOnly() &&
+      !vtkSMInputProperty::SafeDownCast(property))
+    {
+      names << each->GetKey();
+    }
+  }
+  return names;
 }
 
 bool isNew(vtkSMProxy* filter)
@@ -169,13 +183,16 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     this->showValues();
     return;
   }
+  this->IsSmooth = vtkSMPropertyHelper(proxy, "Smooth").GetAsInt() != 0;
+  pqCoreUtilities::connect(proxy->GetProperty("Smooth"), vtkCommand::UncheckedPropertyModifiedEvent,
+    this, SLOT(showSmooth()));
   this->Pause.setSingleShot(true);
   this->Pause.setInterval(200);
   this->connect(&this->Pause, SIGNAL(timeout()), SLOT(lookAhead()));
-  for (const char* name : CHOICES)
+  for (const QString& name : namesOf(proxy))
   {
-    pqCoreUtilities::connect(proxy->GetProperty(name), vtkCommand::UncheckedPropertyModifiedEvent,
-      &this->Pause, SLOT(start()));
+    pqCoreUtilities::connect(proxy->GetProperty(name.toUtf8().constData()),
+      vtkCommand::UncheckedPropertyModifiedEvent, &this->Pause, SLOT(start()));
   }
   this->showValues();
 }
@@ -191,10 +208,13 @@ void pqSPHInUse::beginNew()
   SCOPED_UNDO_EXCLUDE();
   this->WasEmpty = false; // because it has not been updated
   auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
-  const QRegularExpression others("[^A-Za-z0-9]");
-  QString name = item->getSMName(), label = filter->GetXMLLabel();
-  const QString brief = label.section('(', 0, 0).remove(others);
-  item->rename(name.remove(others).replace(label.remove(others), brief));
+  const QString label = filter->GetXMLLabel();
+  const QString brief = label.section('(', 0, 0).remove(QRegularExpression("[^A-Za-z0-9]"));
+  if (label.contains('('))
+  {
+    item->rename(QString::fromStdString(
+      filter->GetSessionProxyManager()->GetUniqueProxyName("sources", brief.toUtf8().constData())));
+  }
   if (filter->GetProperty("NextBounds"))
   {
     this->beginPlace();
@@ -208,12 +228,13 @@ void pqSPHInUse::beginNew()
   {
     this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
     this->lookAhead();
-    // Where there are walls, what most want to see is the water; or there is nothing else.
-    if (*vtkSMPropertyHelper(filter, "NextFluid").GetAsString() ||
-      !*vtkSMPropertyHelper(filter, "NextArray").GetAsString())
-    {
-      vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(1);
-    }
+    // What most want to see is the water; or there is nothing else.
+    const bool isFree = vtkSMPropertyHelper(filter, "NextFreeSurface").GetAsInt() != 0 ||
+      !*vtkSMPropertyHelper(filter, "NextArray").GetAsString();
+    vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(isFree ? 1 : 0);
+    // Lines of particles in a plane are hard to see.
+    vtkSMUncheckedPropertyHelper(filter, "Filled")
+      .Set(vtkSMPropertyHelper(filter, "NextDimension").GetAsInt() == 2 ? 1 : 0);
   }
 }
 
@@ -323,6 +344,24 @@ void pqSPHInUse::offerMore()
   }
 }
 
+// While Smooth is on, what it stands for is shown, greyed.
+void pqSPHInUse::showSmooth()
+{
+  vtkSMUncheckedPropertyHelper smooth(this->proxy(), "Smooth"), compact(this->proxy(), "Compact"),
+    widening(this->proxy(), "Widening");
+  const bool isSmooth = smooth.GetAsInt() != 0;
+  if (isSmooth == std::exchange(this->IsSmooth, isSmooth))
+  {
+    return;
+  }
+  if (isSmooth)
+  {
+    this->Rough = { compact.GetAsInt(), widening.GetAsDouble() };
+  }
+  compact.Set(isSmooth ? 1 : this->Rough.first);
+  widening.Set(isSmooth && this->Rough.second == 1.0 ? 2.0 : this->Rough.second);
+}
+
 void pqSPHInUse::showValues()
 {
   this->Pause.stop();
@@ -331,9 +370,9 @@ void pqSPHInUse::showValues()
   this->showRows();
 }
 
-// ParaView chooses colours when something is shown first, even if there is nothing to see: after an
-// error, or with an iso value beside the range. It is the same choice, as soon as there is
-// something.
+// ParaView chooses colours when something is shown first. The same choice is made anew where there
+// was nothing to see (after an error, or with an iso value beside the range), and where another
+// array is the best one, until a person takes another colour.
 void pqSPHInUse::colourLate()
 {
   auto* source =
@@ -347,6 +386,9 @@ void pqSPHInUse::colourLate()
     return;
   }
   const bool isEmpty = data->GetNumberOfPoints() + data->GetNumberOfRows() == 0;
+  vtkPVArrayInformation* active =
+    data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
+  const QString before = std::exchange(this->Colour, active ? active->GetName() : "");
   if (isFirst)
   {
     this->WasEmpty = isEmpty; // this is a panel of an older object
@@ -359,12 +401,13 @@ void pqSPHInUse::colourLate()
       "found.\n";
     vtkOutputWindowDisplayWarningText(text.toUtf8().constData());
   }
-  vtkPVArrayInformation* active =
-    data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
   for (pqDataRepresentation* shown : port->getRepresentations(nullptr))
   {
     auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(shown->getProxy());
-    if (this->WasEmpty && active && proxy && !proxy->GetUsingScalarColoring())
+    const QString colour = proxy && proxy->GetUsingScalarColoring()
+      ? vtkSMPropertyHelper(proxy, "ColorArrayName").GetAsString(4)
+      : "";
+    if (proxy && active && colour == before && before != this->Colour)
     {
       proxy->SetScalarColoring(active->GetName(), vtkDataObject::POINT);
       proxy->RescaleTransferFunctionToDataRange();
@@ -390,11 +433,12 @@ void pqSPHInUse::lookAhead()
   }
   const vtkSMPropertyHelper input(filter, "Input");
   vtkSMPropertyHelper(twin, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
-  for (const char* name : CHOICES)
+  for (const QString& name : namesOf(filter))
   {
-    vtkSMPropertyHelper shown(filter, name);
+    const QByteArray key = name.toUtf8();
+    vtkSMPropertyHelper shown(filter, key.constData());
     shown.SetUseUnchecked(true);
-    vtkSMPropertyHelper(twin, name).Copy(shown);
+    vtkSMPropertyHelper(twin, key.constData()).Copy(shown);
   }
   twin->UpdateVTKObjects();
   for (const char* name : NEXT)

@@ -44,6 +44,7 @@ private Q_SLOTS:
   void lookAhead();
   void beginNew();
   void offerMore();
+  void showSmooth();
 
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
@@ -53,6 +54,9 @@ private: // NOLINT(readability-redundant-access-specifiers)
 
   QToolButton* Button;
   bool HasLooked = false, WasEmpty = false; // at the last output
+  bool IsSmooth = false;
+  QPair<int, double> Rough{ 0, 1.0 }; // Compact and Widening without Smooth
+  QString Colour;      // the array that the last output is best coloured by; empty: none
   QList<double> Given; // the iso value that the panel chose last; none: it does not choose
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;

@@ -64,10 +64,10 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 {
   this->Superclass::FillOptions(options);
-  options.field = this->FreeSurface ? MCOR_WEIGHT_SUM
-    : this->ShepardNormalization    ? MCOR_SHEPARD
-                                    : MCOR_SUM;
-  options.seeds = this->SeedMode == PAIRS && !this->FreeSurface ? MCOR_PAIRS : MCOR_COMPLETE;
+  options.field = this->DrawsFreeSurface ? MCOR_WEIGHT_SUM
+    : this->ShepardNormalization         ? MCOR_SHEPARD
+                                         : MCOR_SUM;
+  options.seeds = this->SeedMode == PAIRS && !this->DrawsFreeSurface ? MCOR_PAIRS : MCOR_COMPLETE;
   options.topology = this->Topology == TOPOLOGY_FIELD ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
@@ -91,8 +91,9 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->Trim ? this->VertexThreshold : 0.0;
   const bool endsAtSolids =
-    this->Solids == SOLIDS_WALL || (this->Solids == SOLIDS_AUTO && !this->FreeSurface);
-  options.wall_share = endsAtSolids && (this->Trim || this->FreeSurface) ? this->WallShare : 0.0;
+    this->Solids == SOLIDS_WALL || (this->Solids == SOLIDS_AUTO && !this->DrawsFreeSurface);
+  options.wall_share =
+    endsAtSolids && (this->Trim || this->DrawsFreeSurface) ? this->WallShare : 0.0;
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
@@ -105,18 +106,39 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 void vtkMarchingCorrectors::FillChoice(
   vtkMarchingCorrectorsChoice& choice, vtkRun& run)
 {
-  if (!this->FreeSurface) // a free surface contours no array, so not all values need be read
+  if (!this->DrawsFreeSurface) // a free surface contours no array, so not all values need be read
   {
     choice.Scalar = this->FindRequest(0, run.Own);
     choice.ScalarDot = this->FindRequest(1, run.Own);
   }
   static_cast<vtkSPHParticlesChoice&>(choice) =
-    run.Choose(this->FreeSurface ? nullptr : &choice.Scalar);
+    run.Choose(this->DrawsFreeSurface ? nullptr : &choice.Scalar);
   choice.ScalarComponent = this->ScalarComponent;
-  choice.FreeSurface = this->FreeSurface != 0;
+  choice.FreeSurface = this->DrawsFreeSurface;
   choice.InterpolateAttributes = this->InterpolateAttributes != 0;
   choice.ComputeScalars = this->ComputeScalars != 0;
   choice.Filled = this->Filled != 0;
+}
+
+// Where nobody chose what to contour, the particles tell.
+void vtkMarchingCorrectors::ChooseMode(vtkRun& run)
+{
+  const double* values = this->ContourValues->GetValues();
+  this->DrawsFreeSurface = this->FreeSurface > 0;
+  if (this->FreeSurface != FREE_SURFACE_AUTO || !this->FindRequest(0, run.Own).Name.empty() ||
+    !std::all_of(values, values + this->ContourValues->GetNumberOfContours(),
+      [](double value) { return std::isnan(value); }))
+  {
+    return;
+  }
+  vtkSPHParticles particles(run.Choose(), run.Own);
+  particles.Collect();
+  run.CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      this->DrawsFreeSurface = particles.HasFreeSurface(ranks);
+      return true;
+    });
 }
 
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
@@ -140,6 +162,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
     this->SetUsedNames(nullptr);
     return;
   }
+  this->ChooseMode(*run);
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
   this->FillChoice(choice, *run);
@@ -198,6 +221,7 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   {
     return false;
   }
+  this->ChooseMode(*run);
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
   this->FillChoice(choice, *run);
@@ -325,8 +349,7 @@ bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput
     }
     kept.Factors = found;
   }
-  input.TakeWidening(
-    kept.Factors->GetArray("Widening"), kept.Factors->GetArray("WideningVolume"));
+  input.TakeWidening(kept.Factors->GetArray("Widening"), kept.Factors->GetArray("WideningVolume"));
   return true;
 }
 
@@ -408,14 +431,15 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
     next.Cells = this->EstimatedCells;
     return next;
   }
-  mcor_options options;
-  this->FillOptions(options);
   vtkSmartPointer<vtkDataObject> taken = data ? this->TakeVertices(data) : nullptr;
   taken = this->TakesTogether() ? this->JoinParticles(taken).Get() : taken.Get();
   for (vtkPointSet* particles : vtkSPHListPointSets(taken))
   {
     vtkRun run(this);
     run.Own = particles;
+    this->ChooseMode(run);
+    mcor_options options;
+    this->FillOptions(options);
     vtkMarchingCorrectorsChoice choice;
     this->FillChoice(choice, run);
     choice.InterpolateAttributes = false;
@@ -440,6 +464,7 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
     if (isUsable)
     {
       next.Dimension = mcor_find_dimension(&input.Core, nullptr, this->Dimension);
+      next.FreeSurface |= input.HasFreeSurface(nullptr) ? 1 : 0;
       next.Cells +=
         mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
     }

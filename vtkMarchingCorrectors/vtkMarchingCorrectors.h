@@ -119,6 +119,12 @@ public:
     EIGENVALUE = 1  ///< smallest one of sum_j V_j (x_j - x) (outer product) grad W(x - x_j, s h_j)
   };
 
+  /** Value of FreeSurface that lets the particles decide. */
+  enum
+  {
+    FREE_SURFACE_AUTO = -1
+  };
+
   enum SolidsType
   {
     SOLIDS_WEIGHT = 0, ///< count in the weight sum used for trimming
@@ -186,10 +192,13 @@ public:
   vtkSPHFlagMacro(ShepardNormalization, 1);
 
   /**
-   * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. Off by
-   * default. When on, the scalar, the contour values and the thresholds are not used.
+   * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. When on,
+   * the scalar, the contour values and the thresholds are not used. The default, FREE_SURFACE_AUTO:
+   * on if neither a scalar nor a contour value is given, and the particles have a free surface. A gas
+   * that fills its bounds has none, see mcor_has_free_surface().
    */
-  vtkSPHFlagMacro(FreeSurface, 0);
+  vtkSPHClampMacro(FreeSurface, int, FREE_SURFACE_AUTO, FREE_SURFACE_AUTO, 1);
+  vtkBooleanMacro(FreeSurface, int);
 
   ///@{
   /**
@@ -469,7 +478,7 @@ public:
   /**
    * Values that an update with the present properties and input would find: FluidScalarRange,
    * the default iso value (NaN: not known), the number of components of the chosen array (1 for
-   * a dot product), the dimension, EstimatedCells (of all blocks), UsedFluid, and the array that
+   * a dot product), whether there is a free surface, the dimension, EstimatedCells (of all blocks), UsedFluid, and the array that
    * is contoured if none is chosen. The input is not updated. 0 to 0, 0, or empty: not known,
    * without particles or a scalar. If processes share a run, these are the values of the last
    * update, because one process cannot ask the others without waiting for them.
@@ -477,6 +486,7 @@ public:
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
   double GetNextIsoValue() { return this->LookAhead().IsoValue; }
   int GetNextComponents() { return this->LookAhead().Components; }
+  int GetNextFreeSurface() { return this->LookAhead().FreeSurface; }
   int GetNextDimension() { return this->LookAhead().Dimension; }
   double GetNextCells() { return this->LookAhead().Cells; }
   const char* GetNextFluid() { return this->LookAhead().Fluid.c_str(); }
@@ -494,6 +504,7 @@ protected:
   vtkNew<vtkContourValues> FreeSurfaceValues;
 
   int Solids = SOLIDS_AUTO;
+  bool DrawsFreeSurface = false; // as FreeSurface says, or, if it is automatic, as was found
 
   double FluidScalarRange[2] = { 0.0, 0.0 };
   double UsedCubeSize = 0.0;
@@ -518,12 +529,13 @@ private:
   void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkRun& run);
   void FillOptions(mcor_options& options);
+  void ChooseMode(vtkRun& run);
   /** What the next update would find. */
   struct vtkAhead
   {
     double ScalarRange[2] = { 0.0, 0.0 };
     double IsoValue = std::numeric_limits<double>::quiet_NaN();
-    int Components = 0, Dimension = 0;
+    int Components = 0, Dimension = 0, FreeSurface = 0;
     double Cells = 0.0;
     std::string Fluid, Array;
   };

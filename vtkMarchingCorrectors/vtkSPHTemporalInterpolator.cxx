@@ -22,6 +22,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -56,6 +57,8 @@ public:
   std::vector<double> Times;                             // of its step, or of the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
   std::vector<vtkSPHTemporalPair> Pairs;                 // one for each block
+  std::set<long> Ratios;                                 // of motion to velocities, as warned of
+  vtkTimeStamp ToldTime;                                 // when these began
 };
 
 namespace
@@ -328,9 +331,19 @@ void vtkSPHTemporalInterpolator::Fill(
     this->Fail(pair.Error);
     return;
   }
+  vtkInternals& told = *this->Internals;
+  if (told.ToldTime < this->GetMTime())
+  {
+    told.Ratios.clear();
+    told.ToldTime.Modified();
+  }
   for (const std::string& warning : pair.Warnings)
   {
-    vtkWarningMacro(<< this->BlockName << warning);
+    // One line for all intervals in which the times are wrong by one factor.
+    if (pair.Ratio == 0.0 || told.Ratios.insert(std::lround(4.0 * std::log2(pair.Ratio))).second)
+    {
+      vtkWarningMacro(<< this->BlockName << warning);
+    }
   }
   pair.Interpolate(this->Internals->Time, output);
 }

@@ -93,7 +93,7 @@ def with_properties(kind):
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
     for name in (*NOTHING, "Box", "PeriodicBounds", "Within", "ErrorMessage", "RunStatistics"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
-    for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "Cells", "Fluid", "Array"):
+    for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in map(camel, QUANTITIES):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
@@ -275,15 +275,27 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if data is not None and max(self.GetMTime(), data.GetMTime()) < self._look_time.GetMTime():
             return self._ahead
         self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0, "Dimension": 0,
-                       "Fluid": "", "Array": ""}
+                       "FreeSurface": 0, "Fluid": "", "Array": ""}
         for each in sets_of(self._join(self._keep(take_vertices, data))):
             self._look_at(each, self._ahead)
         self._look_time.Modified()
         return self._ahead
 
+    def _settle(self, choice, points):
+        """Where nobody chose what to contour, the particles tell."""
+        if choice.FreeSurface >= 0:
+            return
+        values = [self.ContourValues.GetValue(i) for i in range(self.ContourValues.GetNumberOfContours())]
+        choice.FreeSurface = int(not Request(self, 0, points).name and all(value != value for value in values))
+        if choice.FreeSurface:
+            with suppress(Unusable, Error):  # the run says why
+                particles = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
+                choice.FreeSurface = particles.has_free_surface()
+
     def _look_at(self, points, ahead):
         """Adds what is known about these points: the range needs no smoothing length, the number of cells no scalar."""
         choice, none = self._choice(), Request(self, 9, points)
+        self._settle(choice, points)
         with suppress(Unusable):
             fittest = Particles(choice, points, ["fluid", "array"], (none, none))
             ahead["Array"] = ahead["Array"] or name_of(fittest.scalar)
@@ -298,7 +310,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
         with suppress(Unusable, Error):
-            given = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice)).arguments()
+            sizes = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
+            given = sizes.arguments()
+            ahead["FreeSurface"] |= sizes.has_free_surface()
             ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
             ahead["Cells"] += Particles.estimate_cells(given, self._options(choice))
 
@@ -375,6 +389,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
             return
         choice = self._choice()
+        self._settle(choice, data)
         options = self._options(choice)
         try:
             period = find_period(data) if choice.DetectPeriod else None

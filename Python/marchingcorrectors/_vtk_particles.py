@@ -226,6 +226,12 @@ class Particles:
                         for name, array in self.interpolated.items()} if hasattr(self, "interpolated") else {}
         return result
 
+    def has_free_surface(self):
+        """Whether it is what to see first. A density that is not used for volumes tells of a liquid, too."""
+        given = c.mcor_input.from_buffer_copy(self.arguments().input)
+        given.density = self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_DENSITY"]]
+        return lib.mcor_has_free_surface(ctypes.byref(given), None)
+
     @staticmethod
     def estimate_cells(arguments, options):
         given = ctypes.byref(arguments.input)

@@ -434,6 +434,29 @@ class TestTold(FilterTest):
                       "Iteration Limit: 255"):  # The class in the wheel prints numbers.
             self.assertRegex(str(extract), words + "\n")
 
+    def test_mode(self):
+        """Nobody chose: the free surface, but for a gas that fills its bounds."""
+        x = lattice(20, 12, 8)
+        there = x[(x[:, 2] < 0.4) | (x[:, 0] < 1)]  # a dam
+        varying = 0.13 * (1 + 0.3 * numpy.sin(x[:, 0]))
+        water, gas = {"Density": numpy.full(len(x), 1000.0)}, {"Density": numpy.exp(x[:, 0])}
+        for points, arrays, is_free in ((there, {}, True), (x, {}, False), (x, water, True), (x, gas, False),
+                                        (x, {**water, "h": varying}, False)):
+            extract = vtkMarchingCorrectors()
+            particles = particles_of(points, **{"h": numpy.full(len(points), 0.13), "Height": points[:, 2] + 2, **arrays})
+            surface, told = run(extract, particles)
+            used = (extract.GetFluidScalarRange() == (0, 0), extract.GetNextFreeSurface() == 1, extract.GetFreeSurface())
+            self.assertEqual((used, told), ((is_free, is_free, -1), []))
+            self.assertGreater(surface.GetNumberOfCells(), 0)
+            run(extract, InputArrayToProcess=(0, 0, 0, 0, "Height"))
+            self.assertNotEqual(extract.GetFluidScalarRange(), (0, 0))  # an array was chosen
+        run(extract, FreeSurface=1)
+        self.assertEqual(extract.GetFluidScalarRange(), (0, 0))
+        extract = vtkMarchingCorrectors()
+        extract.SetValue(0, 2.2)  # a value was given
+        run(extract, particles_of(there, h=numpy.full(len(there), 0.13), Height=there[:, 2] + 2))
+        self.assertNotEqual(extract.GetFluidScalarRange(), (0, 0))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -28,6 +28,7 @@ UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
 REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
 OF_SCALARS = ("SelectInputScalars", "ContourValues", "DotProductWith", "ShepardNormalization", "Trim", "NodeThreshold",
               "BoundaryDetection", "VertexThreshold")
+WIDENING = "Widening/DoubleRangeWidget/DoubleLineEdit"
 CHECK = "check"  # This stands in the place of a command: a property of the widget must have this value.
 
 
@@ -79,6 +80,10 @@ def first_apply(folder):
     return [
         FILTERS, ADVANCED, PAUSE,
         *greyed("ContourValues", "Filled"),  # Walls are detected, so the water is shown first.
+        change("Smooth/CheckBox", "set_boolean", "true"), *greyed("Widening", "Compact", "Filled"),
+        shown(WIDENING, "text", "2"), shown("Compact/CheckBox", "checked", "true"),
+        change("Smooth/CheckBox", "set_boolean", "false"), *usable("Widening", "Compact"),
+        shown(WIDENING, "text", "1"), shown("Compact/CheckBox", "checked", "false"),
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
         shown("sph_in_use/Values", "visible", "false"),
@@ -105,7 +110,7 @@ def first_apply(folder):
     ]
 
 
-def empty_first():
+def empty_first(folder):
     """The panel, too, says that the first output is empty. When there is something to draw, it has the colours that a first output would have."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
@@ -113,7 +118,12 @@ def empty_first():
         change(value, "set_string", "1000"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Solid Color"),
         shown("sph_in_use/Show", "text", "The output is empty: what was found, and what is used"),
         change(value, "set_string", "0.5"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
-        DELETE, PAUSE,
+        # The colour follows the mode, until a person takes another one.
+        change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Vorticity"),
+        change("FreeSurface/CheckBox", "set_boolean", "true"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
+        (COLOUR, "set_string", "Pressure"), PAUSE,
+        change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Pressure"),
+        FILTERS, PAUSE, *save_state(f"{folder}/second.pvsm"), DELETE, PAUSE, DELETE, PAUSE,
     ]
 
 
@@ -177,7 +187,10 @@ def check_states(states):
 
 def main(paraview):
     with tempfile.TemporaryDirectory() as folder:
-        run(paraview, empty_first() + first_apply(folder) + later_applies(folder), folder)
+        run(paraview, empty_first(folder) + first_apply(folder) + later_applies(folder), folder)
+        second = xml.parse(os.path.join(folder, "second.pvsm"))
+        names = [item.get("name") for item in second.findall(".//ProxyCollection[@name='sources']/Item")]
+        assert sorted(name for name in names if "SPH" in name) == ["SPHContour1", "SPHContour2"], names
         check_states({name[:-5]: properties(os.path.join(folder, name))
                       for name in os.listdir(folder) if name.endswith(".pvsm")})
     print("the panel works")

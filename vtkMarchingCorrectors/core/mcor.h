@@ -657,6 +657,13 @@ extern "C"
    * NULL, and this mcor_options.dimension. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
+  /* Returns whether the free surface is what users want to see first, over all ranks unless `ranks`
+   * is NULL: 0 for a gas that fills its bounds, as its particles reach 98 % of them by their
+   * smoothing lengths; 1 if there are solids, if the fluid leaves room within its bounds, or if
+   * it is a liquid: it has one smoothing length, and densities that differ by no more than a
+   * factor of 2. Reads positions, solids, smoothing lengths and densities, of valid form. */
+  int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);
+
   /* A usual number of neighbours, as `eta` below. */
 #define MCOR_USUAL_ETA 1.3
 

@@ -91,6 +91,9 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
+  /** mcor_has_free_surface() of these particles; after Collect(). */
+  bool HasFreeSurface(const mcor_ranks* ranks) const;
+
   /** Returns what tells the fluid, "ParticleType = 0"; empty if all particles are fluid. */
   std::string DescribeFluid() const;
 

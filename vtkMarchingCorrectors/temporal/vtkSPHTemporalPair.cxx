@@ -82,6 +82,7 @@ bool vtkSPHTemporalPair::Match(
 {
   this->Error.clear();
   this->Warnings.clear();
+  this->Ratio = 0.0;
   this->TimeScale = choice.TimeScale;
   std::copy_n(choice.Period, 3, this->Period);
   vtkPointSet* const particles[2] = { first, second };
@@ -342,6 +343,7 @@ void vtkSPHTemporalPair::CheckVelocities()
     this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), Text(first.Time).c_str(),
       Text(second.Time).c_str(), Text(moved / expected).c_str(), this->VelocityName.c_str()));
     this->FollowsVelocities = false;
+    this->Ratio = std::max(moved / expected, 0.01);
   }
 }
 

@@ -42,6 +42,7 @@ public:
 
   std::string Error;
   std::vector<std::string> Warnings; // warnings of the last Match(); empty if it kept the match
+  double Ratio = 0.0; // the motion over that of the velocities, where a warning tells it; else 0
   std::string IdName, VelocityName;  // names of the arrays used
 
 private:

@@ -85,6 +85,8 @@ struct GaugeGrid
 /// and what the program does around them. Array names are spelled as ReadParticles() spells them.
 struct Job
 {
+  Job() { this->Surface->FreeSurfaceOff(); }
+
   vtkNew<vtkMarchingCorrectors> Surface;
   vtkNew<vtkSPHDerivatives> Derivatives; ///< used if Derive is not empty
   vtkNew<vtkSPHProbe> Probe;             ///< used if IsProbe()

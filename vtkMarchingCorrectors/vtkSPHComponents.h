@@ -25,8 +25,9 @@
  * filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are
  * left out, with the cavities in them; open pieces, which have neither, stay.
  *
- * The surface may have been cut; only its triangles matter. Do not set PeriodicBounds for a surface
- * with caps, which end pieces at the sides of the period.
+ * The surface may have been cut; only its triangles matter. With PeriodicBounds, a piece ends at
+ * the sides of the period only where it has caps in them, and particles count in whichever piece
+ * holds an image of them.
  *
  * If the controller has several processes, they find the pieces of the surface that they share:
  * each gets its part with ComponentId, and the first one gets the table, the same as from one

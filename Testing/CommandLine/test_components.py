@@ -138,6 +138,17 @@ class Components(CommandLineTest):
         self.assertEqual((block["closed"], block["particles"]), ("1", "992"))
         self.assertAlmostEqual(float(block["xmax"]) - float(block["xmin"]), 1, delta=0.02)
 
+    def test_caps_of_a_period(self):
+        """With caps, too, particles count where their images are: the bounds of the period need not hold them."""
+        for begin, count in ((1, 1), (0.13, 2), (-3.87, 2)):
+            files.write_vtp(self.input, self.points, self.arrays)
+            rows = self.pieces("--periodic", f"{begin},{begin + 2},0,0,0,0", "--capping")
+            self.assertEqual([row["closed"] for row in rows], ["1"] * count)
+            self.assertEqual(sum(int(row["particles"]) for row in rows), 992)
+            self.assertTrue(all(int(row["particles"]) > 200 and float(row["mass"]) > 200 for row in rows), rows)
+            for axis in "xyz":
+                self.assertAlmostEqual(sum(float(row["v" + axis]) * float(row["mass"]) for row in rows), 0, delta=1e-9)
+
     def test_wrong_usage(self):
         self.refuse_all(2, [(["--components", "pieces.txt"], "writes a .csv file"), (["--components", self.output], "a .csv file"),
                             (["--numbers", "numbers.csv"], "--numbers is for films, not for surfaces")], *FREE)

@@ -492,9 +492,10 @@ class Program(unittest.TestCase):
 
     def test_components(self):
         """The table of pieces, and the surface with their numbers, are byte for byte those of one process."""
-        walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping"]
+        walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping", "--periodic", "0,0,0.67"]
         for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
                                (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),
+                               (PARTICLES, ["--free-surface", "--capping", "--periodic", "5,8.1,0,0,0,0"]),
                                (PARTICLES, ["--scalar", "Speed", "--iso", "2", "--periodic=-1,1,0,0,-1,0.5"])):
             table = ["--components", self.path("alone.csv"), *how]
             alone = self.good(self.run_alone(particles, self.path("alone.vtp"), *table))

@@ -286,13 +286,13 @@ class TestComponents(MeterTest):
                 self.assertAlmostEqual(abs(row["volume"]) / masses.GetVolume(), 1, delta=1e-5)
         self.assertGreater(closed, 10)
 
-    def pieces_of(self, shift, wanted, period):
+    def pieces_of(self, shift, wanted, period, **settings):
         """Returns particles of a lattice of spacing 0.1 in the period 2, moved by `shift`. `wanted` chooses them by their place before the shift."""
         way = numpy.remainder(lattice(20, 20, 20) + 1, 2) - 1
         chosen = way[wanted(way)]
         particles = self.particles(*(chosen + shift))
         surface, _ = run(vtkMarchingCorrectors(), particles, SmoothingLength=0.1, FreeSurface=1, CubeSize=0.05,
-                         PeriodicBounds=period)
+                         PeriodicBounds=period, **settings)
         return self.measured(vtkSPHComponents(), surface, particles, PeriodicBounds=period), chosen
 
     def test_sides(self):
@@ -313,6 +313,25 @@ class TestComponents(MeterTest):
                 for a, axis in enumerate("xyz"):
                     self.assertLess(abs(math.remainder(row[axis] - expected[axis], 2)), 1e-5)
                     self.assertTrue(period[2 * a] - 1e-3 < row[axis] < period[2 * a + 1] + 1e-3)
+
+    def test_caps(self):
+        """Caps end pieces at the sides of a period: together they hold what the ball holds, which lies outside the period's bounds, too."""
+        def wanted(way):
+            return numpy.linalg.norm(way, axis=1) < 0.65
+
+        shift = [0.01, 0.02, 0.03]
+        for begin, count in ((-1.0, 1), (1.0, 1), (0.22, 8), (-5.78, 8), (0.62, 4), (2.46, 7)):
+            period = 3 * (begin, begin + 2)
+            ball, = self.pieces_of(shift, wanted, period)[0]
+            rows = self.pieces_of(shift, wanted, period, Capping=1)[0]
+            self.assertEqual(len(rows), count)
+            for name, delta in (("volume", 0.005), ("particles", 0), ("mass", 1e-12)):
+                self.assertAlmostEqual(sum(row[name] for row in rows) / ball[name], 1, delta=delta)
+            self.assertLess(sum(row["closed"] == 0 or row["volume"] <= 0 for row in rows), 1)
+            for axis in "xyz":
+                self.assertTrue(all(begin - 1e-3 < row[axis] < begin + 2 + 1e-3 for row in rows))
+                momentum = sum(row["mass"] * row["v" + axis] for row in rows if row["mass"] > 0)
+                self.assertAlmostEqual(momentum / ball["mass"], ball["v" + axis], delta=1e-9)
 
     def test_drops_in_bubbles(self):
         """The pieces of a ball, and of a layer without an end, hold all their particles wherever sides cut them."""

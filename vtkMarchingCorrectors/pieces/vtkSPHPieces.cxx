@@ -5,6 +5,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkMath.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -59,7 +61,8 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   {
     root = rootOf(root);
   }
-  this->JoinSides();
+  vtkDataArray* caps = mesh->GetFieldData()->GetArray("Capping"); // of vtkMarchingCorrectors
+  this->JoinSides(caps && caps->GetComponent(0, 0) != 0.0);
   this->NumberPieces();
   this->FindClosed();
   this->Measure();
@@ -79,10 +82,45 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   }
 }
 
-// Points on opposite sides are matched by their other two coordinates. Parts that meet there form a
-// group, in which each part has a shift in periods. If two ways to one part give it different
-// shifts, the group goes around the period.
-void vtkSPHPieces::JoinSides()
+// Lists the edges that triangles do not run through as often one way as the other: a triangle at
+// each, and which of its corners the edge begins at. Points with the same number in `of` are one.
+std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
+  const std::vector<vtkIdType>& of) const
+{
+  std::vector<std::array<vtkIdType, 5>> edges; // lower and higher point, way, triangle, corner
+  edges.reserve(3 * this->Triangles.size());
+  for (size_t t = 0; t < this->Triangles.size(); ++t)
+  {
+    for (vtkIdType i = 0; i < 3; ++i)
+    {
+      const vtkIdType a = of[this->Triangles[t][i]], b = of[this->Triangles[t][(i + 1) % 3]];
+      edges.push_back(
+        { { std::min(a, b), std::max(a, b), a < b ? 1 : -1, static_cast<vtkIdType>(t), i } });
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::array<vtkIdType, 2>> open;
+  for (size_t i = 0, next; i < edges.size(); i = next)
+  {
+    vtkIdType balance = 0;
+    for (next = i; next < edges.size() && std::equal(&edges[i][0], &edges[i][2], &edges[next][0]);
+         ++next)
+    {
+      balance += edges[next][2];
+    }
+    if (balance != 0)
+    {
+      open.push_back({ { edges[i][3], edges[i][4] } });
+    }
+  }
+  return open;
+}
+
+// The surface goes on beyond a side at open edges that lie in it, unless a cap was trimmed there.
+// Points of such edges on opposite sides are matched by their other two coordinates. Parts that meet
+// there form a group, in which each part has a shift in periods. If two ways to one part give it
+// different shifts, the group goes around the period.
+void vtkSPHPieces::JoinSides(bool hasCaps)
 {
   const size_t count = this->Points.size();
   this->Twin.resize(count);
@@ -91,6 +129,14 @@ void vtkSPHPieces::JoinSides()
   this->GroupShift.assign(count, Shift{ { 0, 0, 0 } });
   this->GroupEndless.assign(count, 0);
   std::vector<std::vector<vtkIdType>> members(count); // parts of each group, by its first part
+  bool isPeriodic = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    isPeriodic = isPeriodic || this->Period[2 * a + 1] > this->Period[2 * a];
+  }
+  const std::vector<std::array<vtkIdType, 2>> open = isPeriodic && !hasCaps
+    ? this->ListOpenEdges(this->Twin)
+    : std::vector<std::array<vtkIdType, 2>>();
   for (int a = 0; a < 3; ++a)
   {
     const double period = this->Period[2 * a + 1] - this->Period[2 * a];
@@ -108,20 +154,32 @@ void vtkSPHPieces::JoinSides()
     {
       continue;
     }
-    std::map<std::pair<double, double>, vtkIdType> lower;
-    const auto key = [&](size_t i)
-    { return std::make_pair(this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3]); };
-    for (size_t i = 0; i < count; ++i)
+    const auto listEnds = [&](double side)
     {
-      if (std::abs(this->Points[i][a] - low) <= tolerance)
+      const auto isOn = [&](vtkIdType point)
+      { return std::abs(this->Points[point][a] - side) <= tolerance; };
+      std::set<vtkIdType> ends;
+      for (const auto& edge : open)
       {
-        lower.emplace(key(i), static_cast<vtkIdType>(i));
+        const auto& corners = this->Triangles[edge[0]];
+        const vtkIdType from = corners[edge[1]], to = corners[(edge[1] + 1) % 3];
+        if (isOn(from) && isOn(to))
+        {
+          ends.insert({ from, to });
+        }
       }
-    }
-    for (size_t i = 0; i < count; ++i)
+      return ends;
+    };
+    std::map<std::pair<double, double>, vtkIdType> lower;
+    const auto key = [&](vtkIdType i)
+    { return std::make_pair(this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3]); };
+    for (const vtkIdType i : listEnds(low))
     {
-      const auto found =
-        std::abs(this->Points[i][a] - high) <= tolerance ? lower.find(key(i)) : lower.end();
+      lower.emplace(key(i), i);
+    }
+    for (const vtkIdType i : listEnds(high))
+    {
+      const auto found = lower.find(key(i));
       if (found == lower.end())
       {
         continue;
@@ -230,28 +288,9 @@ void vtkSPHPieces::NumberPieces()
 // A piece is closed if each edge is run through as often one way as the other.
 void vtkSPHPieces::FindClosed()
 {
-  std::vector<std::array<vtkIdType, 4>> edges; // lower and higher point, way, piece
-  edges.reserve(3 * this->Triangles.size());
-  for (size_t t = 0; t < this->Triangles.size(); ++t)
+  for (const auto& edge : this->ListOpenEdges(this->Twin))
   {
-    for (int i = 0; i < 3; ++i)
-    {
-      const vtkIdType a = this->Twin[this->Triangles[t][i]];
-      const vtkIdType b = this->Twin[this->Triangles[t][(i + 1) % 3]];
-      edges.push_back(
-        { { std::min(a, b), std::max(a, b), a < b ? 1 : -1, this->PieceOfTriangle[t] } });
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (size_t i = 0, next; i < edges.size(); i = next)
-  {
-    vtkIdType balance = 0;
-    for (next = i; next < edges.size() && std::equal(&edges[i][0], &edges[i][2], &edges[next][0]);
-         ++next)
-    {
-      balance += edges[next][2];
-    }
-    this->Pieces[edges[i][3]].Closed &= balance == 0;
+    this->Pieces[this->PieceOfTriangle[edge[0]]].Closed = false;
   }
 }
 

@@ -34,8 +34,8 @@ struct vtkSPHPiece
  * Finds the pieces: triangles that share points belong to one piece, also across the sides of a
  * period (bounds; 0 0: no period), where points have the same other coordinates, to the last
  * bit. A surface ends at planes of its lattice, which lie up to a cube from these bounds and a
- * period apart; where the surface passes the bounds, its own bounds are the sides. Pieces are
- * sorted by area, the largest first. Each is placed so that its centre is within the period. Pieces of
+ * period apart; where the surface passes the bounds, its own bounds are the sides. Caps there
+ * end pieces. Pieces are sorted by area, the largest first. Each is placed so that its centre is within the period. Pieces of
  * several iso values are nested in each other, so each encloses particles, and cavities of its own
  * value, as if there were no others.
  */
@@ -65,7 +65,8 @@ public:
 
 private:
   using Shift = std::array<int, 3>; // in periods
-  void JoinSides();
+  std::vector<std::array<vtkIdType, 2>> ListOpenEdges(const std::vector<vtkIdType>& of) const;
+  void JoinSides(bool hasCaps);
   void JoinParts(
     vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members);
   void NumberPieces();

@@ -323,10 +323,7 @@ void AddPieces(
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
   split->SetParticlesData(surface->TakePresent(particles));
-  if (!surface->GetCapping()) // pieces end at caps
-  {
-    split->SetPeriodicBounds(surface->GetPeriodicBounds());
-  }
+  split->SetPeriodicBounds(surface->GetPeriodicBounds());
   split->SetMassArrayName(surface->GetMassArrayName());
   split->SetMass(surface->GetMass());
   split->SetFluidArrayName(surface->GetFluidArrayName());

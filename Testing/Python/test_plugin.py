@@ -48,8 +48,13 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # The defaults are velocities, their median in the fluid, which is detected, and an end at the walls.
+    # The default is the free surface; without it velocities, their median in the fluid, which is detected, and an end at the walls.
     assert list(extract.Isosurfaces) == []
+    extract.UpdatePipeline()
+    extract.UpdatePropertyInformation()
+    assert float(value_of(extract, "UsedIsoValues")) == 0.5
+    assert extract.GetDataInformation().GetNumberOfCells() > 100000
+    extract.FreeSurface = 0
     extract.UpdatePipeline()
     extract.UpdatePropertyInformation()
     assert value_of(extract, "UsedFluid") == "ParticleType = 0"

@@ -124,6 +124,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     UNIFORM, ADAPTIVE = range(2)
     TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)
     WEIGHT_SUM, EIGENVALUE = range(2)
+    FREE_SURFACE_AUTO = -1
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
     TOGETHER, APART = range(2)
     ESTIMATE_SPACING, ESTIMATE_NEIGHBORS = range(2)

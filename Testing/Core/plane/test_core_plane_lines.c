@@ -224,7 +224,8 @@ static void test_periods(void** state)
       for (int i = 0; i < 4; ++i)
       {
         options.box[2 * ((axis + 1 + i / 2) % 3) + i % 2] = box[i];
-        region[i] = i % 2 ? fmin(region[i], box[i]) : fmax(region[i], box[i]);
+        /* Along the first axis the box crosses a side, and the period is moved so that it holds the box. */
+        region[i] = i < 2 ? box[i] : i % 2 ? fmin(region[i], box[i]) : fmax(region[i], box[i]);
       }
       options.box[2 * axis] = -INFINITY;
       options.box[2 * axis + 1] = INFINITY;

@@ -576,7 +576,7 @@ class Program(unittest.TestCase):
             (second + "#0", [self.path("piece.pvtp")], "piece_1.vtp would overwrite the input"),
             (first, [self.path("o.vtp"), "--walls", second + "#0", "--stats", second], "piece_1.vtp would overwrite the input"),
             (pieces, [self.path("o.pvtp"), "--stats", self.path("o_1.vtp")], "o_1.vtp would be written twice"),
-            (pieces, [self.path("o.vti"), "--slice", "z=0", "--stats", self.path("o.vti")], "--stats is for .* not for slices"),
+            (pieces, [self.path("o.vti"), "--slice", "z=0", "--stats", self.path("o.vti")], "--stats is for surfaces and films, not for slices"),
         ]:
             done = self.run_ranks(source, *arguments, *([] if "--slice" in arguments else how))
             self.check_fails(done, words)

@@ -30,7 +30,8 @@ class FileError(Error, ValueError):
     def __init__(self, sentence):
         """Makes one line of a text, whatever names a damaged file may have put into it."""
         plain = "".join(letter if letter.isprintable() else "?" for letter in str(sentence))
-        super().__init__(plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:])
+        plain = plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:]
+        super().__init__(sentence if plain == sentence else plain)  # a sentence of the core keeps its code
 
 
 def find_kernel(name):

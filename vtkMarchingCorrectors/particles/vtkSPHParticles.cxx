@@ -330,7 +330,6 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
   return made.second;
 }
 
-
 // A density that is not used for volumes tells of a liquid, too.
 bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
 {
@@ -342,6 +341,7 @@ bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
   }
   return mcor_has_free_surface(&core, ranks) != 0;
 }
+
 // The data set's own time is part of it: users change arrays in place and tell the data set.
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {

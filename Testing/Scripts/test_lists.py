@@ -39,9 +39,9 @@ class Options(unittest.TestCase):
         table = (GUIDE / "parameters.md").read_text(encoding="utf-8")
         said = {name: (option, cell) for option, name, cell in
                 re.findall(r"^\| [^|(]*\((?:`(--[\w-]+)`; )?(\w+)(?:; `\w+`)?\) \| ([^|]*) \|", table, re.M)}
-        source = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8")
+        source = (SOURCES / "Examples/CommandLine/options/Options.def").read_text(encoding="utf-8")
         helps = {name: " ".join(re.findall('"([^"]*)"', text)) for name, text in
-                 re.findall(r'\{ "(--[\w-]+)", ((?:"[^"]*",?\s*)+)', source)}
+                 re.findall(r'OPTION\("(--[\w-]+)", ((?:"[^"]*",?\s*)+)', source)}
         in_help = 0
         for name, default in self.defaults.items():
             with self.subTest(name):
@@ -59,8 +59,8 @@ class Options(unittest.TestCase):
         self.assertGreater(in_help, 4)
 
     def test_the_help_has_the_words(self):
-        source = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8")
-        shown = {frozenset(words.split("|")) for words in re.findall(r'\{ "--[\w-]+", "([\w|]+)",', source)}
+        source = (SOURCES / "Examples/CommandLine/options/Options.def").read_text(encoding="utf-8")
+        shown = {frozenset(words.split("|")) for words in re.findall(r'OPTION\("--[\w-]+", "([\w|]+)",', source)}
         for member, _, legal, words, _, name in rows_of("OPTION"):
             if legal == "WORD" and name != '""':
                 self.assertIn(frozenset(words.strip('"').split("|")), shown, member)

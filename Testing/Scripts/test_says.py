@@ -27,8 +27,8 @@ NOT_IN_PROGRAM = {"blocks"}
 
 
 def words_of_program():
-    """Returns {member: option}, as the rows of OptionTable.cxx have them."""
-    rows = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8").split('\n  { "--')[1:]
+    """Returns {member: option}, as the rows of Options.def have them."""
+    rows = (SOURCES / "Examples/CommandLine/options/Options.def").read_text(encoding="utf-8").split('\nOPTION("--')[1:]
     words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # OptionWord does the same.
     for row in rows:
         members = [word for word in re.findall(r'"(\w+)"', row.split("DO(")[0]) if word in SLOTS]

@@ -46,9 +46,7 @@ def main(arguments):
         print("marchingcorrectors: memory ran out", file=sys.stderr)
         return 1
     except (Error, FileError, OSError) as error:
-        from ._command import in_shell
-
-        print(f"marchingcorrectors: {in_shell(error)}", file=sys.stderr)
+        print(f"marchingcorrectors: {error}", file=sys.stderr)
         return 1
     return 0
 

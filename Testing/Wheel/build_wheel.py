@@ -4,8 +4,8 @@
 
     build_wheel.py SOURCES FOLDER KEPT AHEAD
 
-FOLDER gets dist/ (the wheel) and venv/. KEPT, AHEAD: the project's MCOR_AHEAD_KEPT (kernels that this build compiled
-already) and MCOR_AHEAD. Status 77: there is no venv module, or PyPI is out of reach.
+FOLDER gets dist/ (the wheel) and venv/. KEPT: the folder of kernels that this build compiled already; AHEAD: its MCOR_AHEAD.
+Status 77: there is no venv module, or PyPI is out of reach.
 """
 import os
 import shutil
@@ -60,9 +60,14 @@ def main():
             if name and (sources / name).is_file():
                 (tree / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(sources / name, tree / name)
-    run(*pip, "wheel", "--no-deps", "-w", folder / "built",
-        f"--config-settings=cmake.define.MCOR_AHEAD_KEPT={sys.argv[3]}",
-        f"--config-settings=cmake.define.MCOR_AHEAD={sys.argv[4]}", tree)
+    ahead = f"--config-settings=cmake.define.MCOR_AHEAD={sys.argv[4]}"
+    if tree == sources:
+        run(*pip, "wheel", "--no-deps", "-w", folder / "built", f"--config-settings=cmake.define.MCOR_AHEAD_KEPT={sys.argv[3]}", ahead, tree)
+    else:  # As beside a build in the folder of the sources, whose kernels are taken.
+        (tree / "build" / "vtkMarchingCorrectors" / "core").mkdir(parents=True)
+        (tree / "build" / "vtkMarchingCorrectors" / "core" / "ahead").symlink_to(sys.argv[3])
+        said = run(*pip, "wheel", "-v", "--no-deps", "-w", folder / "built", ahead, tree)
+        assert f"Kernels are taken from {tree}/build/vtkMarchingCorrectors/core/ahead" in said, said[-3000:]
     built = list((folder / "built").glob("*.whl"))
     assert len(built) == 1 and "-py3-none-linux_" in built[0].name, built
     # auditwheel looks for patchelf on the PATH.

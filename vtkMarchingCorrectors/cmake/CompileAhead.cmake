@@ -7,7 +7,7 @@
 #   PREFIX     source of the built-in functions; SOURCES: of the program, in order
 #   DEFINES    of the program, as mcor_program_options writes them
 #   OUTPUT     the object file; beside it is what it was made of
-#   KEPT       folder of such object files: one that was made of the same is taken, and not compiled
+#   KEPT       folders of such object files: one that was made of the same is taken, and not compiled
 get_filename_component(folder "${OUTPUT}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
 separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
@@ -102,9 +102,9 @@ execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)
 string(SHA256 key "${version} ${opencl} ${made_of}")
 get_filename_component(object "${OUTPUT}" NAME)
 set(places "${OUTPUT}")
-if (KEPT)
-  list(APPEND places "${KEPT}/${object}")
-endif ()
+foreach (folder IN LISTS KEPT)
+  list(APPEND places "${folder}/${object}")
+endforeach ()
 foreach (kept IN LISTS places)
   if (EXISTS "${kept}" AND EXISTS "${kept}.key")
     file(READ "${kept}.key" kept_key)

@@ -30,6 +30,11 @@ set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
   "Instruction sets of these kernels, those of other processors are ignored: V3, V4 (x86-64), BASE (arm64)")
 set(MCOR_AHEAD_KEPT "" CACHE PATH "Folder of another build's compiled kernels, taken where they were made of the same")
 mark_as_advanced(MCOR_AHEAD_USUAL MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS MCOR_AHEAD_KEPT)
+set(mcor_ahead_kept "${MCOR_AHEAD_KEPT}")
+if (MCOR_BUILD_PYTHON_WHEEL AND NOT mcor_ahead_kept) # those of builds in the folder of the sources
+  file(GLOB mcor_ahead_kept LIST_DIRECTORIES true "${PROJECT_SOURCE_DIR}/build*/vtkMarchingCorrectors/core/ahead")
+  message(STATUS "Kernels are taken from ${mcor_ahead_kept} where they are made of the same")
+endif ()
 set(mcor_ahead_flags "${MCOR_AHEAD_FLAGS}")
 if (CMAKE_CROSSCOMPILING)
   string(APPEND mcor_ahead_flags " --target=${MCOR_AHEAD_TRIPLE}")
@@ -43,7 +48,7 @@ function (mcor_compile_ahead object name flags defines)
     OUTPUT  "${object}"
     COMMAND "${CMAKE_COMMAND}" "-DCOMPILER=${MCOR_CLANG}" "-DNAME=${name}" "-DFLAGS=${flags}"
             "-DDEFINES=${defines}" "-DPREFIX=${prefix}" "-DSOURCES=${ARGN}" "-DOUTPUT=${object}"
-            "-DKEPT=${MCOR_AHEAD_KEPT}" -P "${script}"
+            "-DKEPT=${mcor_ahead_kept}" -P "${script}"
     DEPENDS ${ARGN} "${prefix}" "${script}"
     COMMENT "Compiling kernels ahead: ${name}"
     VERBATIM)

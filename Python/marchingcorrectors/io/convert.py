@@ -1,8 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles as VTK's poly data, .vtp, and .pvd of several times."""
+"""Writes particles as VTK's poly data, .vtp, and .pvd of several times."""
+import base64
+import sys
+import zlib
 from pathlib import Path
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -10,6 +13,10 @@ from .._warnings import warn
 from . import FileError, count_steps, read
 from ._outputs import STEP_MARK, Outputs
 from ._particles import support_factor
+from .vtk_xml import KINDS
+
+XML_NAMES = {numpy: name for name, numpy in KINDS.items()}
+BLOCK = 1 << 20  # bytes that are packed at a time
 
 
 def plain(values):
@@ -21,22 +28,11 @@ def plain(values):
     return np.ascontiguousarray(values, np.uint8 if kind == "b" else values.dtype.newbyteorder("="))
 
 
-def to_vtk(particles):
-    """A vertex of each, as ParaView draws no bare points, and arrays as in the file; beside them SmoothingLength as this
-    package means it (half of the support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType
-    (0 fluid, 1 wall) where the file tells them in another way."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-
-    from .._vtk_surface import add, build_cells
-
-    positions = particles.positions
-    data, numbers = vtkPolyData(), np.arange(len(positions) + 1)
-    data.SetPoints(vtkPoints())
-    data.GetPoints().SetData(numpy_to_vtk(plain(positions if positions.dtype.kind == "f" else positions.astype(float)), deep=True))
-    data.SetVerts(build_cells(numbers, numbers[:-1]))
-    arrays = {name: particles.arrays[name] for name in particles.arrays}
+def describe(particles):
+    """Returns positions, arrays as in the file, and field data. Beside the file's arrays are SmoothingLength as this package means it (half of the
+    support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType (0 fluid, 1 wall) where the file tells them in another
+    way."""
+    positions, arrays = particles.positions, {name: particles.arrays[name] for name in particles.arrays}
     h = particles.quantity("smoothing_length")
     if h is not None:
         if isinstance(particles.smoothing_length, str):
@@ -47,38 +43,65 @@ def to_vtk(particles):
         arrays.setdefault("Mass", np.full(len(positions), particles.mass))
     if particles.solid is not None and "Type" not in arrays:
         arrays["ParticleType"] = particles.solid.astype(np.uint8)
+    held = {}
     for name, values in arrays.items():
         if values.ndim in (1, 2) and len(values) == len(positions) and values.size >= len(values):
             if values.dtype.kind in "biuf" or (values.dtype.kind == "U" and values.ndim == 1):
-                add(data.GetPointData(), name, plain(values))
+                held[name] = values if values.dtype.kind == "U" else plain(values)
             else:
                 warn(f"{particles.file}: the array '{name}' ({values.dtype}) is left out, as VTK has no such type.")
     field = {"TimeValue": None if particles.time is None else [float(particles.time)],
              "PeriodicBounds": particles.cell or particles.period}
-    for name, values in field.items():
-        if values is not None:
-            add(data.GetFieldData(), name, np.asarray(values, float))
+    return (plain(positions if positions.dtype.kind == "f" else positions.astype(float)), held,
+            {name: np.asarray(values, float) for name, values in field.items() if values is not None})
+
+
+def to_vtk(particles):
+    """Returns poly data with a vertex of each particle, as ParaView draws no bare points."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from .._vtk_surface import add, build_cells
+
+    positions, arrays, field = describe(particles)
+    data, numbers = vtkPolyData(), np.arange(len(positions) + 1)
+    data.SetPoints(vtkPoints())
+    data.GetPoints().SetData(numpy_to_vtk(positions, deep=True))
+    data.SetVerts(build_cells(numbers, numbers[:-1]))
+    for to, held in ((data.GetPointData(), arrays), (data.GetFieldData(), field)):
+        for name, values in held.items():
+            add(to, name, values)
     return data
 
 
-def vtp_bytes(particles, mark=b""):
-    """In memory: on a full disk VTK's writers end in a crash, or without a word."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+def xml_array(name, values, more=""):
+    """Returns the text of an array: base64 of packed blocks, behind the sizes of these."""
+    if values.dtype.kind == "U":
+        kind, data = "String", "".join(value + "\0" for value in values.tolist()).encode()
+    else:
+        kind, data = XML_NAMES[values.dtype.str[1:]], np.ascontiguousarray(values).tobytes()
+    blocks = [zlib.compress(data[i:i + BLOCK], 1) for i in range(0, len(data), BLOCK)]
+    sizes = np.array([len(blocks), BLOCK, len(data) % BLOCK, *map(len, blocks)], np.uint64)
+    text = (base64.b64encode(sizes.tobytes()) + base64.b64encode(b"".join(blocks))).decode()
+    columns = values.shape[1] if values.ndim == 2 else 1
+    return (f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfComponents="{columns}"{more} format="binary">\n{text}\n'
+            "</DataArray>\n")
 
-    data = to_vtk(particles)
-    for arrays in (data.GetPointData(), data.GetFieldData()):
-        for i in range(arrays.GetNumberOfArrays()):
-            each = arrays.GetAbstractArray(i)
-            each.SetName(escape(each.GetName(), {'"': "&quot;"}))  # VTK's writers put names into XML as they are
-    writer = vtkXMLPolyDataWriter()
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToBinary()
-    writer.SetInputData(data)
-    written = writer.Write() and writer.GetOutputString()
-    if not written:
-        raise FileError(f"{particles.file} could not be converted: VTK's writer gave up.")
-    written = written if isinstance(written, bytes) else written.encode()
-    return written.replace(b"?>", b"?>\n" + mark, 1) if mark else written
+
+def vtp_bytes(particles, mark=b""):
+    """Returns the file of to_vtk(), which is made without VTK."""
+    positions, arrays, field = describe(particles)
+    count, numbers = len(positions), np.arange(len(positions) + 1)
+    order = "LittleEndian" if sys.byteorder == "little" else "BigEndian"
+    inside = {"PointData": arrays, "Points": {"Points": positions}, "Verts": {"connectivity": numbers[:-1], "offsets": numbers[1:]}}
+    piece = "".join(f"<{part}>\n{''.join(xml_array(name, values) for name, values in held.items())}</{part}>\n"
+                    for part, held in inside.items())
+    fields = "".join(xml_array(name, values, f' NumberOfTuples="{len(values)}"') for name, values in field.items())
+    return (f'<?xml version="1.0"?>\n{mark.decode()}<VTKFile type="PolyData" version="1.0" byte_order="{order}" header_type="UInt64" '
+            f'compressor="vtkZLibDataCompressor">\n<PolyData>\n<FieldData>\n{fields}</FieldData>\n'
+            f'<Piece NumberOfPoints="{count}" NumberOfVerts="{count}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">\n{piece}'
+            "</Piece>\n</PolyData>\n</VTKFile>\n").encode()
 
 
 def convert(inputs, output):

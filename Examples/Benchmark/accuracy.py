@@ -32,20 +32,26 @@ def walls():
     """Makes a channel between walls of three layers at y = 0 and y = 12, in which everything moves with (1, 1, 0), and a tank with a floor."""
     x = lattice((-8, 8), (-3, 15), (-8, 8))
     solid = (x[:, 1] < 0) | (x[:, 1] > 12)
+    in_place = x.copy()  # Here the layer beside each wall stays half a spacing away from it.
     x[~solid] += np.random.default_rng(1).normal(0, 0.2, (np.count_nonzero(~solid), 3))
     x[~solid, 1] = x[~solid, 1].clip(0.5, 11.5)
+    layer = ~solid & ((in_place[:, 1] < 1) | (in_place[:, 1] > 11))
+    in_place[~solid] = x[~solid]
+    in_place[layer, 1] = np.where(in_place[layer, 1] < 6, 0.5, 11.5)
+    print(f"The first layer is {x[layer, 1][x[layer, 1] < 6].mean():.2f} spacings away from its wall.")
     velocity = np.where(solid[:, np.newaxis], 0.0, [[1.0, 1.0, 0.0]])
     sections = {"across, from wall to wall": (((0, 0, -4), (0, 12, -4), (0, 0, 4)), 96),
                 "across, from inside of both walls": (((0, -2, -4), (0, 14, -4), (0, -2, 4)), 96),
                 "along a wall, one spacing before it": (((-4, 1, -4), (-4, 1, 4), (4, 1, -4)), 64),
                 "along a wall, half a spacing before it": (((-4, 0.5, -4), (-4, 0.5, 4), (4, 0.5, -4)), 64),
                 "along a wall, on its face": (((-4, 0, -4), (-4, 0, 4), (4, 0, -4)), 64)}
-    found = {(h, ignored): mc.flux(x, velocity, {name: where for name, (where, _) in sections.items()}, smoothing_length=h,
-                                   volume=1.0, solid=solid, ignore_solids=ignored).volume_flux
-             for h in LENGTHS for ignored in (True, False)}
-    rows = [[name, *[" / ".join(f"{100 * (found[h, ignored][i] / truth - 1) + 0.0:+.1f}" for ignored in (True, False))
-                     for h in LENGTHS]] for i, (name, (_, truth)) in enumerate(sections.items())]
-    print_table("Error of the flux in %: without the solids / with them", ["section", *[f"h = {h} spacings" for h in LENGTHS]], rows)
+    for title, places in (("", x), (", first layer in place", in_place)):
+        found = {(h, ignored): mc.flux(places, velocity, {name: where for name, (where, _) in sections.items()}, smoothing_length=h,
+                                       volume=1.0, solid=solid, ignore_solids=ignored).volume_flux
+                 for h in LENGTHS for ignored in (True, False)}
+        rows = [[name, *[" / ".join(f"{100 * (found[h, ignored][i] / truth - 1) + 0.0:+.1f}" for ignored in (True, False))
+                         for h in LENGTHS]] for i, (name, (_, truth)) in enumerate(sections.items())]
+        print_table(f"Error of the flux in %{title}: without the solids / with them", ["section", *[f"h = {h} spacings" for h in LENGTHS]], rows)
     x = x[:, [0, 2, 1]]  # The wall at 0 is the floor, under water that is 10 deep.
     kept = x[:, 2] < 10
     x, solid = x[kept], solid[kept]

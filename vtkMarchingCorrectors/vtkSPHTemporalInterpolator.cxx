@@ -326,6 +326,7 @@ void vtkSPHTemporalInterpolator::Fill(
   const bool matched = pair.Match(sets[0], sets[1], choice);
   this->UsedIdArrayName = pair.IdName;
   this->UsedVelocityArrayName = pair.VelocityName;
+  this->MotionRatio = pair.Ratio;
   if (!matched)
   {
     this->Fail(pair.Error);
@@ -340,7 +341,8 @@ void vtkSPHTemporalInterpolator::Fill(
   for (const std::string& warning : pair.Warnings)
   {
     // One line for all intervals in which the times are wrong by one factor.
-    if (pair.Ratio == 0.0 || told.Ratios.insert(std::lround(4.0 * std::log2(pair.Ratio))).second)
+    if (pair.Ratio == 0.0 ||
+      told.Ratios.insert(std::lround(4.0 * std::log2(std::max(pair.Ratio, 0.01)))).second)
     {
       vtkWarningMacro(<< this->BlockName << warning);
     }
@@ -352,6 +354,6 @@ void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   vtkSPHPrintMacro(IdArrayName, VelocityArrayName, UseVelocities, PeriodicBounds, DetectPeriod,
-    UsedIdArrayName, UsedVelocityArrayName, TimeScale, ResampleFactor, ErrorMessage);
+    UsedIdArrayName, UsedVelocityArrayName, MotionRatio, TimeScale, ResampleFactor, ErrorMessage);
 }
 VTK_ABI_NAMESPACE_END

@@ -107,6 +107,15 @@ public:
   vtkSPHToldMacro(UsedVelocityArrayName);
   ///@}
 
+  ///@{
+  /**
+   * How many times as far as their velocities say the particles moved between the last two steps,
+   * if a warning tells of it; else 0.
+   */
+  vtkSPHMemberMacro(double MotionRatio = 0.0);
+  vtkGetMacro(MotionRatio, double);
+  ///@}
+
   /**
    * Why the last update failed, in one sentence, which is also reported as a VTK error; else empty.
    */

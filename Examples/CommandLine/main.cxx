@@ -146,7 +146,6 @@ bool Execute(int argc, char* argv[])
     }
     return isGood;
   }
-  LoadDriversAhead(job.Surface->GetDevice());
   Sharing alone(job);
   return Make(alone);
 }

@@ -230,7 +230,7 @@ class BadData(CommandLineTest):
             ([*ISO, "--device", "nonesuch"], "(?i)device.*nonesuch"), ([*ISO, "--device", "99"], "(?i)device.*99")])
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
-        self.refuse_with("no smoothing length. Choose --smoothing-length estimate, or --smoothing-length;")
+        self.refuse_with(says("NO_SMOOTHING_LENGTH", "--smoothing-length estimate finds", "--smoothing-length names"))
         files.write_vtp(self.input, [], {})
         self.refuse_with("particles.vtp holds no points")
 

@@ -149,10 +149,14 @@ class Film(CommandLineTest):
     def test_color_names(self):
         """A wrong array name is told before a surface is made, and one that differs only in case is offered as a correction."""
         files.write_vtp(self.input, *files.drop_at(0.0))
-        for name, sentence in (("velocity", "no array 'velocity' to colour by; did you mean 'Velocity'?"), ("Nope", "there are .*Velocity")):
-            result = self.run_program(self.input, self.input, "film_%04d.ply", "--free-surface", "--color-by", name)
-            self.assertRegex(result.stderr, sentence.replace("?", "[?]"))
-            self.assertEqual((result.returncode, result.stdout), (1, ""))
+        picture = ("--screenshot", "p.png")
+        for outputs in ((self.input, "film_%04d.ply", "--free-surface"), ("o.vti", "--slice", "z=0", *picture),
+                        ("o.vti", "--project", "z", "--scalar", "Velocity", *picture)):
+            for name, sentence in (("velocity", "no array 'velocity' to colour by; did you mean Velocity[?]"), ("Nope", "there are .*Velocity")):
+                result = self.run_program(self.input, *outputs, "--color-by", name)
+                self.assertRegex(result.stderr, sentence)
+                self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.run_good(self.input, "o.vti", "--slice", "z=0", *picture, "--color-by", "WeightSum", display=True)
 
     def test_period_between_steps(self):
         """Particles that cross a side of the period are interpolated beyond it, not back through the box."""

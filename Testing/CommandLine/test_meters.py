@@ -61,6 +61,16 @@ class Meter(CommandLineTest):
             self.run_good(*source, self.table, *self.one, says=says)
             self.assertEqual([round(float(row["time"]), 9) for row in read_table(self.table)], times)
         self.run_good(*steps, self.table, *self.one, "--time-step", "0.05")
+        stored = [f"stored_{i}.vtp" for i in range(4)]
+        for i, name in enumerate(stored):
+            text = (self.directory / steps[i % 2]).read_text()
+            array = files.xml_array("dt", [0.05 if i < 2 else 0.2], form='format="ascii" NumberOfTuples="1"')
+            (self.directory / name).write_text(text.replace("<PolyData>", f"<PolyData><FieldData>{array}</FieldData>"))
+        for source, end, times in ((stored[:2], r"'dt' says, 0.05; give .* with --time-step\n$", [0, 0.05]),
+                                   (stored[2:], r"'dt' says, 0.2; give .* with --time-step, which is about 0.05.* by 'Velocity'\n$", [0, 0.2]),
+                                   (stored[1:3], "at 0, 1, 2", [0, 1])):  # In these files it differs.
+            self.run_good(*source, self.table, *self.one, says=end)
+            self.assertEqual([float(row["time"]) for row in read_table(self.table)], times)
 
     def test_steps_without_fluid(self):
         """A step without particles, or without particles of the fluid's type, gives rows like other steps, in a plane, too."""
@@ -349,15 +359,18 @@ class Volumes(CommandLineTest):
                 self.assertEqual(run["arrays"]["volume_array"] if "arrays" in run else run["parameters"]["volume_array"], used)
 
     def test_spray(self):
-        """A particle by itself has a surface with computed volumes alone, which the run says."""
+        """A particle by itself has a surface with computed volumes alone, or a large one, and a run counts those that have none."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
-        files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points)})
-        for options, pieces in ((("--smoothing-length", "0.13"), 1), (("--dp", "0.1"), 1),
-                                (("--smoothing-length", "0.13", "--volume", "computed"), 2)):
+        files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})
+        given = ("--smoothing-length", "0.13")
+        for options, pieces, alone in ((given, 1, "1001"), (("--dp", "0.1"), 1, "1001"), ((*given, "--volume", "computed"), 2, ""),
+                                       ((*given, "--volume", "computed", "--smooth"), 2, ""), ((*given, "--volume", "One"), 2, "1000"),
+                                       ((*given, "--iso", "0.1"), 2, "")):
             with self.subTest(options):
                 said = self.run_good(self.input, self.output, "--free-surface", "--components", table, *options, says=".*").stdout
                 self.assertEqual(len(read_table(table)), pieces)
-                self.assertEqual("of 1001 particles none has a surface by itself" in said, pieces == 1, said)
+                line = f"volumes     {alone} of 1001 particles have no surface by themselves: volume x W"
+                self.assertEqual((line in said, "volumes " in said), (bool(alone), bool(alone)), said)
 
     def test_statistics_tell_the_volume(self):
         files.write_vtp(self.input, self.points, {})

@@ -19,7 +19,10 @@ class Project(CommandLineTest):
     def project(self, *options, source=None):
         """Returns the name, size, spacing and values of the image."""
         self.run_good(source or self.input, self.image, *options)
-        image = xml.etree.ElementTree.parse(self.image).getroot().find("ImageData")
+        return self.read(self.image)
+
+    def read(self, path):
+        image = xml.etree.ElementTree.parse(path).getroot().find("ImageData")
         array, = image.iter("DataArray")
         extent = list(map(int, image.get("WholeExtent").split()))
         size = [high - low + 1 for low, high in zip(extent[::2], extent[1::2])]
@@ -107,6 +110,22 @@ class Project(CommandLineTest):
         self.assertEqual((self.directory / "column_0000.vti").read_bytes(), expected)
         self.project(*options, source="half.vtp")
         self.assertEqual((self.directory / "column_0001.vti").read_bytes(), self.image.read_bytes())
+
+    def test_steps_without_fluid(self):
+        """The image of a step without particles is that of its neighbour, without values: 0, or no number in a mean."""
+        files.write_vtp(self.directory / "none.vtp", [], {})
+        options = ["--project", "z", "--resolution", "9", "--scalar", "Kind"]
+        for more, empty in (([], lambda value: value == 0), (["--weighted-by", "Mass"], math.isnan)):
+            name, size, spacing, _ = self.project(*options, *more)
+            self.run_good("none.vtp", "none.vtp", self.input, "none.vtp", "film.pvd", *options, *more)
+            for step in (0, 1, 3):
+                source = self.directory / f"film_000{step}.vti"
+                self.assertEqual(self.read(source)[:3], (name, size, spacing))
+                self.assertTrue(all(map(empty, self.read(source)[3])))
+            listed = xml.etree.ElementTree.parse(self.directory / "film.pvd").getroot().iter("DataSet")
+            self.assertEqual([one.get("file") for one in listed], [f"film_000{step}.vti" for step in range(4)])
+        result = self.run_program("none.vtp", "none.vtp", "nothing.pvd", *options)
+        self.one_sentence(result, 1, "no particle is seen")
 
     def test_wrong_usage(self):
         self.output = self.image

@@ -414,9 +414,10 @@ extern "C"
      * grid: at most 0.1 %, or 8; number and position of the first of them. */
     int64_t far_particles, far_first;
     double far_place[3];
-    /* The greatest volume x W(0) of a fluid particle, which is the weight sum at a particle by itself:
-     * below the iso value it has no free surface. 0 where volumes are computed, and of scalars. */
-    double lone_weight;
+    /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
+     * lowest iso value: alone they have no free surface. 0 where volumes are computed, and of
+     * scalars. */
+    int64_t lone_particles;
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     /* Medians over a sample of the fluid particles: smoothing length; number of particles within

@@ -42,7 +42,7 @@ extern "C"
     double h_min, h_max;             /* range of the smoothing lengths of fluid particles */
     double support_min, support_max; /* the greatest scaled support radius of all particles that take part */
     double h_estimate;               /* 0: not asked for */
-    double lone_weight;                /* as in mcor_statistics */
+    int64_t lone_count;                /* lone_particles of mcor_statistics */
     double widening_min, widening_max; /* range of the factors of fluid particles; 0: there are none */
     int64_t widening_sum;            /* sum of these factors, times 2^23 */
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */

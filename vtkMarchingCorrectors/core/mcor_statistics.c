@@ -84,7 +84,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   s->build_seconds = context->cl.build_seconds;
   s->fluid_particles = m->fluid_count;
   s->solid_particles = m->solid_count;
-  s->lone_weight = m->lone_weight;
+  s->lone_particles = m->lone_count;
   s->far_particles = m->far_count;
   s->far_first = m->far_first;
   s->particles_in_reach = context->grid.count;

@@ -177,7 +177,8 @@ private:
 };
 
 /** Returns the name of the most suitable array to show, or "". */
-std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks = nullptr);
+VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHChooseArray(
+  vtkFieldData* data, const mcor_ranks* ranks = nullptr);
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;

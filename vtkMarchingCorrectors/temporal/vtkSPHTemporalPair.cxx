@@ -343,7 +343,7 @@ void vtkSPHTemporalPair::CheckVelocities()
     this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), Text(first.Time).c_str(),
       Text(second.Time).c_str(), Text(moved / expected).c_str(), this->VelocityName.c_str()));
     this->FollowsVelocities = false;
-    this->Ratio = std::max(moved / expected, 0.01);
+    this->Ratio = moved / expected;
   }
 }
 

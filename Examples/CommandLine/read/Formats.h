@@ -30,6 +30,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
 /// arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
+/// Returns the number in the first of these arrays that is there, likewise.
+std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
 /// An entry of a .pvd or .series file.

@@ -393,6 +393,19 @@ std::vector<double> ListTimes(const std::string& name)
                           : std::vector<double>();
 }
 
+double StoredTimeStep(const std::vector<std::string>& files)
+{
+  std::set<double> found;
+  for (const std::string& file : files)
+  {
+    const Kind* kind = KindOf(ParticleFormats, file);
+    const bool isOfVtk = kind && kind->ListTimes == ListTimesOfVtk;
+    const std::vector<double> step = isOfVtk ? NumberInVtk(file, { "dt" }) : std::vector<double>();
+    found.insert(step.empty() ? 0.0 : step.front());
+  }
+  return found.size() == 1 ? std::max(*found.begin(), 0.0) : 0.0;
+}
+
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files)
 {
   return files.empty() ? nullptr : ReadParticles(files);

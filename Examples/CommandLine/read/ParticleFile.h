@@ -34,6 +34,9 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 /// are several; none where it tells of none. Of FILE#2 that is one time. Throws std::runtime_error.
 std::vector<double> ListTimes(const std::string& name);
 
+/// Returns the time between steps that all of these files store as `dt`; 0: they store none, or differ.
+double StoredTimeStep(const std::vector<std::string>& files);
+
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 

@@ -288,8 +288,6 @@ const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = 
 
 // Times.
 
-const char* const TimeNames[] = { "TimeValue", "TIME", "Time", "time" };
-
 /// An empty data set with the field data of a file's beginning, as text, in the file's own format:
 /// VTK's readers read them alone.
 std::string FieldOfXml(const std::string& head)
@@ -321,11 +319,11 @@ std::string FieldOfLegacy(const std::string& head)
     "\nPOINTS 0 float\n";
 }
 
-std::vector<double> TimesOf(vtkDataObject* data)
+std::vector<double> NumberOf(vtkDataObject* data, const std::vector<std::string>& names)
 {
-  for (const char* name : TimeNames)
+  for (const std::string& name : names)
   {
-    vtkDataArray* array = data ? data->GetFieldData()->GetArray(name) : nullptr;
+    vtkDataArray* array = data ? data->GetFieldData()->GetArray(name.c_str()) : nullptr;
     if (array && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0)))
     {
       return { array->GetComponent(0, 0) };
@@ -360,14 +358,19 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t)
 
 std::vector<double> ListTimesOfVtk(const std::string& file)
 {
+  return NumberInVtk(file, { "TimeValue", "TIME", "Time", "time" });
+}
+
+std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names)
+{
   std::string head(1 << 16, '\0'); // field data behind the particles are not looked at
   std::ifstream stream(file, std::ios::binary);
   stream.read(&head[0], static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
   const bool isLegacy = head.compare(0, 5, "# vtk") == 0;
   const std::string text = isLegacy ? FieldOfLegacy(head) : FieldOfXml(head);
-  std::vector<double> times;
-  const auto read = [&file, &text, isLegacy, &times]
+  std::vector<double> number;
+  const auto read = [&]
   {
     if (isLegacy)
     {
@@ -377,7 +380,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
       reader->SetBinaryInputString(text.data(), static_cast<int>(text.size()));
       reader->ReadAllFieldsOn();
       reader->Update();
-      times = TimesOf(reader->GetOutput());
+      number = NumberOf(reader->GetOutput(), names);
     }
     else if (text.find("\"appended\"") == std::string::npos)
     {
@@ -386,7 +389,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
       reader->ReadFromInputStringOn();
       reader->SetInputString(text);
       reader->Update();
-      times = TimesOf(reader->GetOutput());
+      number = NumberOf(reader->GetOutput(), names);
     }
   };
   try
@@ -402,17 +405,17 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
   }
   Messages() = {};
   // Field data at the end of an XML file have the least and greatest value at its beginning.
-  for (std::size_t i = 0; i < std::size(TimeNames) && times.empty(); ++i)
+  for (std::size_t i = 0; i < names.size() && number.empty(); ++i)
   {
-    const std::size_t at = text.find("Name=\"" + std::string(TimeNames[i]) + "\"");
+    const std::size_t at = text.find("Name=\"" + names[i] + "\"");
     const std::size_t end = text.find('>', at), low = text.find("RangeMin=\"", at);
-    double time = 0.0;
+    double value = 0.0;
     if (low < end && end != std::string::npos)
     {
-      const bool isTime =
-        ParseNumber(text.substr(low + 10, text.find('"', low + 10) - low - 10), time);
-      return isTime ? std::vector<double>{ time } : times;
+      const std::size_t begin = low + 10;
+      const bool isGood = ParseNumber(text.substr(begin, text.find('"', begin) - begin), value);
+      return isGood ? std::vector<double>{ value } : number;
     }
   }
-  return times;
+  return number;
 }

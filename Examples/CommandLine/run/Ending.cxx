@@ -4,8 +4,6 @@
 
 #include "SafeText.h"
 
-#include "vtkMarchingCorrectors.h"
-
 #include <algorithm>
 #include <climits>
 #include <csignal>
@@ -59,14 +57,11 @@ const bool FoundAwaited = (FindAwaited(), true);
 char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // after a recursion without end, the usual stack is full
-char HintOfDrivers[PATH_MAX + 256] = "";
-thread_local bool IsLoadingDrivers = false; ///< files are read in another thread
 volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< even if Silence has replaced it
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
-std::thread& Loading = *new std::thread;
 std::vector<std::string>& Files = *new std::vector<std::string>;
 
 void RemoveFiles()
@@ -96,12 +91,12 @@ void EndByCrash(int number)
   RemoveFiles();
   SayInHandler(ClearsLine ? "\r\033[K" : "");
   for (const char* part : std::initializer_list<const char*>{
-         "marching-correctors: ", IsLoadingDrivers ? "the run failed" : Failure, ": ",
+         "marching-correctors: ", Failure, ": ",
          number == SIGXCPU ? "it took too much processor time" : "the program crashed there",
          number == SIGSEGV     ? " (Segmentation fault)"
            : number == SIGABRT ? " (Aborted)"
                                : "",
-         "; ", IsLoadingDrivers ? HintOfDrivers : Hint, "\n" })
+         "; ", Hint, "\n" })
   {
     SayInHandler(part);
   }
@@ -182,37 +177,6 @@ std::string FaultsOfDrivers(const std::string& device)
         ? ", files that PoCL keeps may be damaged (remove the folder " + Printable(folder) + ")"
         : "") +
     ", or memory ran out";
-}
-
-void LoadDriversAhead(const std::string& device)
-{
-  const char* variable = std::getenv("MCOR_DEVICE");
-  if (!device.empty() || (variable && *variable))
-  {
-    return;
-  }
-  Set(HintOfDrivers, FaultsOfDrivers(device));
-  try
-  {
-    Loading = std::thread(
-      []
-      {
-        IsLoadingDrivers = true;
-        vtkMarchingCorrectors::ListDevices();
-      });
-  }
-  catch (const std::system_error&)
-  {
-    // No more threads: drivers are loaded when they are needed.
-  }
-}
-
-void AwaitDrivers()
-{
-  if (Loading.joinable())
-  {
-    Loading.join();
-  }
 }
 
 Activity::Activity(const std::string& failure, const std::string& hint)

@@ -32,13 +32,6 @@ private:
   std::string OuterHint;
 };
 
-/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing
-/// where a device is named, which may need none.
-void LoadDriversAhead(const std::string& device);
-
-/// Must be called before a device is used.
-void AwaitDrivers();
-
 /// While one lives, nothing but the program's own sentence about a crash reaches standard error:
 /// libraries write there what they think of a damaged file.
 class Silence

@@ -20,6 +20,7 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkSPHArrays.h"
 #include "vtkThreshold.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -126,27 +127,6 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
   return image;
 }
 
-/// Returns the first vector, or else the first array that varies.
-std::string ArrayToShow(vtkDataSet* data)
-{
-  std::string found;
-  for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetPointData()->GetArray(i);
-    if (array && array->GetNumberOfComponents() == 3)
-    {
-      return array->GetName();
-    }
-    double range[2] = { 0.0, 0.0 };
-    if (array && array->GetNumberOfComponents() == 1)
-    {
-      array->GetFiniteRange(range);
-    }
-    found = found.empty() && range[0] < range[1] ? array->GetName() : found;
-  }
-  return found.empty() ? "WeightSum" : found;
-}
-
 /// Treats points of a file that are not in --box as points without fluid.
 void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
@@ -194,7 +174,7 @@ std::string Describe(vtkDataSet* data)
 vtkImageData* SeenImage(const Job& job)
 {
   vtkImageData* image = job.Projection->GetImage();
-  if (!image->GetPointData()->GetScalars())
+  if (image->GetNumberOfPoints() == 0 || !image->GetPointData()->GetScalars())
   {
     throw std::runtime_error("no particle is seen, so no image was written");
   }
@@ -210,102 +190,71 @@ std::string DescribeSize(vtkImageData* image)
 }
 
 std::string DrawField(
-  const Sharing& sharing, const std::string& file, Picture& picture, ColorScale& colors)
+  const Job& job, vtkDataSet* field, const std::string& file, Picture& picture, ColorScale& colors)
 {
-  const Job& job = sharing.Options;
-  vtkSmartPointer<vtkDataSet> frame, shown;
+  vtkSmartPointer<vtkDataSet> shown = field;
   std::string name;
   int axis = job.Slice.Axis;
   if (job.IsProbe())
   {
-    frame = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
     vtkNew<vtkThreshold> valid; // without this, arrays would be 0 elsewhere, which looks like a value
-    valid->SetInputData(frame);
+    valid->SetInputData(field);
     valid->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
     valid->SetLowerThreshold(0.5);
     valid->SetUpperThreshold(2.0);
     valid->Update();
     shown = valid->GetOutput();
-    name = ArrayToShow(shown);
+    name = vtkSPHChooseArray(shown->GetPointData());
+    name = name.empty() ? "WeightSum" : name;
   }
   else
   {
-    vtkImageData* image = job.Projection->GetImage();
     const double* sight = job.Projection->GetDirection();
-    frame = shown = image;
-    name = image->GetPointData()->GetScalars()->GetName();
+    name = field->GetPointData()->GetScalars()->GetName();
     axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
-    axis = image->GetDimensions()[axis] == 1 ? axis : -1;
+    axis = vtkImageData::SafeDownCast(field)->GetDimensions()[axis] == 1 ? axis : -1;
   }
   colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
   colors.Include(shown);
-  return picture.Draw(file, shown, frame, colors, axis);
+  return picture.Draw(file, shown, field, colors, axis);
 }
 
 namespace
 {
 
 /// Makes a table of the field at the points of a file, with a row for each step and point.
-class PointTable : public Series
+class PointTable : public TableSeries
 {
 public:
   explicit PointTable(Sharing& sharing)
-    : Series(sharing)
-    , File(this->Options.Output)
+    : TableSeries(sharing, sharing.Options.Output)
   {
-    sharing.OnFirst(
-      [this]
-      {
-        this->Times.OpenFiles();
-        CheckOutputs({ this->Options.Output });
-        this->Points = ReadDataSet(this->Options.ProbeFile);
-      });
+    sharing.OnFirst([this] { this->Points = ReadDataSet(this->Options.ProbeFile); });
   }
 
   bool Make()
   {
-    const bool isGood = this->MakeAll();
-    this->Shared.OnFirst(
-      [this]
-      {
-        if (this->Text.empty())
-        {
-          throw std::runtime_error("no step could be probed, so no table was written");
-        }
-        this->File.Write([this] { return this->Text; }, true);
-        if (!this->Options.Quiet)
-        {
-          const std::size_t steps = this->Times.Get().size();
-          std::cout << this->Points->GetNumberOfPoints() << " points, " << steps
-                    << (steps == 1 ? " step\n" : " steps\n");
-        }
-      });
-    return isGood;
+    return this->TableSeries::Make(std::to_string(this->Points->GetNumberOfPoints()) + " points");
   }
 
 private:
-  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
+  void AddRows(std::size_t i, vtkPointSet* particles) override
   {
     vtkSPHProbe* probe = this->Options.Probe;
-    const std::string progress =
-      this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
     this->Shared.OnAll(
       [&]
       {
         probe->SetInputDataObject(1, SetUpParticles(probe, this->Options, particles));
         probe->SetInputDataObject(0, this->Points);
-        Update(probe, this->Shared, progress);
+        Update(probe, this->Shared, this->Progress(i));
       });
-    const std::vector<std::string>& told = Messages().Warnings;
-    warnings.insert(warnings.end(), told.begin(), told.end());
     this->Shared.OnFirst(
       [&]
       {
         auto* probed = vtkDataSet::SafeDownCast(probe->GetOutput());
         HideOutside(this->Options, this->Points, probed);
         this->AddRows(this->Times.Get()[i], probed);
-        this->File.Write([this] { return this->Text; }, false);
       });
   }
 
@@ -355,8 +304,6 @@ private:
   static constexpr const char* MaskName = "vtkValidPointMask";
   vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< other columns have none
   std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
-  std::string Text;
-  GrowingFile File;
 };
 
 }
@@ -421,7 +368,7 @@ void MakeField(Sharing& sharing)
       {
         ColorScale colors(job.Picture);
         const auto picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(job.Picture.File, DrawField(sharing, job.Picture.File, *picture, colors));
+        WriteOutput(job.Picture.File, DrawField(job, result, job.Picture.File, *picture, colors));
       }
     });
 }

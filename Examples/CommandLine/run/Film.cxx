@@ -12,15 +12,21 @@
 #include "Runs.h"
 #include "SafeText.h"
 
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkSPHSay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 namespace
 {
@@ -44,6 +50,23 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
     names.push_back(stem + NameOfStep(name, i));
   }
   return names;
+}
+
+/// Makes the image of a step in which no particle is seen, in the place of another one: 0, or no number
+/// where it is a mean.
+vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
+{
+  auto empty = vtkSmartPointer<vtkImageData>::New();
+  empty->SetExtent(like->GetExtent());
+  empty->SetOrigin(like->GetOrigin());
+  empty->SetSpacing(like->GetSpacing());
+  empty->SetDirectionMatrix(like->GetDirectionMatrix());
+  vtkNew<vtkDoubleArray> values;
+  values->SetName(like->GetPointData()->GetScalars()->GetName());
+  values->SetNumberOfTuples(empty->GetNumberOfPoints());
+  values->FillValue(job.Has("--weighted-by") ? NAN : 0.0);
+  empty->GetPointData()->SetScalars(values);
+  return empty;
 }
 
 class Film : public Series
@@ -104,6 +127,10 @@ public:
     this->Shared.OnFirst(
       [this]
       {
+        if (!this->Waiting.empty()) // and so at all times
+        {
+          SeenImage(this->Options);
+        }
         this->List(true);
         if (!this->Options.StatisticsFile.empty())
         {
@@ -159,12 +186,29 @@ private:
     this->Shared.OnFirst(
       [&]
       {
-        vtkImageData* image = SeenImage(this->Options);
-        this->Write(i, DataSetBytes(this->Surfaces[i], image),
-          [&](const std::string& frame)
-          { return DrawField(this->Shared, frame, *this->Drawn, this->FrameColors); });
-        this->Keep(i, nullptr, DescribeSize(image), seconds);
+        vtkImageData* image = projection->GetImage();
+        const bool isSeen = image->GetNumberOfPoints() > 0 && image->GetPointData()->GetScalars();
+        this->Waiting.emplace_back(i, seconds);
+        if (isSeen)
+        {
+          this->Empty = EmptyImage(this->Options, image);
+        }
+        if (this->Empty)
+        {
+          for (const auto& [step, cost] : std::exchange(this->Waiting, {}))
+          {
+            this->WriteImage(step, isSeen && step == i ? image : this->Empty.Get(), cost);
+          }
+        }
       });
+  }
+
+  void WriteImage(std::size_t i, vtkImageData* image, double seconds)
+  {
+    this->Write(i, DataSetBytes(this->Surfaces[i], image),
+      [&](const std::string& frame)
+      { return DrawField(this->Options, image, frame, *this->Drawn, this->FrameColors); });
+    this->Keep(i, nullptr, DescribeSize(image), seconds);
   }
 
   void MakeSurface(std::size_t i, vtkPointSet* particles, const std::string& progress,
@@ -267,6 +311,8 @@ private:
   std::string Pieces, Numbers; ///< tables
   GrowingFile ListFile, PieceFile, NumberFile;
   std::unique_ptr<Picture> Drawn; ///< used if pictures are wanted
+  vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid, once its place is known
+  std::vector<std::pair<std::size_t, double>> Waiting; ///< steps before, and their seconds
 };
 
 }

@@ -28,6 +28,8 @@
 #include <filesystem>
 #include <functional>
 #include <iomanip>
+#include <iostream>
+#include <iterator>
 #include <locale>
 #include <map>
 #include <sstream>
@@ -99,8 +101,9 @@ double Rounded(double time)
 }
 
 /// Steps of files given one by one, at the times that the files tell of. isTold: whether they do, or
-/// --time-step does.
-Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTold)
+/// --time-step does. storedStep: the time between steps that the files store instead; 0: they store none.
+Steps GivenSteps(
+  const Job& job, std::vector<std::string>& warnings, bool& isTold, double& storedStep)
 {
   // If names differ in numbers alone, these tell the order: shells list tank_10 before tank_9.
   std::vector<std::string> inputs = job.Inputs;
@@ -134,22 +137,22 @@ Steps GivenSteps(const Job& job, std::vector<std::string>& warnings, bool& isTol
     }
   }
   const bool areAll = times.size() == files.size();
-  const bool ascend =
+  const bool areGood = areAll &&
     std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()) == times.end();
-  if (!times.empty() && !(areAll && ascend))
+  if (!times.empty() && !areGood)
   {
     warnings.push_back("the times in the field data of the files " +
       std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
       ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
   }
-  isTold = files.size() == 1 || job.Has("--time-step") || (!times.empty() && areAll && ascend);
+  isTold = files.size() == 1 || job.Has("--time-step") || areGood;
+  storedStep = isTold ? 0.0 : StoredTimeStep(inputs);
+  const double step = storedStep > 0.0 ? storedStep : job.TimeStep;
   Steps steps;
   for (std::size_t i = 0; i < files.size(); ++i)
   {
-    steps.push_back(
-      { !times.empty() && areAll && ascend ? times[i]
-                                           : Rounded(static_cast<double>(i) * job.TimeStep),
-        { files[i] }, {} });
+    const double time = areGood ? times[i] : Rounded(static_cast<double>(i) * step);
+    steps.push_back({ time, { files[i] }, {} });
   }
   return steps;
 }
@@ -305,7 +308,7 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
   std::vector<std::string> notes;
   const bool haveTimes = IsListOfSteps(job.Inputs.front());
   this->Steps =
-    haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes, this->AreTold);
+    haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes, this->AreTold, this->StoredStep);
   for (const std::string& walls : job.Walls)
   {
     AddStepWalls(walls, haveTimes, this->Steps, notes);
@@ -383,29 +386,28 @@ std::string ParticleTimes::CheckTold()
   {
     return "";
   }
-  std::string found;
   std::vector<std::string> told;
+  const double step = this->Steps[1].Time - this->Steps[0].Time;
   if (this->Shared.GetCount() == 1 &&
-    !FailureOf([&] { this->At(0.5 * (this->Steps[0].Time + this->Steps[1].Time), told); }).empty())
+    !FailureOf([&] { this->At(this->Steps[0].Time + 0.5 * step, told); }).empty())
   {
     this->Reset(); // without ids, particles cannot be matched
   }
-  for (const std::string& sentence : told)
+  const double byVelocities = step * this->Interpolator->GetMotionRatio();
+  std::ostringstream found;
+  found << std::setprecision(3) << "the files tell no times, so the steps are ";
+  found << (this->StoredStep > 0.0 ? "as far apart as their 'dt' says, " : "at 0, 1, 2, ...; ");
+  if (this->StoredStep > 0.0)
   {
-    const std::string moved = "the particles moved ", name = " times as far as '";
-    const std::size_t begin = sentence.find(moved), end = sentence.find(name, begin);
-    const std::size_t close =
-      end == std::string::npos ? end : sentence.find('\'', end + name.size());
-    if (close != std::string::npos)
-    {
-      found = ", which is about " +
-        sentence.substr(begin + moved.size(), end - begin - moved.size()) + " by '" +
-        sentence.substr(end + name.size(), close - end - name.size()) + "'";
-    }
+    found << this->StoredStep << "; ";
   }
-  return "the files tell no times, so the steps are at 0, 1, 2, ...; give the time between them "
-         "with --time-step" +
-    found;
+  found << "give the time between them with --time-step";
+  if (byVelocities > 0.0)
+  {
+    found << ", which is about " << byVelocities << " by '"
+          << this->Interpolator->GetUsedVelocityArrayName() << "'";
+  }
+  return found.str();
 }
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
@@ -448,6 +450,11 @@ void Series::Miss(std::size_t, const std::string& error)
   {
     throw std::runtime_error(error);
   }
+}
+
+std::string Series::Progress(std::size_t i) const
+{
+  return this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
 }
 
 bool Series::MakeAll()
@@ -503,4 +510,47 @@ bool Series::MakeAll()
     }
   }
   return isGood;
+}
+
+TableSeries::TableSeries(Sharing& sharing, const std::string& file)
+  : Series(sharing)
+  , File(file)
+{
+  sharing.OnFirst(
+    [this]
+    {
+      this->Times.OpenFiles();
+      CheckOutputs({ this->Options.Output });
+    });
+}
+
+bool TableSeries::Make(const std::string& what)
+{
+  const bool isGood = this->MakeAll();
+  this->Shared.OnFirst(
+    [this, &what]
+    {
+      if (this->Text.empty())
+      {
+        throw std::runtime_error("no step could be measured, so no table was written");
+      }
+      this->File.Write([this] { return this->Text; }, true);
+      const std::string more = this->Finish();
+      if (!this->Options.Quiet)
+      {
+        const std::size_t steps = this->Times.Get().size();
+        std::cout << what << ", " << steps << (steps == 1 ? " step" : " steps") << more << "\n";
+      }
+    });
+  return isGood;
+}
+
+void TableSeries::MakeStep(
+  std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings)
+{
+  this->AddRows(i, particles);
+  const std::vector<std::string>& told = Messages().Warnings;
+  std::copy_if(told.begin(), told.end(), std::back_inserter(warnings),
+    [this](const std::string& warning) { return this->IsTold(warning); });
+  this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
 }

@@ -3,6 +3,7 @@
 #ifndef ParticleTimes_h
 #define ParticleTimes_h
 
+#include "OutputFile.h"
 #include "Sharing.h"
 
 #include <string>
@@ -57,6 +58,7 @@ private:
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
   bool AreTold = true; ///< the times are told: by the files, a .pvd file or --time-step
+  double StoredStep = 0.0; ///< the time between steps, where files store that instead; else 0
   Sharing::Particles Walls;
   std::vector<std::string>
     WallFiles; ///< the files that Walls were read from: once, if all steps have the same
@@ -85,10 +87,37 @@ protected:
   virtual void Miss(std::size_t i, const std::string& error);
   /// Whether the times are numbers of the results, and not only the order of the steps.
   virtual bool IsOfTimes() const { return true; }
+  /// Returns the words in front of a step's line of progress.
+  std::string Progress(std::size_t i) const;
 
   Sharing& Shared;
   const Job& Options;
   ParticleTimes Times;
+};
+
+/// Makes a table, some rows for each time, which is written as it grows.
+class TableSeries : public Series
+{
+public:
+  /// file: empty where rows are not written.
+  TableSeries(Sharing& sharing, const std::string& file);
+
+  /// Returns false if a step failed. what: things and their number, to be told at the end.
+  bool Make(const std::string& what);
+
+protected:
+  /// Adds a step's rows to the text, which only the first process needs to have.
+  virtual void AddRows(std::size_t i, vtkPointSet* particles) = 0;
+  virtual bool IsTold(const std::string&) const { return true; } ///< of a warning
+  virtual std::string Finish() { return ""; } ///< returns more to tell
+
+  std::string Text;
+
+private:
+  void MakeStep(
+    std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override;
+
+  GrowingFile File;
 };
 
 #endif

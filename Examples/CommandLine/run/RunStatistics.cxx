@@ -295,18 +295,19 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
       (hasLines ? "parts of them in caps" : "of them in caps");
   }
   trimming = trimming.empty() ? "" : " (" + trimming + ")";
-  const double lone = Number(run, "LoneWeight");
-  const bool leavesSpray = lone > 0.0 && lone < Number(run, "IsoValues");
+  const std::string volume = Fill(run,
+    "[array {VolumeArray}|{ParticleVolume}|{Mass} / {Density}|computed from {Mass}|computed]");
+  const bool leavesSpray =
+    Number(run, "LoneParticles") > 0.0 && volume.compare(0, 8, "computed") != 0;
   const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
   return Fill(run,
     std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
                 "smoothing length {SmoothingLengthRange:0}") +
       (areMany ? " .. {SmoothingLengthRange:1}" : "") +
-      "[ (array {SmoothingLengthArray})]; volume: [array {VolumeArray}|{ParticleVolume}|"
-      "{Mass} / {Density}|computed from {Mass}|computed]\n" +
-      (leavesSpray ? "volumes     of {FluidParticles} particles none has a surface by itself: volume x W(0) is "
-                     "{LoneWeight} or less, below the iso value; --volume computed keeps drops and "
-                     "spray\n"
+      "[ (array {SmoothingLengthArray})]; volume: " + volume + "\n" +
+      (leavesSpray ? "volumes     {LoneParticles} of {FluidParticles} particles have no surface by "
+                     "themselves: volume x W(0) is below the iso value; --volume computed keeps "
+                     "drops and spray\n"
                    : "") +
       "contour     [{Scalar}|weight sum][ = {IsoValues}]"
       "[; range {ScalarRange:0} .. {ScalarRange:1}]" +

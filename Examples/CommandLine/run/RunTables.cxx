@@ -69,23 +69,16 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// Counts the steps of a table, or the one step of an image.
-class MeterTable : public Series
+/// A table of what gauges or sections measure, or, of a grid of gauges, an image.
+class MeterTable : public TableSeries
 {
 public:
   explicit MeterTable(Sharing& sharing)
-    : Series(sharing)
+    : TableSeries(sharing, sharing.Options.Grid.Counts[0] > 0 ? "" : sharing.Options.Output)
     , IsFlux(this->Options.IsFlux())
-    , IsImage(!IsFlux && this->Options.Grid.Counts[0] > 0)
+    , IsImage(this->Options.Grid.Counts[0] > 0)
     , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
-    , File(IsImage ? "" : this->Options.Output)
   {
-    sharing.OnFirst(
-      [this]
-      {
-        this->Times.OpenFiles();
-        CheckOutputs({ this->Options.Output });
-      });
     if (this->IsImage && this->Times.Get().size() > 1)
     {
       throw std::runtime_error(
@@ -93,41 +86,27 @@ public:
     }
   }
 
-  bool Make(std::size_t places)
+private:
+  std::string Finish() override
   {
-    const bool isGood = this->MakeAll();
-    if (this->Text.empty())
+    if (this->IsImage)
     {
-      throw std::runtime_error("no step could be measured, so no table was written");
+      WriteGrid(this->Options, this->Meter->GetOutput());
     }
-    this->Shared.OnFirst(
-      [this, places]
-      {
-        this->File.Write([this] { return this->Text; }, true);
-        if (this->IsImage)
-        {
-          WriteGrid(this->Options, this->Meter->GetOutput());
-        }
-        if (!this->Options.Quiet)
-        {
-          const std::size_t steps = this->Times.Get().size();
-          std::cout << places << (this->IsFlux ? " section" : " gauge") << (places == 1 ? "" : "s")
-                    << ", " << steps << (steps == 1 ? " step" : " steps")
-                    << "; volumes: " << this->Meter->GetUsedVolume() << "\n";
-        }
-      });
-    return isGood;
+    return std::string("; volumes: ") + this->Meter->GetUsedVolume();
   }
 
-private:
-  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
+  bool IsTold(const std::string& warning) const override
+  {
+    return !this->IsImage || warning.find("outside of all fluid") == std::string::npos;
+  }
+
+  void AddRows(std::size_t i, vtkPointSet* particles) override
   {
     const double time = this->Times.Get()[i];
-    const std::string progress =
-      this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
     vtkTable* table = nullptr;
     this->Shared.OnAll(
-      [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, progress); });
+      [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, this->Progress(i)); });
     for (std::size_t flux = 0; this->IsFlux && flux < 2; ++flux)
     {
       // Integrals in time, by trapezia between steps.
@@ -150,23 +129,13 @@ private:
       before.assign(rates->Begin(), rates->End());
     }
     this->LastTime = time;
-    for (const std::string& warning : Messages().Warnings)
-    {
-      if (!this->IsImage || warning.find("outside of all fluid") == std::string::npos)
-      {
-        warnings.push_back(warning);
-      }
-    }
     AppendTable(this->Text, table);
-    this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
   }
 
   const bool IsFlux, IsImage;
   vtkSPHMeter* const Meter;
-  GrowingFile File; ///< has no name for an image
   double LastTime = 0.0;
   std::vector<double> Rates[2], Sums[2]; ///< integrals of volume and mass, for each section
-  std::string Text;
 };
 
 /// The iso values of a run, ascending; where it had no particles, those that were asked for.
@@ -290,7 +259,7 @@ bool MakeMeterTable(Sharing& sharing)
     }
   }
   const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
-  return MeterTable(sharing).Make(places);
+  return MeterTable(sharing).Make(std::to_string(places) + (job.IsFlux() ? " section" : " gauge") + (places == 1 ? "" : "s"));
 }
 
 // Describes the particles to the filter of pieces as to that of the surface. Surfaces of several iso

@@ -13,6 +13,7 @@
 class ColorScale;
 class Picture;
 class Sharing;
+class vtkDataSet;
 class vtkImageData;
 class vtkPointSet;
 class vtkSPHAlgorithm;
@@ -84,8 +85,8 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
 ///@{
 std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
   vtkPointSet* particles, Picture& picture, ColorScale& colors);
-std::string DrawField(
-  const Sharing& sharing, const std::string& file, Picture& picture, ColorScale& colors);
+std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file, Picture& picture,
+  ColorScale& colors);
 ///@}
 
 /// The image of the projection, on the first process. Throws where no particle is seen.

@@ -22,8 +22,6 @@
 #include "vtkPoints.h"
 #include "vtkSPHFound.h"
 
-#include <vtksys/SystemTools.hxx>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -190,30 +188,35 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
 }
 
-/// Refuses an array to colour by that the surface will not have, before it is made.
-void CheckColorName(const Job& job, vtkPointSet* particles)
+/// Refuses an array to colour by that the output will not have, before it is made.
+void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
-  static const char* const made[] = { "Normals", "IsoValue", "Gradients", "WeightSum",
-    "BoundaryEigenvalue", "MeanCurvature", "GaussCurvature", "CorrectionLength", "Residual",
-    "BoundaryFlag", "Widening", "BandValue", "ComponentId" };
   const std::string& name = job.Picture.ColorBy;
-  vtkPointData* arrays = particles->GetPointData();
-  if (name.empty() || particles->GetNumberOfPoints() == 0 || arrays->HasArray(name.c_str()) ||
-    std::find(std::begin(made), std::end(made), name) != std::end(made) ||
-    (!job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0))
+  std::vector<std::string> names;
+  for (int i = 0; i < particles->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    const char* each = particles->GetPointData()->GetArrayName(i);
+    names.emplace_back(each ? each : "");
+  }
+  static const std::vector<std::string> ofPoints = { "WeightSum", "Gradients", "vtkValidPointMask" };
+  static const std::vector<std::string> ofSurface = { "Normals", "IsoValue", "Gradients",
+    "WeightSum", "BoundaryEigenvalue", "MeanCurvature", "GaussCurvature", "CorrectionLength",
+    "Residual", "BoundaryFlag", "Widening", "BandValue", "ComponentId" };
+  const bool isProjection = filter == job.Projection, isOfFile = !job.ProbeFile.empty();
+  const std::vector<std::string>& made = filter == job.Surface ? ofSurface : ofPoints;
+  const bool isMade = !job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0;
+  if (isProjection) // its image has one array
+  {
+    names.assign(1, job.Scalar.empty() ? "ColumnDensity" : job.Scalar);
+  }
+  else if (std::find(made.begin(), made.end(), name) != made.end())
   {
     return;
   }
-  std::string names, alike;
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  if (!name.empty() && particles->GetNumberOfPoints() > 0 && !isMade && !isOfFile)
   {
-    const std::string other = arrays->GetArrayName(i) ? arrays->GetArrayName(i) : "";
-    names += (i > 0 ? ", " : "") + other;
-    alike =
-      vtksys::SystemTools::LowerCase(other) == vtksys::SystemTools::LowerCase(name) ? other : alike;
+    ::CheckColorName(name, names);
   }
-  throw std::runtime_error("there is no array '" + name + "' to colour by" +
-    (alike.empty() ? "; there are " + names : "; did you mean '" + alike + "'?"));
 }
 
 /// Returns why there is no surface, as far as the ranges tell.
@@ -309,7 +312,6 @@ private:
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
-  AwaitDrivers();
   vtkSmartPointer<vtkPointSet> particles = input;
   if (!job.Derive.empty())
   {
@@ -335,6 +337,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   }
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
+  CheckColorName(filter, job, particles);
   const bool isWidened = job.Surface->GetWidening() > 1.0 || job.Surface->GetSmooth();
   return isWidened && filter != job.Surface ? WidenFor(filter, job, particles) : particles;
 }
@@ -342,7 +345,6 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
 void SetUpSurface(const Job& job, vtkPointSet* input)
 {
   vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
-  CheckColorName(job, particles);
   vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
   bare->SetPoints(particles->GetPoints());
   bare->GetPointData()->ShallowCopy(particles->GetPointData());

@@ -3,6 +3,7 @@
 #include "ColorScale.h"
 
 #include "Job.h"
+#include "OptionValue.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -54,6 +55,21 @@ ColorScale::ColorScale(const PictureOptions& options)
   }
 }
 
+void CheckColorName(const std::string& name, const std::vector<std::string>& names)
+{
+  if (std::find(names.begin(), names.end(), name) == names.end())
+  {
+    const std::string nearest = NearestOf(name, names);
+    std::string list;
+    for (const std::string& each : names)
+    {
+      list += (list.empty() ? "; there are " : ", ") + each;
+    }
+    throw std::runtime_error(
+      "there is no array '" + name + "' to colour by" + (nearest.empty() ? list : nearest));
+  }
+}
+
 void ColorScale::Include(vtkDataSet* data)
 {
   vtkDataArray* array = this->ArrayOf(data) ? this->ArrayOf(data) : this->CellArrayOf(data);
@@ -63,13 +79,12 @@ void ColorScale::Include(vtkDataSet* data)
   }
   if (!array)
   {
-    std::string names;
+    std::vector<std::string> names;
     for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
     {
-      names += (names.empty() ? "" : ", ") + std::string(data->GetPointData()->GetArrayName(i));
+      names.emplace_back(data->GetPointData()->GetArrayName(i));
     }
-    throw std::runtime_error(
-      "there is no array '" + this->Name + "' to colour by; there are " + names);
+    CheckColorName(this->Name, names);
   }
   double range[2];
   array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);

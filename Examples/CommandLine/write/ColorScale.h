@@ -13,6 +13,9 @@ class vtkDataArray;
 class vtkDataSet;
 struct PictureOptions;
 
+/// Refuses an array to colour by that is none of these. Throws std::runtime_error.
+void CheckColorName(const std::string& name, const std::vector<std::string>& names);
+
 /// The colours of --color-by: those of a picture, and of a .ply file's points.
 class ColorScale
 {

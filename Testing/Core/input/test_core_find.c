@@ -306,9 +306,9 @@ static void test_errors(void** state)
     mcor_role role;
     const char *name, *begins;
   } cases[] = { { MCOR_WANT_SIZES, MCOR_ROLE_FLUID, NULL,
-                  "The particles have no smoothing length. Choose {estimate_smoothing_length}, or "
-                  "{smoothing_length}; no point array has one of its usual names (SmoothingLength, "
-                  "hsml, h, ...). "
+                  "The particles have no smoothing length: no point array has one of its usual names "
+                  "(SmoothingLength, hsml, h, ...). {estimate_smoothing_length} finds one from their "
+                  "distances; {smoothing_length} names another array, or gives one value. "
                   "DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program "
                   "--coefh and --dp). By 'spacing', particles are 0.5 "
                   "apart: "

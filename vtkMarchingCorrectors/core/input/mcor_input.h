@@ -108,11 +108,12 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
 
 /* What a loop, or a slice of it, finds: ranges (an empty one has least > most), sums of whole
  * numbers, and the least of some indices. */
-#define MCOR_RANGES 14
+#define MCOR_RANGES 13
+#define MCOR_SUMS 4
 typedef struct mcor_findings
 {
   double least[MCOR_RANGES], most[MCOR_RANGES];
-  int64_t sums[3];
+  int64_t sums[MCOR_SUMS];
   int64_t first; /* INT64_MAX: none */
 } mcor_findings;
 

@@ -96,26 +96,7 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-/* Whether a watched particle may reach a place in these bounds. */
-static bool mcor_watch_reaches(const mcor_watch* watch, const double low[3], const double high[3])
-{
-  uint32_t all = UINT32_MAX;
-  for (int a = 0; a < 3; ++a)
-  {
-    uint32_t reached = 0;
-    const int last = mcor_watch_cell(watch, a, high[a]);
-    for (int c = mcor_watch_cell(watch, a, low[a]); c <= last; ++c)
-    {
-      reached |= watch->reached[a][c];
-    }
-    all &= reached;
-  }
-  return all;
-}
-
-/* low, high: bounds of the positions. */
-static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
-  const double low[3], const double high[3])
+static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   double* beyond = watch->beyond[slice];
@@ -124,10 +105,6 @@ static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
-  }
-  if (!mcor_watch_reaches(watch, low, high))
-  {
-    return;
   }
   int cell[3][MCOR_CHUNK];
   for (int a = 0; a < 3; ++a)
@@ -255,52 +232,44 @@ enum
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
-  MCOR_LONE = 13,    /* volume x W(0) of fluid particles */
 
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
-  MCOR_FACTOR_SUM = 2
+  MCOR_FACTOR_SUM = 2,
+  MCOR_LONE = 3 /* fluid particles without a surface by themselves */
 };
 
 /* The most that one factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all lengths
- * are one, the extremes may be taken first: rounding keeps the order of numbers. */
-static void mcor_measure_chunk(const mcor_places* chunk, bool is_widened, bool solids, double reach,
-  const double low[3], const double high[3], mcor_findings* r)
+/* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes
+ * may be taken first: rounding keeps the order of numbers. */
+static void mcor_measure_chunk(
+  const mcor_places* chunk, bool solids, double reach, mcor_findings* r)
 {
-  double h_min = DBL_MAX, h_max = -DBL_MAX;
+  double h_min = DBL_MAX, h_max = -DBL_MAX, least = DBL_MAX, most = -DBL_MAX;
   mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
-  double least = h_min, most = h_max;
-  if (is_widened)
-  {
-    least = DBL_MAX;
-    most = -DBL_MAX;
-    mcor_widen_range(chunk->length, chunk->count, &least, &most);
-  }
+  mcor_widen_range(chunk->length, chunk->count, &least, &most);
   for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
     const double* x = chunk->x[a];
-    mcor_add_range(r, MCOR_SPOTS + a, low[a], high[a]);
+    double low = DBL_MAX, high = -DBL_MAX;
+    mcor_widen_range(x, chunk->count, &low, &high);
+    mcor_add_range(r, MCOR_SPOTS + a, low, high);
     if (!solids)
     {
-      mcor_add_range(r, MCOR_PLACES + a, low[a], high[a]);
+      mcor_add_range(r, MCOR_PLACES + a, low, high);
     }
     if (least == most)
     {
-      mcor_add_range(r, MCOR_REACHES + a, low[a] - least * reach, high[a] + least * reach);
+      mcor_add_range(r, MCOR_REACHES + a, low - least * reach, high + least * reach);
       continue;
     }
-    double below[MCOR_CHUNK], above[MCOR_CHUNK], unused[2] = { -DBL_MAX, DBL_MAX };
     for (int i = 0; i < chunk->count; ++i)
     {
       const double support = chunk->length[i] * reach;
-      below[i] = x[i] - support;
-      above[i] = x[i] + support;
+      mcor_add_range(r, MCOR_REACHES + a, x[i] - support, x[i] + support);
     }
-    mcor_widen_range(below, chunk->count, &r->least[MCOR_REACHES + a], &unused[0]);
-    mcor_widen_range(above, chunk->count, &unused[1], &r->most[MCOR_REACHES + a]);
   }
   if (chunk->count > 0)
   {
@@ -335,6 +304,7 @@ typedef struct mcor_measuring
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
   double peak;  /* W(0) of a kernel of length 1; 0: it is not asked for */
+  double level; /* the lowest iso value */
   mcor_watch watch;
   mcor_findings slices[MCOR_SLICES];
 } mcor_measuring;
@@ -373,32 +343,21 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     mcor_read_size(input, first, job->peak > 0 ? count : 0, value);
     for (int i = 0; i < count && job->peak > 0; ++i)
     {
-      value[i] = value[i] * job->peak / mcor_power(part[0].length[i], context->space.axes);
+      const double weight =
+        value[i] * job->peak / mcor_power(part[0].length[i], context->space.axes);
+      r.sums[MCOR_LONE] += !(solid && solid[i]) && weight < job->level;
     }
-    for (int i = 0; i < count && job->peak > 0 && solid; ++i)
-    {
-      value[i] = solid[i] ? -DBL_MAX : value[i];
-    }
-    double unused = DBL_MAX;
-    mcor_widen_range(value, job->peak > 0 ? count : 0, &unused, &r.most[MCOR_LONE]);
     mcor_part_chunk(solid, &part[0], &part[1]);
     for (int k = 0; k < 2; ++k)
     {
-      double low[3], high[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        low[a] = DBL_MAX;
-        high[a] = -DBL_MAX;
-        mcor_widen_range(part[k].x[a], part[k].count, &low[a], &high[a]);
-      }
       r.sums[k] += part[k].count;
       if (k == 0 || !input->ignore_solids)
       {
-        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x, low, high);
+        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x);
       }
       if (k == 0 || context->kept.uses_solids)
       {
-        mcor_measure_chunk(&part[k], is_widened, k == 1, job->reach, low, high, &r);
+        mcor_measure_chunk(&part[k], k == 1, job->reach, &r);
       }
     }
   }
@@ -427,8 +386,13 @@ static mcor_status mcor_measure_particles(
     .reach = mcor_support_factor(options->sph_kernel) * options->h_scale,
     .peak = options->field == MCOR_WEIGHT_SUM && !mcor_needs_density(input)
       ? mcor_peak(options, context->space.axes)
-      : 0 };
+      : 0,
+    .level = options->iso_count > 0 ? DBL_MAX : 0.5 };
   int slices;
+  for (int k = 0; k < options->iso_count; ++k)
+  {
+    job.level = fmin(job.level, options->iso_values[k]);
+  }
   mcor_begin_watch(context, &job.watch);
   MCOR_TRY(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
@@ -451,7 +415,7 @@ static mcor_status mcor_measure_particles(
   m->widening_sum = r->sums[MCOR_FACTOR_SUM];
   m->widening_min = m->widening_sum > 0 ? r->least[MCOR_FACTORS] : 0;
   m->widening_max = m->widening_sum > 0 ? r->most[MCOR_FACTORS] : 0;
-  m->lone_weight = job.peak > 0 ? fmax(r->most[MCOR_LONE], 0) : 0;
+  m->lone_count = r->sums[MCOR_LONE];
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->first;

@@ -5,7 +5,8 @@
     make_structs.py mcor_parts.h mcor.h mcor_find.h FOLDER
 
 _structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of the shapes of arrays, and
-the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types, and the codes of mcor_says.def. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
+the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types, the codes of mcor_says.def, and the options of
+the program marching-correctors. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
 the functions that the library shows, for the linkers of Linux, Windows and macOS.
 """
 import ctypes
@@ -17,6 +18,9 @@ NUMBERS = {
     "int": "c_int", "unsigned": "c_uint", "double": "c_double", "float": "c_float", "char": "c_char",
     "size_t": "c_size_t", "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
+
+PROGRAM = Path(__file__).resolve().parents[1] / "Examples" / "CommandLine" / "options"
+
 
 def fail(sentence):
     sys.exit(f"make_structs.py: {sentence}")
@@ -161,6 +165,21 @@ class Rows:
         self.types.update((name[len("MCOR_OUT_"):].lower(), "bool") for name in header.enums["mcor_output"])
 
 
+def program_options(folder):
+    """Returns {option: (argument, help, modes, member)} of Options.def. Modes are words as "surface"; "usual" marks what most people need."""
+    words = {}
+    for name, value in re.findall(r"^  ([A-Z]+) = ([\w| ]*\w)", (folder / "Job.h").read_text(encoding="utf-8"), re.M):
+        words[name] = [name.lower()] if value.isdigit() else [word for each in value.split(" | ") for word in words[each]]
+    text, found = (folder / "Options.def").read_text(encoding="utf-8"), {}
+    for option, argument, about, modes, member in re.findall(
+            r'^OPTION\("(--[\w-]+)", "([^"]*)",\s+((?:"[^"]*"\s*)+|\w+\(\)),\s+([A-Z |]+),\s+"[^"]*",\s+"(\w*)",', text, re.M):
+        modes = [word for each in modes.split(" | ") for word in words[each]]
+        found[option] = argument, "".join(re.findall('"([^"]*)"', about)), modes, member
+    if len(found) != text.count("\nOPTION("):
+        fail("cannot read all rows of Options.def")
+    return found
+
+
 def shape_of(struct, name, comment, constants):
     """Reads a shape: "[count][3], unit L" becomes ("count", 3), and "[attribute_count] -> [count][components]" a list."""
     match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
@@ -190,7 +209,8 @@ def python_module(header, rows):
     lines += ["", "class CoreOptions(TypedDict, total=False):",
               *(f"    {name}: {kind}" for name, kind in rows.types.items()), ""]
     for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
-                         ("STATISTICS", rows.statistics), ("OPTIONS", rows.options), ("SLOTS", rows.slots)):
+                         ("STATISTICS", rows.statistics), ("OPTIONS", rows.options), ("SLOTS", rows.slots),
+                         ("PROGRAM", program_options(PROGRAM))):
         lines += ["", f"{label} = {value!r}"]
     lines += ["", "# {name: (type of the result, types of the parameters)}", "FUNCTIONS = {",
               *(f"    {name!r}: ({result}, [{', '.join(parameters)}])," for name, (result, *parameters) in

@@ -31,10 +31,10 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import QUANTITIES, camel
-from marchingcorrectors._call import extracted
+from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
-from marchingcorrectors._options import OUTPUTS
+from marchingcorrectors._options import BOUNDS, OUTPUTS
 from marchingcorrectors._find import tells_of_walls
 from marchingcorrectors._vtk_blocks import describe_mesh, join_blocks, list_all, sets_of, take_vertices, walk
 from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of,
@@ -146,6 +146,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._context, self._context_device = None, None
         self._in_run = self._release = False
         self._signatures, self._versions = (None, None), [0, 0]
+        self._factors = None, None  # These are factors of smoothing lengths, and what they depend on.
         self._ahead, self._look_time = None, vtkTimeStamp()
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
@@ -199,7 +200,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     def _set_sides(self, name, sides):
         sides = tuple(float(side) for side in (sides[0] if len(sides) == 1 else sides))
         if len(sides) != 6:
-            raise TypeError(f"{name} has six sides: x0, x1, y0, y1, z0, z1")
+            raise TypeError(f"{name} is {BOUNDS}")
         if sides != getattr(self, name):
             setattr(self, name, sides)
             self.Modified()
@@ -393,7 +394,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._settle(choice, data)
         options = self._options(choice)
         try:
-            period = find_period(data) if choice.DetectPeriod else None
+            period, cell = find_period(data) if choice.DetectPeriod else (None, None)
             if period:
                 options.periodic[:] = period
             particles = self._find(
@@ -407,7 +408,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._warn_once("type", particles.unused_type)
             self._warn_once("unused", particles.unused)
             if choice.DetectPeriod and not period:
-                raise Unusable(say("NO_PERIOD"))
+                raise Unusable(say("CELL_TILTED" if cell else "NO_PERIOD"))
         except (Unusable, Error) as sentence:
             if getattr(sentence, "particles", None):
                 self._note(sentence.particles)
@@ -507,11 +508,15 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 self._versions[0] += before[0] != self._signatures[0]
                 self._versions[1] += before != self._signatures
                 arguments.input.particles_version, arguments.input.scalar_version = self._versions
+            factors = factor_options(arguments.options), particles.signatures()[0]
+            if choice.KeepDeviceData and self._factors[0] == factors:
+                arguments.widening = self._factors[1]
             arguments.context, arguments.progress = self._context, self._report
-            with extracted(arguments) as surface:
+            with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
+                self._factors = factors, keep_factors(arguments.widening)
                 yield surface
         except BaseException as failure:
-            self._signatures = (None, None)
+            self._signatures, self._factors = (None, None), (None, None)
             if isinstance(failure, DeviceError):
                 self._context = None
             raise
@@ -572,6 +577,24 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         else:
             show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
             show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")
+
+
+def factor_options(options):
+    """Lists the options on which factors of smoothing lengths depend, and some more."""
+    values = [options.wall_share, *(options.iso_values[:options.iso_count] if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"] else [])]
+    for name, (_, scope, _) in c.OPTIONS.items():
+        value = getattr(options, name)
+        values += [] if scope == ["SURFACE", "KEEPS"] else value[:] if isinstance(value, ctypes.Array) else [value]
+    return values
+
+
+def keep_factors(widening):
+    """Returns the factors for the next run, which spends no seconds on them; None if there are none."""
+    if widening is None:
+        return None
+    statistics = c.mcor_statistics.from_buffer_copy(widening[2])
+    statistics.seconds[:], statistics.build_seconds = [0.0] * len(statistics.seconds), 0.0
+    return (*widening[:2], statistics)
 
 
 def in_panel(sentence):

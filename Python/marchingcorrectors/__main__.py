@@ -46,7 +46,9 @@ def main(arguments):
         print("marchingcorrectors: memory ran out", file=sys.stderr)
         return 1
     except (Error, FileError, OSError) as error:
-        print(f"marchingcorrectors: {error}", file=sys.stderr)
+        from ._command import in_shell
+
+        print(f"marchingcorrectors: {in_shell(error)}", file=sys.stderr)
         return 1
     return 0
 

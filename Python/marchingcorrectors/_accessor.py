@@ -14,7 +14,7 @@ from . import _functions, _meters
 from ._arrays import QUANTITIES, as_points
 from ._call import Shared, own_keywords
 from ._find import Found
-from ._library import InvalidArgument, say, word_by
+from ._library import InvalidArgument
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
 from ._vtk_particles import GHOSTS, WALL_BLOCK, detect, find_period, name_of, named, to_numpy
@@ -29,13 +29,14 @@ ABOUT_PARTICLES = '''
             for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
             rho, ...). volume="computed": by the particles' distances and masses, whatever volumes
             and densities there are.
-        fluid: ("ParticleType", 0): where this point array has another value, there are solids.
+        fluid: ("ParticleType", 0) or "ParticleType=0": where this point array has another value, there are solids. "auto":
+            by a point array of a usual name that clearly tells it.
         within: (x0, x1, y0, y1, z0, z1): particles beyond these bounds are left out.
         only: {"ParticleType": 1} or {"ParticleType": (1, 3)}: particles with other values in these
             point arrays are left out.
         attributes: names of the point arrays to be carried along; by default all, and vx, vy, vz as
             one vector "Velocity".
-        context, device, progress: as in marchingcorrectors.isosurface().
+        outputs, context, device, progress: as in marchingcorrectors.isosurface().
         periodic="auto" takes the period that the field data tell of.
 
         {options}
@@ -45,7 +46,6 @@ ABOUT_PARTICLES = '''
 class Particles(Shared, total=False):
     """Has the keywords of all methods."""
 
-    fluid: Optional[Tuple[str, float]]
     attributes: Optional[Iterable[str]]
 
 
@@ -58,7 +58,7 @@ def _method(options: Sequence[str]) -> Callable[[Function], Function]:
             return function(self, *arguments, **words)
 
         call.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
-        show(call, own_keywords(Particles), options)
+        show(call, own_keywords(Particles, options), options)
         return cast(Function, call)
 
     return decorate
@@ -76,8 +76,6 @@ def _triangles_in(sections):
 class PointData(FileParticles):
     """Makes the points of a data set particles like those of a file: their names tell what arrays are."""
 
-    remedy = "fluid=('{name}', VALUE)"
-
     def __init__(self, data):
         points = data.point_data
         arrays = {name: lambda name=name: np.asarray(points[name]) for name in points.keys() if name not in (GHOSTS, WALL_BLOCK)}
@@ -90,26 +88,13 @@ class PointData(FileParticles):
         super().__init__("The data set", "VTK", lambda: np.asarray(data.points), arrays,
                          solid=np.asarray(points[WALL_BLOCK]) if WALL_BLOCK in points else None,
                          **{name: name_of(detect(data.GetPointData(), data.n_points, name)) or None for name in QUANTITIES})
-        self.data = data
+        self.period, self.cell = find_period(data)
 
     def array(self, name):
         if name not in self.arrays:
             raise InvalidArgument(f"There is no point array '{name}'.{did_you_mean(name, self.arrays)} Point arrays: "
                                   f"{', '.join(self.arrays) or 'none'}.")
         return self.arrays[name]
-
-    def find_period(self, word):
-        found = find_period(self.data) if word == "auto" else None
-        if word != "auto":
-            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", three lengths, or six bounds.")
-        if found is None:
-            raise InvalidArgument(say("NO_PERIOD"))
-        return found
-
-    def check_smoothing_length(self, words):
-        if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None and not self.smoothing_length:
-            error = Found(np.empty((len(self), 3)), named(self.data.GetPointData()), ["sizes"], find=True).error
-            raise InvalidArgument(error.say(word_by(lambda slot, _: slot + "=True" * slot.startswith("estimate"))))
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
@@ -267,12 +252,8 @@ class SphAccessor:
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
         """Returns particles, and keywords for the functions of NumPy."""
         particles, words = PointData(self._particles), dict(given)
-        particles.check_smoothing_length(words)
-        fluid, names = words.pop("fluid", None), words.pop("attributes", None)
-        if fluid is not None:
-            words["solid"] = particles.array(fluid[0]) != fluid[1]
-        if isinstance(words.get("periodic"), str):
-            words["periodic"] = particles.find_period(words["periodic"])
+        names = words.pop("attributes", None)
+        words.setdefault("periodic", None)  # Only "auto" takes the period that the field data tell of.
         if with_attributes:
             words["attributes"] = list(particles.arrays if names is None else names)
         return particles, words

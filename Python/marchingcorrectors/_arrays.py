@@ -9,10 +9,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
-from ._find import as_bytes
+from ._find import ELEMENTS, as_bytes
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
-from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
-from ._units import plain, unit_of, without_unit
+from ._options import BOUNDS, ISOSURFACE, did_you_mean, kind_of, words_of
+from ._units import plain, unit_of
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
@@ -110,37 +110,15 @@ def as_named(attributes):
 SUMMED = "Density"  # isosurface() has none if there is no such array.
 
 
-def choose(only, array_of):
-    """Which particles have the values of `only`: {name: value or (low, high)}, or pairs of these; of several for one
-    array, any may hold. array_of(name): an array."""
-    chosen = {}
-    for name, wanted in only.items() if isinstance(only, Mapping) else only:
-        array = as_array(without_unit(array_of(name)), f"array '{name}' of only")
-        if array.ndim != 1 or array.dtype.kind not in "fiub":
-            raise InvalidArgument(f"only names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
-                                  "have one number for each particle.")
-        ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
-        if len(ends) != 2:
-            raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a value, or the lowest and the highest one.")
-        low, high = [convert(float, f"value of '{name}' in only", end) for end in ends]
-        if not low <= high:
-            raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
-        chosen[name] = chosen.get(name, False) | (array >= low) & (array <= high)
-    return np.all(list(chosen.values()), axis=0) if chosen else None
-
-
 class Arguments:
     """Fills structures for one call, and keeps the arrays alive that the core borrows."""
 
     def __init__(self, positions):
-        self.kept, self.present, self.kinds = [], None, {}
+        self.kept, self.present, self.kinds, self.widening = [], None, {}, None
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
-        self.input.scalar_component = -1  # This means the magnitude.
         array = as_points(positions, "positions", "(particles, 3)")
         self.positions, self.count = array, len(array)
-        self.input.count = self.count
-        self.input.positions = self.view(array, None)
 
     def view(self, array, name):
         view = c.mcor_array()
@@ -155,60 +133,30 @@ class Arguments:
         self.kept.append(ctypes.create_string_buffer(32))
         return self.kept[-1]
 
-    def per_particle(self, values, role, name=None, constant=False):
-        """Returns an array of (particles,) or (particles, components), or one value for all of them."""
-        values = as_array(values, role)
-        if constant and values.ndim == 0:
-            view = c.mcor_array()
-            view.constant, view.name = convert(float, role, values.item()), as_bytes(name or role)
-            if not view.constant > 0:
-                raise InvalidArgument(f"The {role} is {view.constant:g}; it must be greater than 0.")
-            return view
+    def per_particle(self, values, role, name=None):
+        """Returns a view of an array of (particles,) or (particles, components)."""
+        return self.view(self.shaped(values, role), name or role)
+
+    def shaped(self, values, role):
         array = contiguous(values, role)
         if array.ndim not in (1, 2) or len(array) != self.count or 0 in array.shape[1:]:
             raise InvalidArgument(f"The {role} has the shape {array.shape}; for {self.count} particles it is "
                                   f"({self.count},) or ({self.count}, components).")
-        return self.view(array, name or role)
+        return array
 
-    def set_quantities(self, quantities):
-        for name, values in quantities.items():
-            if values is None:
-                continue
-            setattr(self.input, name, self.per_particle(values, name.replace("_", " "), constant=True))
+    def constant(self, value, role):
+        value = convert(float, role, value.item())
+        if not value > 0:
+            raise InvalidArgument(f"The {role} is {value:g}; it must be greater than 0.")
+        return value
 
-    def set_solid(self, solid, present=None):
-        """Sets the marks of solid and absent particles. present: None, or which particles are not left out."""
-        if solid is None and present is None:
-            return
-        self.present = present
-        marks = as_array(np.zeros(self.count, bool) if solid is None else solid, "array of solid particles' marks")
-        if marks.dtype.kind not in "fiub":
-            raise InvalidArgument(f"The marks of solid particles are not numbers but {marks.dtype}.")
-        if marks.shape != (self.count,):
-            raise InvalidArgument(f"The marks of solid particles have the shape {marks.shape}; for "
-                                  f"{self.count} particles it is ({self.count},).")
-        if marks.dtype != np.uint8 or (marks == ABSENT).any():
-            marks = marks != 0
-        marks = np.ascontiguousarray(marks).view(np.uint8)
-        if present is not None:
-            marks = np.where(present, marks, np.uint8(ABSENT))
-        self.kept.append(marks)
-        self.input.solid = marks.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
-
-    def find_present(self, within, only):
-        """Returns which particles are not left out, or None if all are taken. only: None, or marks of the particles that are taken."""
-        if only is not None:
-            only = as_array(only, "array of only")
-            if only.dtype != bool or only.shape != (self.count,):
-                raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.count} particles, not an "
-                                      f"array of {only.dtype} of the shape {only.shape}.")
-        if within is None:
-            return only
-        sides = np.ravel(contiguous(within, "list of numbers of within"))
-        if len(sides) != 6 or not (sides[::2] <= sides[1::2]).all():
-            raise InvalidArgument(f"within is {within!r}; it must be six bounds (x0, x1, y0, y1, z0, z1), the lower ones first.")
-        inside = ((self.positions >= sides[::2]) & (self.positions <= sides[1::2])).all(axis=1)
-        return inside if only is None else inside & only
+    def marks(self, solid, keyword="solid"):
+        """Returns an array that tells solid from fluid particles."""
+        marks = as_array(solid, f"array of {keyword}")
+        if marks.dtype.kind not in "fiub" or marks.shape != (self.count,):
+            raise InvalidArgument(f"The array of {keyword}, of {marks.dtype}, has the shape {marks.shape}; it must have one number for "
+                                  f"each of {self.count} particles.")
+        return marks if marks.dtype in ELEMENTS or marks.dtype == bool else marks.astype(float)
 
     def set_attributes(self, attributes):
         """Sets the attributes, {name: array}, in the order of the core's results."""
@@ -220,11 +168,13 @@ class Arguments:
         self.kinds = {name: (() if np.ndim(values) == 1 else (view.components,), view.type)
                       for view, (name, values) in zip(views, attributes.items())}
 
-    def set_widening(self, found):
-        """Takes a mcor_widening. Its factors become the last attribute, but belong to none of the kinds."""
-        self.input.widening = self.view(take(found.factor, (found.count,)), "Widening")
-        if found.volume:
-            self.input.volume = self.view(take(found.volume, (found.count,)), None)
+    def set_widening(self, factors, volumes, of_surface):
+        """Takes factors of smoothing lengths. of_surface: they become the last attribute, too, but belong to none of the kinds."""
+        self.input.widening = self.view(factors, "Widening")
+        if volumes is not None:
+            self.input.volume = self.view(volumes, None)
+        if not of_surface:
+            return
         views = [*self.input.attributes[:len(self.kinds)], self.input.widening]
         self.kept.append((c.mcor_array * len(views))(*views))
         self.input.attributes, self.input.attribute_count = self.kept[-1], len(views)
@@ -250,41 +200,22 @@ class Arguments:
             self.options.capping = 2  # MCOR_CAP_BOX
         lib.mcor_spell_out(ctypes.byref(self.options))
 
-    def per_neighbours(self, function, *more):
-        """Returns numbers, (particles,), that a function of the core sums over neighbours."""
-        values, why = np.empty(self.count), c.mcor_message()
-        status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more, self.count,
+    def per_neighbours(self, found, function, *more):
+        """Returns numbers, (particles,), that a function of the core sums over neighbours. found: a Found, which knows all masses."""
+        given, values, why = c.mcor_input.from_buffer_copy(found.found.input), np.empty(self.count), c.mcor_message()
+        given.mass = found.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_MASS"]]
+        status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
         sentence = take_sentence(why)
         if status:
             raise ERRORS.get(status, Error)(sentence)
         return values
 
-    def estimate_by_neighbours(self, word):
-        """Returns smoothing lengths by neighbours. word: "neighbours", or "neighbours=ETA"."""
-        name, equals, ratio = word.partition("=")
-        if name not in ("neighbours", "neighbors"):
-            raise InvalidArgument(f"estimate_smoothing_length is '{word}'; it must be True, \"neighbours\" or "
-                                  "\"neighbours=ETA\".")
-        ratio = convert(float, "ETA of neighbours", ratio) if equals else 1.3
-        lengths = self.per_neighbours(lib.mcor_find_smoothing_lengths, ratio)
-        self.input.smoothing_length = self.view(lengths, "smoothing length")
-        self.input.estimate_smoothing_length = self.input.smoothing_length_is_support_radius = 0
-
-    def sum_densities(self, name):
-        """Returns the scalar "Density", summed from masses. Volumes follow from it, too, if no density is given."""
-        if name != SUMMED:
-            raise InvalidArgument(f"The scalar is '{name}'; it must be an array of numbers, or \"{SUMMED}\", summed from masses.")
-        densities = self.per_neighbours(lib.mcor_sum_densities)
-        if not lib.mcor_is_given(ctypes.byref(self.input.density)):
-            self.input.density = self.view(densities, SUMMED)
-        return densities
-
     def bounds_of_period(self, period):
         """Returns six bounds. Where three lengths are given, the particles tell where the bounds begin."""
         if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
-            raise InvalidArgument(f"periodic is {period!r}; it must be three lengths, 0 along axes that are not periodic, "
-                                  "or six bounds (x0, x1, y0, y1, z0, z1).")
+            raise InvalidArgument(f"periodic is {period!r}; it must be {BOUNDS}, or three lengths, 0 along axes that are not "
+                                  "periodic.")
         if period is None or np.size(period) == 6:
             return period
         lengths = np.ravel(contiguous(period, "list of numbers of periodic")).astype(np.float64)
@@ -293,6 +224,14 @@ class Arguments:
         if len(positions):
             extent = np.stack([positions.min(axis=0), positions.max(axis=0)], axis=1).ravel().tolist()
         return place_period(lengths, extent)
+
+
+def neighbour_ratio(word):
+    """Returns ETA of "neighbours=ETA", or 1.3 for "neighbours" alone."""
+    name, equals, ratio = word.partition("=")
+    if name not in ("neighbours", "neighbors"):
+        raise InvalidArgument(f"estimate_smoothing_length is '{word}'; it must be True, \"neighbours\" or \"neighbours=ETA\".")
+    return convert(float, "ETA of neighbours", ratio) if equals else 1.3
 
 
 def place_period(lengths, extent):

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Unio
 import numpy as np
 
 from . import _structs as c
-from ._arrays import QUANTITIES, SUMMED, Arguments, choose
+from ._arrays import (ABSENT, QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
 from ._context import Context, default_context
-from ._find import Found, as_bytes, choose_volumes, describe_unused
-from ._library import InvalidArgument, InvalidData, lib, say, word_by
-from ._options import Function, Options, check_names, did_you_mean, show
+from ._find import ELEMENTS, Found, as_bytes
+from ._library import InvalidArgument, InvalidData, lib, say
+from ._options import BOUNDS, OUTPUTS, Function, Options, check_names, did_you_mean, kind_of, show
+from ._units import without_unit
 from ._warnings import warn, warn_of_particles
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     Positions = Union[ArrayLike, Particles]
     Progress = Union[bool, Callable[[float, str], Any]]
     Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
+    Fluid = Union[str, Tuple[str, float], Mapping[str, float]]
     Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
 
 # These arguments may name an array if the particles come from a file.
@@ -46,10 +48,12 @@ ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIE
 class Shared(Options, total=False):
     """Has the keywords of all functions, and of PyVista's methods."""
 
+    fluid: Optional[Fluid]
     smoothing_length: Optional[ArrayLike]
     volume: Optional[ArrayLike]
     mass: Optional[ArrayLike]
     density: Optional[ArrayLike]
+    outputs: Union[None, str, Sequence[str]]
     within: Optional[ArrayLike]
     only: Optional[Only]
     context: Optional[Context]
@@ -61,9 +65,10 @@ class Keywords(Shared, total=False):
     solid: Optional[ArrayLike]
 
 
-def own_keywords(kind: Any) -> dict[str, Any]:
-    """Returns {name: type} of a class of keywords, without the options."""
-    return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__}
+def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str, Any]:
+    """Returns {name: type} of a class of keywords, without the options; without outputs if no option is an output."""
+    return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__
+            and (name != "outputs" or not OUTPUTS.keys().isdisjoint(options))}
 
 
 def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Function], Function]:
@@ -81,97 +86,199 @@ def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Func
             if hasattr(positions, "words"):
                 given = signature.bind(positions, *arguments, **words).arguments
                 more = given.pop("words", {})
-                return function(**_words_of_file(given.pop("positions"), {**given, **more}, masses))
+                return function(**words_of_file(given.pop("positions"), {**given, **more}, masses))
             return function(positions, *arguments, **words)
 
-        show(call, own_keywords(Keywords), options)
+        show(call, own_keywords(Keywords, options), options)
         return cast(Function, call)
 
     return decorate
 
 
-def _words_of_file(particles, given, masses):
-    words, only = dict(given), given.get("only")
+def words_of_file(particles, given, masses=False):
+    """Returns keywords of a function, with arrays in place of names. source: the particles, whose arrays fluid and only may name."""
+    words = dict(given)
     for name in ARRAYS:
         text = words.get(name)
         if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
                 (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
             words[name] = particles.array(text)
     words = particles.words(words, beside=masses)
-    if words.get("smoothing_length") is None and not words.get("estimate_smoothing_length") and len(particles):
-        raise InvalidArgument(f"{particles.file} tells no smoothing length. Give smoothing_length=, an array's name or a value, or "
-                              "estimate_smoothing_length=True (in a shell --smoothing-length NAME, VALUE or estimate). Arrays: "
-                              f"{', '.join(particles.arrays) or 'none'}.")
     for name in ("mass", "density") if masses else ():
         words[name] = particles.quantity(name) if words.get(name) is None else words[name]
-    if isinstance(only, Mapping):
-        words["only"] = choose(only, particles.array)
-    if words.get("solid") is None and only is None:
-        _warn_of_unused_type(particles)
-    return {**words, "positions": particles.positions}
+    return {**words, "source": particles, "positions": particles.positions}
 
 
-def _warn_of_unused_type(particles):
-    type_of_particles = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
-    arrays = {name: np.ascontiguousarray(particles.arrays[name]) for name in particles.arrays
-              if lib.mcor_name_priority(type_of_particles, as_bytes(name)) >= 0}
-    sentence = Found(np.empty((len(particles), 3), np.float32), arrays, ["fluid"]).unused_type
-    if sentence:
-        warn(sentence.say(word_by(lambda slot, name: particles.remedy.format(name=name) if slot == "fluid" else "")))
-
-
-def prepare(units, words, attributes=None, named=None, beside=False):
-    """The core's arguments. words: Keywords. named: what `only` may name, where that is more than the attributes. beside:
-    masses and densities are wanted beside volumes."""
+def prepare(units, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
+    """The core's arguments. words: Keywords. named: what `fluid` and `only` may name, where that is more than the attributes.
+    wants: names of mcor_want; nothing: what there is without fluid; roles: arrays by their names in mcor_role."""
     options, attributes = dict(words), attributes or {}
+    source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
-    _drop_unused(given, options, warns=not beside)
+    _set_outputs(options, given.pop("outputs"))
+    _warn_of_unused(options, given["context"])
     arguments = Arguments(units.positions)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
-    arguments.set_quantities(units.quantities(given))
-    only = given["only"]
-    if isinstance(only, Mapping):
-        only = choose(only, functools.partial(_attribute, attributes if named is None else named))
-    present = arguments.find_present(units.lengths(given["within"], "within"), only)
-    if present is not None and arguments.count and not present.any():
-        names = " and ".join(name for name in ("within", "only") if given[name] is not None)
-        raise InvalidData(f"None of the {arguments.count} particles is left by {names}. Give wider bounds or other values.")
-    arguments.set_solid(given["solid"], present)
-    arguments.set_attributes(attributes)
-    estimate = options.get("estimate_smoothing_length")
-    if isinstance(estimate, str):
-        options["estimate_smoothing_length"] = False
-    arguments.set_options(units.options(options))
-    if isinstance(estimate, str):
-        arguments.estimate_by_neighbours(estimate)
+    given.update(units.quantities(given), within=units.lengths(given["within"], "within"))
+    named = source.arrays if source else attributes if named is None else named
+    _find(arguments, given, units.options(options), wants, nothing, roles, named,
+          source.array if source else functools.partial(_attribute, named), source is not None)
+    if "flow" not in wants:
+        arguments.set_attributes(attributes)
     return arguments
+
+
+class Ranges(list):
+    """Has pairs (name, value or (low, high)) in place of the dictionary `only`, of which several may have one name: then any counts."""
+
+
+def _find(arguments, given, options, wants, nothing, roles, others, array_of, of_file):
+    """Lets the core find volumes, fluid, particles that are left out, and the scalar among the arrays that are given.
+    others: what fluid and only may name, by array_of(name). of_file: an array that seems to tell the fluid is looked for."""
+    named, names, values, ranges = {}, {}, {}, []
+
+    def add(name, array):
+        while name in named and named[name] is not array:
+            name += "'"
+        named[name] = array
+        return name
+
+    def take(keyword, name, kinds="fiub"):
+        array = as_array(without_unit(array_of(name)), f"array '{name}' of {keyword}")
+        if array.shape != (arguments.count,) or array.dtype.kind not in kinds:
+            raise InvalidArgument(f"{keyword} names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
+                                  "have one number for each particle.")
+        return array if array.dtype in ELEMENTS or array.dtype.kind not in "fiu" else contiguous(array, name)
+
+    request = {name: number(name, kind_of(name), options.pop(name)) for name in (
+        "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options}
+    request.setdefault("scalar_component", -1)  # This means the magnitude.
+    estimate = options.pop("estimate_smoothing_length", False)
+    request["lengths_by_neighbours"] = isinstance(estimate, str)
+    ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
+    request["estimate_smoothing_length"] = True if ratio else number("estimate_smoothing_length", "int", estimate)
+    request["compute_volumes"] = isinstance(given["volume"], str) and given["volume"] == "computed"
+    request["particle_volume"] = options.pop("particle_volume", 0.0)
+    for role, array in {**{role: given[role] for role in QUANTITIES}, **roles}.items():
+        words = role.replace("_", " ")
+        if role == "volume" and request["compute_volumes"] or array is None:
+            continue
+        if isinstance(array, str) and role == "scalar":
+            names[role] = array
+            continue
+        array = as_array(array, words)
+        if array.ndim == 0 and role in QUANTITIES:
+            values[role] = arguments.constant(array, words)
+        else:
+            names[role] = add(words, arguments.shaped(array, words))
+    solid, fluid, only = given["solid"], given["fluid"], given["only"]
+    if solid is not None and fluid is not None:
+        raise InvalidArgument("solid and fluid both tell which particles are fluid. Leave one of them out.")
+    if solid is not None:
+        names["fluid"], request["fluid_value"] = add("solid", arguments.marks(solid)), 0
+    elif fluid is not None and fluid != "auto":
+        name, request["fluid_value"] = parse_fluid(fluid)
+        names["fluid"] = add(name, take("fluid", name)) if isinstance(name, str) else add("fluid", arguments.marks(name, "fluid"))
+    request["find_fluid"] = isinstance(fluid, str) and fluid == "auto"
+    looks = "fluid" not in names and (of_file or request["find_fluid"])
+    for name in others if looks else ():
+        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
+            add(name, np.ascontiguousarray(array_of(name)))
+    for name, wanted in only.items() if isinstance(only, Mapping) else only if isinstance(only, Ranges) else ():
+        is_text = isinstance(wanted, str)
+        array = take("only", name, "fiubUSO" if is_text else "fiub")
+        if is_text and array.dtype.kind in "USO":
+            ranges.append((add(f"{name}={wanted}", array.astype(str) == wanted), 1, 1))
+        else:
+            ranges.append((add(name, array), *parse_range(name, wanted)))
+    if only is not None and not isinstance(only, (Mapping, Ranges)):
+        only = as_array(only, "array of only")
+        if only.dtype != bool or only.shape != (arguments.count,):
+            raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {arguments.count} particles, not an "
+                                  f"array of {only.dtype} of the shape {only.shape}.")
+        ranges.append((add("only", only), 1, 1))
+    if given["within"] is not None:
+        request["within"] = parse_within(given["within"])
+    if not arguments.count and "smoothing_length" not in names:
+        values["smoothing_length"] = 1.0  # No particle needs it.
+    found = Found(arguments.positions, named, ["sizes", *wants, *["fluid"] * looks], names, values, ranges, **request)
+    arguments.kept += [found, named]
+    if found.error:
+        raise InvalidArgument(say("LENGTH_MISSING") if found.error.code == "NO_SMOOTHING_LENGTH" else found.error)
+    if found.unused:
+        warn(found.unused)
+    if found.unused_type:
+        warn(found.unused_type)
+    arguments.input, why = found.found.input, found.text("no_fluid")
+    if arguments.input.solid and arguments.count:
+        arguments.present = np.ctypeslib.as_array(arguments.input.solid, (arguments.count,)) != ABSENT
+    arguments.set_options(options)
+    if why and arguments.count:
+        if nothing is None:
+            raise InvalidData(say("NOTHING_WITHOUT_FLUID", why, "nothing to compute"))
+        warn(say("NOTHING_WITHOUT_FLUID", why, nothing))
+        arguments.input.count = 0
+    for is_needed, function, more, take_it in (
+            (found.found.needs_lengths, lib.mcor_find_smoothing_lengths, [ratio], lib.mcor_take_lengths),
+            (found.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
+        if is_needed and arguments.input.count:
+            arguments.kept.append(arguments.per_neighbours(found, function, *more))
+            take_it(ctypes.byref(found.found), arguments.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+
+
+def parse_fluid(fluid):
+    """Returns name and value of ("NAME", VALUE), {"NAME": VALUE} or "NAME=VALUE"; or an array in place of a name."""
+    parts = fluid.rpartition("=")[::2] if isinstance(fluid, str) else next(iter(fluid.items())) if isinstance(
+        fluid, Mapping) and len(fluid) == 1 else fluid
+    if not isinstance(parts, (tuple, list)) or len(parts) != 2 or np.ndim(parts[0]) == 0 and not (
+            isinstance(parts[0], str) and parts[0]):
+        raise InvalidArgument(f'fluid is {fluid!r}; it must be ("NAME", VALUE), (array, VALUE), "NAME=VALUE", or "auto".')
+    return parts[0], convert(float, "value of fluid", parts[1])
+
+
+def parse_range(name, wanted):
+    """Returns the lowest and the highest value of what only has for this array."""
+    ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
+    if len(ends) != 2:
+        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a value, or the lowest and the highest one.")
+    low, high = [convert(float, f"value of '{name}' in only", end) for end in ends]
+    if not low <= high:
+        raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
+    return low, high
+
+
+def parse_within(within):
+    sides = np.ravel(contiguous(within, "list of numbers of within")).tolist()
+    if len(sides) != 6 or not all(low <= high for low, high in zip(sides[::2], sides[1::2])):
+        raise InvalidArgument(f"within is {within!r}; it must be {BOUNDS}, the lower ones first.")
+    return sides if any(sides) else [-5e-324, *sides[1:]]  # For the core zeros mean no choice.
+
+
+def _set_outputs(options, outputs):
+    """Sets the options that outputs names."""
+    for name in [outputs] if isinstance(outputs, str) else outputs or ():
+        if name not in OUTPUTS:
+            raise InvalidArgument(f"outputs names {name!r}.{did_you_mean(name, OUTPUTS)} Outputs are {', '.join(OUTPUTS)}.")
+        if options.get(name) is False:
+            raise InvalidArgument(f"outputs names '{name}', but {name} is False. Leave one of them out.")
+        options[name] = True
 
 
 def _attribute(attributes, name):
     if name not in attributes:
-        raise InvalidArgument(f"only names '{name}', which is not among the attributes.{did_you_mean(name, attributes)} "
+        raise InvalidArgument(f"There is no array '{name}' among the attributes.{did_you_mean(name, attributes)} "
                               f"Attributes: {', '.join(attributes) or 'none'}.")
     return attributes[name]
 
 
-def _drop_unused(given, options, warns):
-    """Keeps of volume, mass and density what makes the volumes, and warns of arguments that have no effect beside others."""
-    words = {"compute_volumes": isinstance(given["volume"], str),
-             "estimate_smoothing_length": bool(options.get("estimate_smoothing_length"))}
-    if words["compute_volumes"]:
-        given["volume"] = None
-    has = {name for name in QUANTITIES if given[name] is not None}
-    used = choose_volumes(has, has, **words)
-    unused = describe_unused(has, used, **words) if warns else ""
-    if unused:
-        warn(unused)
-    given.update(dict.fromkeys({"volume", "mass", "density"} - used))
+def _warn_of_unused(options, context):
+    """Warns of options that have no effect beside others."""
     for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
                         ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
         if options.get(name) and options.get(other):
             warn(f"{name} is not used, because {other} is given. Leave one of them out.")
     versions = [name for name in options if name.endswith("_version") and options[name]]
-    if versions and given["context"] is None:
+    if versions and context is None:
         warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
 
 
@@ -182,7 +289,11 @@ def warn_of_missing(missing):
 
 @contextlib.contextmanager
 def called(function, kind, arguments, *more):
-    """Yields what a function of the core returns, and frees it at the end."""
+    """Yields what a function of the core returns, and frees it at the end. If the options ask for that, smoothing lengths are widened first."""
+    if arguments.options.widen != 1 and kind is not c.mcor_widening:
+        of_surface = kind is c.mcor_surface
+        arguments.widening = arguments.widening or widen(arguments, of_surface)
+        arguments.set_widening(*arguments.widening[:2], of_surface)
     context = arguments.context
     own = context is None
     if not own and not isinstance(context, Context):
@@ -195,6 +306,8 @@ def called(function, kind, arguments, *more):
         finally:
             if own:
                 context.release_memory()
+        if kind is c.mcor_surface and arguments.widening:
+            lib.mcor_add_widening(ctypes.byref(result.statistics), ctypes.byref(arguments.widening[2]))
         if kind not in (c.mcor_surface, c.mcor_widening):
             warn_of_particles(arguments, result.statistics)
         yield result
@@ -202,15 +315,16 @@ def called(function, kind, arguments, *more):
         getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
 
 
-@contextlib.contextmanager
-def extracted(arguments):
-    """Yields the core's surface, with widened smoothing lengths if the options ask for that."""
-    found = None
-    if arguments.options.widen != 1:
-        with called(lib.mcor_widen, c.mcor_widening, arguments) as widening:
-            arguments.set_widening(widening)
-            found = c.mcor_statistics.from_buffer_copy(widening.statistics)
-    with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
-        if found:
-            lib.mcor_add_widening(ctypes.byref(surface.statistics), ctypes.byref(found))
-        yield surface
+def widen(arguments, of_surface):
+    """Returns the factors of the smoothing lengths, the volumes if they are computed, and the statistics. of_surface: by the rule of this surface;
+    else by that of the free surface."""
+    options = arguments.options
+    if not of_surface:
+        arguments.options = c.mcor_options.from_buffer_copy(options)
+        arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
+    try:
+        with called(lib.mcor_widen, c.mcor_widening, arguments) as found:
+            return (take(found.factor, (found.count,)), take(found.volume, (found.count,)) if found.volume else None,
+                    c.mcor_statistics.from_buffer_copy(found.statistics))
+    finally:
+        arguments.options = options

@@ -11,7 +11,7 @@ import numpy as np
 from . import _structs as c
 from ._arrays import (SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all,
                       take_each, take_lines)
-from ._call import called, extracted, of_particles, prepare, warn_of_missing
+from ._call import called, of_particles, prepare, warn_of_missing
 from ._library import ERRORS, InvalidArgument, lib
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
 from ._surface import Derivatives, Projection, Samples, Surface
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @of_particles(ISOSURFACE)
-def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
+def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[None, float, Sequence[float]] = None, *,
                attributes: Optional[Attributes] = None,
                scalar_dot: Optional[ArrayLike] = None,
                **words: Unpack[Keywords]) -> Surface:
@@ -42,7 +42,7 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
         Or particles of io.read(): scalar is then an array's name, attributes a list of names.
     scalar: (particles,), or (particles, components): then its magnitude, or one component
         (scalar_component=0, 1, ...), or its dot product with scalar_dot.
-    iso: the value of the scalar on the surface, or a list of values.
+    iso: the value of the scalar on the surface, or a list of values; without it one about the median.
     smoothing_length: (particles,) or one value, L, greater than 0; with
         smoothing_length_is_support_radius=True it is the radius at which the kernel ends; with
         estimate_smoothing_length=True it is not needed.
@@ -53,9 +53,13 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
         the particles around, integers and bools from the nearest particle.
     scalar_dot: a second vector for each particle; the scalar is then the dot product.
     solid: (particles,), True or not 0 for walls. They take no part in the field.
+    fluid: ("Type", 0) or "Type=0": where this array, of the file or of the attributes, has another value, particles are
+        solid. Or (array, 0). "auto": by an array of a usual name that clearly tells it.
+    outputs: further arrays of the surface, by their names below: outputs="residual", or ("residual", "gradients"); each is
+        also a keyword: residual=True.
     within: (x0, x1, y0, y1, z0, z1), L: particles beyond these bounds are left out, whatever their values
         are; sides may be infinite.
-    only: {"Type": 1} or {"Type": (1, 3)}: particles whose value in this array, of the file or of the
+    only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: particles whose value in this array, of the file or of the
         attributes, is another, or not from the lowest to the highest one, are left out likewise. All names
         must agree. Or (particles,), True for those that are taken.
     context: a Context, to keep particles on the device between calls; else one of our own per
@@ -80,20 +84,15 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     attributes = as_named(attributes)
     real = {name: array for name, array in attributes.items() if is_real(array)}
     scalar, scalar_dot, iso = scalar_and_iso(scalar, scalar_dot, iso)
-    arguments = prepare(Units(positions), words, real, attributes)
-    if arguments.options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
-        if scalar is None:
-            raise InvalidArgument('Give the scalar to contour, or call free_surface().')
-        scalar = arguments.sum_densities(scalar) if isinstance(scalar, str) else scalar
-        arguments.input.scalar = arguments.per_particle(scalar, "scalar")
-        arguments.input.scalar.name = None  # Then the core says "the scalar".
-        if arguments.input.scalar.components == 1:
-            arguments.input.scalar_component = 0
-        if scalar_dot is not None:
-            arguments.input.scalar_dot = arguments.per_particle(scalar_dot, "scalar_dot")
-    if iso is None:
-        raise InvalidArgument("Give the iso value: a number, or a list of them.")
-    arguments.set_iso_values(iso)
+    is_free = number("field", "mcor_field", words.get("field", "shepard")) == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
+    if scalar is None and not is_free:
+        raise InvalidArgument('Give the scalar to contour, or call free_surface().')
+    if isinstance(scalar, str) and scalar != SUMMED:
+        raise InvalidArgument(f"The scalar is '{scalar}'; it must be an array of numbers, or \"{SUMMED}\", summed from masses.")
+    roles = {} if is_free else {"wants": ["scalar"], "scalar": scalar, "scalar_dot": scalar_dot}
+    arguments = prepare(Units(positions), words, real, attributes, **roles)
+    arguments.input.scalar.name = None  # Then the core says "the scalar".
+    arguments.set_iso_values(find_iso_value(arguments, is_free) if iso is None else iso)
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = [name for name in attributes if name not in real]
     for name in from_nearest:
@@ -101,7 +100,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
         if attributes[name].ndim == 0 or len(attributes[name]) != arguments.count:
             raise InvalidArgument(f"The attribute '{name}' has the shape {attributes[name].shape} for "
                                   f"{arguments.count} particles.")
-    with extracted(arguments) as surface:
+    with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
         found = take_surface(surface, arguments)
         sentences = describe_warnings(arguments, surface)
     found.points = found.points.astype(arguments.positions.dtype, copy=False)
@@ -117,10 +116,17 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     return found
 
 
+def find_iso_value(arguments, is_free):
+    """Returns a list with the iso value for those who gave none: 0.5 of the free surface, about the median of a scalar."""
+    ends, value = (ctypes.c_double * 2)(), ctypes.c_double(0.5)
+    found = is_free or lib.mcor_find_iso_value(ctypes.byref(arguments.input), None, ends, ctypes.byref(value))
+    return [value.value] if found else []
+
+
 def _describe_empty(arguments, found):
     """Returns a sentence about an empty surface that the core does not explain, or "" if a box may just be elsewhere."""
     values, options, n = arguments.options.iso_values, arguments.options, found.statistics
-    if len(found.points) or not arguments.count or any(options.box):
+    if len(found.points) or not arguments.input.count or any(options.box):
         return ""
     if not options.iso_count:
         return "There is no surface: the list of iso values is empty."
@@ -190,7 +196,7 @@ def probe(positions: Positions, points: ArrayLike, *,
     {options}
     """
     units = Units(positions)
-    arguments = prepare(units, words, as_named(attributes))
+    arguments = prepare(units, words, as_named(attributes), nothing="no point is valid")
     where = contiguous(units.lengths(points, "array of points"), "array of points")
     is_whole = where.shape[-1:] == (3,)
     shape = where.shape[:-1] if is_whole else (0,)
@@ -233,7 +239,7 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 
     {options}
     """
-    arguments = prepare(Units(positions), words, as_named(attributes))
+    arguments = prepare(Units(positions), words, as_named(attributes), nothing=None)
     chosen = number("form", "mcor_gradient", form)
     with called(lib.mcor_derive, c.mcor_derivatives, arguments, chosen) as result:
         corrected = take(result.corrected, (result.count,))
@@ -264,7 +270,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
 
     {options}
     """
-    arguments = prepare(Units(positions), {**words, "widen": widen})
+    arguments = prepare(Units(positions), {**words, "widen": widen}, nothing=None)
     if iso is not None:
         arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
         arguments.set_iso_values(iso)
@@ -314,22 +320,15 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     {options}
     """
     units = Units(positions)
-    mass, density = map(words.get, ("mass", "density"))
     if isinstance(scalar, str) and scalar == SUMMED:  # Without that array, the sum of the particles' masses is used.
         scalar = None
-    arguments = prepare(units, words, beside=True)
-    if not lib.mcor_is_given(ctypes.byref(arguments.input.mass)):
-        arguments.set_quantities({"density": without_unit(density)} if mass is None else {"mass": without_unit(mass)})
-    if scalar is not None:
-        arguments.input.scalar = arguments.per_particle(without_unit(scalar), "scalar")
-        if arguments.input.scalar.components == 1:
-            arguments.input.scalar_component = 0
+    arguments = prepare(units, words, wants=["column"], nothing="nothing is seen", scalar=without_unit(scalar))
     view = c.mcor_view()
     view.direction[:] = _direction(direction)
     set_option(view, "box", "double[6]", units.lengths(box, "box"))
     view.resolution = number("resolution", "int", resolution)
     if weighted_by is not None:
-        view.weight = arguments.input.mass if weighted_by is mass else arguments.per_particle(without_unit(weighted_by), "weight")
+        view.weight = arguments.per_particle(without_unit(weighted_by), "weight")
     with called(lib.mcor_project, c.mcor_projection, arguments, ctypes.byref(view)) as found:
         columns, rows = found.size
         values = take(found.values, (rows, columns))

@@ -96,7 +96,10 @@ def word_by(function):
 def _python_word(name, value):
     """Returns Python's word: cube_size, dimension=3, precision="double"."""
     known = name in c.OPTIONS or name in c.SLOTS
-    return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() else f'{name}="{value}"'
+    if name == "fluid" and value:
+        return f"fluid=('{value}', VALUE)"
+    value = "True" if name == "estimate_smoothing_length" else value
+    return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() or value == "True" else f'{name}="{value}"'
 
 
 def _sentence(code, text):

@@ -77,7 +77,7 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     {options}
     """
     units = Units(positions)
-    arguments = prepare(units, words)
+    arguments = prepare(units, words, nothing="all gauges are dry")
     names, array = _as_lines(lines, units)
     arguments.set_iso_values(iso)
     structures = (c.mcor_gauge_line * max(len(array), 1))()
@@ -157,23 +157,6 @@ def _as_sections(sections, units):
     return names, made, kept
 
 
-def _take_density(words, count):
-    """Returns each particle's density, or None, and the keywords that tell volumes."""
-    volume, mass, density = map(words.get, ("volume", "mass", "density"))
-    known = volume is not None and not isinstance(volume, str)
-    unused = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
-    if density is None and known and mass is not None:
-        sizes = [contiguous(without_unit(values), name).astype(np.float64) for values, name in ((mass, "mass"), (volume, "volume"))]
-        if not all(np.shape(size) in ((1,), (count,)) for size in sizes):
-            raise InvalidArgument(f"The mass has the shape {sizes[0].shape}, the volume {sizes[1].shape}; both are one number, or "
-                                  f"one for each of {count} particles.")
-        with np.errstate(divide="ignore", invalid="ignore"):  # Volumes of 0 are refused with a sentence.
-            density = np.broadcast_to(sizes[0] / sizes[1], count)
-    if density is not None and np.ndim(density) == 0:
-        density = np.full(count, density)
-    return density, {**words, **unused}
-
-
 @of_particles(GAUGE, masses=True)
 def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
     """Fluxes through sections, to 1e-5 of the largest flux that the velocities there allow.
@@ -197,9 +180,7 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     {options}
     """
     units = Units(positions)
-    density, words = _take_density(words, len(positions))
-    arguments = prepare(units, words, {"velocity": velocity} if density is None else
-                        {"velocity": velocity, "density": density})
+    arguments = prepare(units, words, wants=["flow"], nothing="nothing flows", velocity=velocity)
     names, array, _kept = _as_sections(sections, units)
     arguments.set_iso_values(iso)
     with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:

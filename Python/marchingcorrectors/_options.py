@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 from . import _structs as c
 from ._library import lib
 
+BOUNDS = "six bounds (x0, x1, y0, y1, z0, z1)"
 Function = TypeVar("Function", bound=Callable)  # Type checkers see the function as it is written.
 
 # Outputs are bits of one number in mcor_options; here each bit is a member.
@@ -63,9 +64,9 @@ WORDS = {
                   "weigh more than the fluid, with \"measured\" on the layer of solids that faces it. 0: it does not "
                   "end at solids. \"auto\": \"measured\" for a scalar, 0 for the free surface.",
     "memory_limit": "maximum bytes of device memory; 0: no limit.",
-    "box": "(x0, x1, y0, y1, z0, z1): only the cells with their centres in this box; sides may be infinite.",
-    "periodic": "(x0, x1, y0, y1, z0, z1): the particles repeat along each axis with x0 < x1; or three lengths, 0 "
-                "along axes that are not periodic.",
+    "box": f"{BOUNDS}: only the cells with their centres in this box; sides may be infinite.",
+    "periodic": f"{BOUNDS}: the particles repeat along each axis with x0 < x1; or three lengths, 0 along axes that are not "
+                "periodic; or \"auto\", where a file or a data set tells it.",
     "capping": "True: the surface is closed at the sides of the period and of the box.",
     "normals": "True: unit normals from the field's gradient.",
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
@@ -101,11 +102,14 @@ FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
     "scalar_version", "attributes_version"))
 EVERY = ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids", "particles_version")
-WIDENING = ("widen", "cube_size", "cube_size_factor", "wall_share")
+WIDENS = ("widen", "smooth")
 DERIVATIVES, GAUGE, PROBE, PROJECT, WIDENING = (
     more + tuple(name for name, (_, scope, _) in c.OPTIONS.items() if {"ALL", kind} & set(scope)) + EVERY
-    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version")),
-                       ("PROJECT", ("scalar_component",)), ("WIDENING", WIDENING)))
+    for kind, more in (("DERIVE", ()), ("GAUGE", WIDENS), ("PROBE", (*WIDENS, "gradients", "attributes_version")),
+                       ("PROJECT", (*WIDENS, "scalar_component")),
+                       ("WIDENING", ("widen", "cube_size", "cube_size_factor", "wall_share"))))
+# Most people need these keywords: the program's table marks their options. Signatures and helps begin with them.
+USUAL = [member for _, _, modes, member in c.PROGRAM.values() if "usual" in modes]
 
 
 def words_of(name):
@@ -180,10 +184,10 @@ def show(function, keywords, options):
 
     signature = inspect.signature(function)
     shown = {name: p for name, p in signature.parameters.items() if p.kind != p.VAR_KEYWORD}
-    for name, kind in keywords.items():
-        shown.setdefault(name, parameter(name, None, kind))
-    for name in options:
-        shown.setdefault(name, parameter(name, default_of(name), Options.__annotations__[name]))
+    options = sorted(options, key=lambda name: (name in OUTPUTS, name not in USUAL))
+    for name in sorted((*keywords, *options), key=lambda name: (name in OUTPUTS, name not in USUAL, name not in keywords)):
+        shown.setdefault(name, parameter(name, None, keywords[name]) if name in keywords else
+                         parameter(name, default_of(name), Options.__annotations__[name]))
     function.__signature__ = signature.replace(parameters=list(shown.values()))
     function.__doc__ = re.sub(r"^( *)\{options\}$", lambda found: textwrap.indent("\n".join(describe(options)), found[1]),
                               function.__doc__ or "", flags=re.M)

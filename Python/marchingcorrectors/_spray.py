@@ -5,14 +5,24 @@ import dataclasses
 
 import numpy as np
 
+from ._call import prepare, words_of_file
 from ._functions import probe
 from ._library import InvalidArgument
 from ._options import PROBE
 from ._surface import CELLS
+from ._units import Units
 from ._usd import Spray
 from .io._particles import usual
 
-KEYWORDS = ("smoothing_length", "volume", "mass", "density", "solid", "within", "only", "device")
+KEYWORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid", "within", "only", "device")
+
+
+def fluid_of(words):
+    """Returns which particles are fluid, by the keywords of a function."""
+    words = dict(words)
+    arguments = prepare(Units(words.pop("positions")), words)
+    solid = arguments.input.solid
+    return np.ctypeslib.as_array(solid, (arguments.count,)) == 0 if solid else np.ones(arguments.count, bool)
 
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
@@ -24,14 +34,9 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
     """
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
-    own, every = particles.words(words), particles.positions
-    fluid = np.ones(len(every), bool) if own.get("solid") is None else np.asarray(own["solid"]) == 0
-    if own.get("only") is not None:
-        fluid &= own["only"]
-    if own.get("within") is not None:
-        fluid &= ((every >= own["within"][::2]) & (every <= own["within"][1::2])).all(axis=1)
-    fluid = np.flatnonzero(fluid)
     kept = {name: value for name, value in words.items() if name in PROBE or name in KEYWORDS}
+    own, every = words_of_file(particles, kept), particles.positions
+    fluid = np.flatnonzero(fluid_of(own))
     is_spray = probe(particles, every[fluid], **kept).weight_sum < iso
     label = label_pieces(surface.triangles, len(surface.points))
     small = small_pieces(surface, label, every, fluid, least)

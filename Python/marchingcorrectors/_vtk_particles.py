@@ -85,17 +85,17 @@ def varies(array, on_surface):
 
 
 def find_period(points):
-    """Returns the six bounds in the field data, or None."""
-    found, period = [], (ctypes.c_double * 6)()
+    """Returns the six bounds in the field data, or None; and the nine numbers of a tilted cell, or None."""
+    found, period, cell = [], (ctypes.c_double * 6)(), None
     for array in arrays_of(points.GetFieldData()):
-        name, count = as_bytes(name_of(array)), array.GetNumberOfValues()
-        if lib.mcor_tells_of_period(name) and count <= 6:
-            values = (ctypes.c_double * max(count, 1))(*to_numpy(array).ravel())
-            found.append(c.mcor_field_data(name=name, values=values, count=count))
+        name, numbers = as_bytes(name_of(array)), to_numpy(array).ravel()
+        if lib.mcor_tells_of_period(name):
+            cell = numbers.tolist() if len(numbers) == 9 else cell
+            values = (ctypes.c_double * max(len(numbers), 1))(*numbers[:9])
+            found.append(c.mcor_field_data(name=name, values=values, count=len(numbers)))
     count = lib.mcor_find_period((c.mcor_field_data * max(len(found), 1))(*found), len(found), period, None)
-    if count == 3:
-        return place_period(period[:3], points.GetBounds())
-    return list(period) if count else None
+    bounds = place_period(period[:3], points.GetBounds()) if count == 3 else list(period) if count else None
+    return bounds, None if bounds else cell
 
 
 class Request:
@@ -207,13 +207,11 @@ class Particles:
     def _sum(self, options, name, function, take, *more):
         """Returns the array of this name with sums over neighbours; if the last run had the same particles, its array."""
         given = self.arguments()
-        given.options, mass = options, self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_MASS"]]
+        given.options = options
         key = (*self.signatures()[0], options.sph_kernel, options.dimension, *options.periodic, *more)
         made = self.choice.Made.get(name, (None, None))
         if made[0] != key:
-            given.input = c.mcor_input.from_buffer_copy(given.input)
-            given.input.mass = mass
-            made = self.choice.Made[name] = key, self._wrap(name, given.per_neighbours(function, *more))
+            made = self.choice.Made[name] = key, self._wrap(name, given.per_neighbours(self._holder, function, *more))
         self._summed[name] = made[1]
         take(ctypes.byref(self.found), to_numpy(made[1]).ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 

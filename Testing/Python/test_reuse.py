@@ -59,7 +59,6 @@ class TestReuse(unittest.TestCase):
                     self.assertFalse(new == before)
                 before = new
 
-    @unittest.skipUnless(hasattr(vtkMarchingCorrectors, "Widen"), "The filter in Python finds the factors anew in each run.")
     def test_widening(self):
         """Factors, and the search grid, are kept for another iso value, but not for moved particles."""
         phases, data = [], cube()

@@ -34,7 +34,8 @@ class Command(unittest.TestCase):
         return path, other if PROGRAM else path
 
     def test_surface(self):
-        for words, program in (([], ["--free-surface"]), (["--scalar", "Velocity", "--iso", "1,2", "--kernel", "wendland"], [])):
+        for words, program in (([], ["--free-surface"]), (["--scalar", "Velocity", "--iso", "1,2", "--kernel", "wendland"], []),
+                               (["--scalar", "Pressure"], [])):
             mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *FLUID, *words, program=program))
             self.assertGreater(mine.n_cells, 10000)
             self.assertEqual((mine.points.tobytes(), mine.faces.tolist()), (its.points.tobytes(), its.faces.tolist()))
@@ -140,11 +141,16 @@ class Command(unittest.TestCase):
 
     def test_sentences(self):
         for words, sentence in ((["--field", "sum"], "--field is not for the free surface"),
-                                (["--scalar", "Velocity"], "give --iso"), (["--mass", "Msas"], "Did you mean 'Mass'"),
-                                (["--periodic", "auto"], "dam_break_45k.vtp tells no period. Give --periodic LX,LY,LZ"),
+                                (["--mass", "Msas"], "Did you mean 'Mass'"),
+                                (["--periodic", "auto"], "give no period: .* Give --periodic in numbers"),
                                 (["--dp", "1", "--smoothing-length", "1"], "leave one of them out")):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
+        for words, sentence in ((["--screenshot", "a.png"], "--screenshot is for the program marching-correctors, not for surface; leave it out"),
+                                (["--slice", "z=0"], "--slice is for slice, not for surface"),
+                                (["--smoth"], "there is no option --smoth. Did you mean '--smooth'?")):
+            self.run_it("surface", "a.ply", *words, status=2)
+            self.assertIn(sentence, self.said)
         self.run_it("surface", "a.ply", "--preview", program=["--free-surface"])
         self.assertIn("--fluid ParticleType=VALUE", self.said)
 

@@ -73,8 +73,8 @@ class Flux(unittest.TestCase):
         for sections, more, sentence in (
                 (("disc", (0, 0, 0), (1, 0), 1), {}, r"'0' has an array of the shape \(2,\) where it is \(3,\)"),
                 (("disc", (0, 0, 0), "x", 1), {}, "does not hold numbers"), (3, {}, "of the type int; they must be one section"),
-                ({"a": None}, {}, "section is None"), (DISC, {"mass": "a"}, "mass does not hold numbers"),
-                (DISC, {"mass": np.ones(3)}, r"The mass has the shape \(3,\), the volume")):
+                ({"a": None}, {}, "section is None"), (DISC, {"mass": "a"}, "mass is 'a', which is not a number"),
+                (DISC, {"mass": np.ones(3)}, r"The mass has the shape \(3,\); for 1728 particles")):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
                 mc.flux(X, UNIFORM, sections, **WORDS, **more)
 

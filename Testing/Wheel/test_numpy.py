@@ -173,6 +173,19 @@ class Results(unittest.TestCase):
         solid[near] = 0
         self.assertEqual(sphere(solid=solid), sphere(solid=~near))
 
+    def test_iso_value_about_the_median(self):
+        surface = mc.isosurface(POSITIONS, DISTANCE, smoothing_length=H, volume=V, outputs="iso_value")
+        value, = set(surface.iso_value)
+        self.assertEqual(surface.points.tobytes(), sphere(iso=value).points.tobytes())
+        self.assertLess(abs(value - np.median(DISTANCE)), 0.1)
+
+    def test_outputs(self):
+        named = sphere(outputs=("residual", "gradients"))
+        self.assertEqual(named, sphere(residual=True, gradients=True))
+        self.assertEqual(sphere(outputs="residual", normals=False), sphere(residual=True, normals=False))
+        self.assertEqual(mc.probe(POSITIONS, POSITIONS[:5], outputs=["gradients"], smoothing_length=H, attributes={"d": DISTANCE}),
+                         mc.probe(POSITIONS, POSITIONS[:5], gradients=True, smoothing_length=H, attributes={"d": DISTANCE}))
+
     def test_free_surface(self):
         surface = mc.free_surface(POSITIONS, smoothing_length=H)
         self.assertTrue(surface.statistics["is_closed"])
@@ -189,6 +202,16 @@ class Results(unittest.TestCase):
             plain = mc.free_surface(POSITIONS, smoothing_length=factors * H, level_limit=0, **{"volume": volume, **words})
             self.assertEqual(wide.points.tobytes(), plain.points.tobytes())
             self.assertEqual((wide.statistics["widening_min"], wide.statistics["widening_max"]), (factors.min(), 2))
+            line, disc, at = ((0.65, 0.65, 0.65), (3, 0.65, 0.65)), ("disc", (1.2, 0.65, 0.65), (1, 0, 0), 0.3), POSITIONS[::50] + 0.02
+            for call in (lambda **more: mc.probe(POSITIONS, at, attributes={"d": DISTANCE}, **more), lambda **more: mc.gauge(POSITIONS, line, **more),
+                         lambda **more: mc.flux(POSITIONS, POSITIONS, disc, **more),
+                         lambda **more: mc.project(POSITIONS, DISTANCE, resolution=20, **more)):
+                wide, plain = call(smoothing_length=H, widen=2, **given), call(smoothing_length=factors * H, **{"volume": volume, **given})
+                for name in ("values", "weight_sum", "last", "volume_flux"):
+                    one, other = (getattr(each, name, 0) for each in (wide, plain))
+                    np.testing.assert_allclose(*[each["d"] if isinstance(each, dict) else each for each in (one, other)], rtol=1e-6)
+                self.assertNotEqual(wide, call(smoothing_length=H, **given))
+                self.assertEqual(wide, call(smoothing_length=H, smooth=True, **given))
 
     def test_compact(self):
         usual, compact = (mc.free_surface(POSITIONS, smoothing_length=H, compact=compact) for compact in (False, True))
@@ -259,21 +282,15 @@ class Inputs(unittest.TestCase):
         self.assertGreater(len(halves.triangles), 500)
 
     def test_right_arrays_are_not_copied(self):
-        from marchingcorrectors._arrays import Arguments
+        from marchingcorrectors._call import prepare
+        from marchingcorrectors._units import Units
 
         for dtype in (np.float32, np.float64):
             positions, distance = lattice(dtype)
-            marks = np.zeros(N ** 3, np.uint8)
-            arguments = Arguments(positions)
-            arguments.set_quantities({"volume": distance})
-            arguments.set_solid(marks)
-            arguments.set_attributes({"a": distance})
+            arguments = prepare(Units(positions), {"smoothing_length": H, "volume": distance}, {"a": distance})
             self.assertEqual(arguments.input.positions.data, positions.ctypes.data)
             self.assertEqual(arguments.input.volume.data, distance.ctypes.data)
             self.assertEqual(arguments.input.attributes[0].data, distance.ctypes.data)
-            self.assertEqual(arguments.input.solid.contents.value, 0)
-            marks[0] = 3
-            self.assertEqual(arguments.input.solid.contents.value, 3)
 
     def test_odd_bytes(self):
         def unaligned(array):
@@ -304,10 +321,11 @@ class Refused(unittest.TestCase):
                    ("positions is None; it must be an array", {"positions": None}), ("is a set;", {"scalar": {1}}),
                    ("has the shape", {"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
                     {"scalar_dot": nothing}),  # The core reads 0 components as 1.
-                   ("iso value", {"iso": None}), ("The iso value is nan; it must be a finite number", {"iso": np.nan}),
+                   ("The iso value is nan; it must be a finite number", {"iso": np.nan}),
                    ("The iso value is inf", {"iso": [0.4, np.inf]}),
-                   ("wendland", {"sph_kernel": "gaussian"}), ("does not hold numbers", {"volume": text}),
-                   ("periodic is .*; it must be three lengths", {"periodic": True}, {"periodic": "auto"}),
+                   ("wendland", {"sph_kernel": "gaussian"}), ("'residual'.*Outputs are normals", {"outputs": "residul"}),
+                   ("'residual', but residual is False", {"outputs": ["residual"], "residual": False}), ("does not hold numbers", {"volume": text}),
+                   ("periodic is .*; it must be six bounds .*, or three lengths", {"periodic": True}, {"periodic": "auto"}),
                    ("not 'wendlnd'. Did you mean 'wendland'?", {"sph_kernel": "wendlnd"}),
                    ("", {"smoothing_length": "abc"}, {"iso": "x"}, {"iso": 1j}, {"iso": [[0.3, 0.4], [0.5, 0.6]]},
                     {"volume": [[1, 2], [3]]}, {"volume": masked}, {"attributes": {"a": masked}}, {"solid": text},
@@ -341,12 +359,21 @@ class Refused(unittest.TestCase):
         self.check((mc.InvalidArgument, mc.InvalidData),
                    ("six bounds", {"within": (0, 1)}, {"within": (0, np.nan, 0, 1, 0, 1)}),
                    ("lower ones first", {"within": (1, 0, 0, 1, 0, 1)}), ("within does not hold numbers", {"within": "abcdef"}),
-                   ("None of the 2744 particles is left by within", {"within": (5, 6, 5, 6, 5, 6)}),
                    ("Did you mean 'wall'.*Attributes: wall, x", {"only": {"walls": 1}}), ("not a number", {"only": {"wall": "a"}}),
                    ("lowest and the highest", {"only": {"wall": (1, 2, 3)}}), ("lower value", {"only": {"wall": (3, 1)}}),
                    ("'x'.*one number for each", {"only": {"x": 1}}), ("True or False for each of 2744", {"only": wall}),
                    attributes={"wall": wall, "x": POSITIONS})
-        self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}), call=mc.gauge, positions=POSITIONS,
+        for words in ({"within": (5, 6, 5, 6, 5, 6)}, {"only": wall < 0}, {"fluid": ("wall", 9)}, {"fluid": (wall, 9)}, {"solid": wall >= 0}):
+            with self.assertWarnsRegex(mc.InputWarning, says("NOTHING_WITHOUT_FLUID", "No particle (is|has) .*", "no surface")):
+                self.assertEqual(len(sphere(attributes={"wall": wall}, **words).points), 0)
+            with self.assertRaisesRegex(mc.InvalidData, "^No particle (is|has) .*, so there is no fluid"):
+                mc.derivatives(POSITIONS, {"wall": wall}, smoothing_length=H, **words)
+            with self.assertWarnsRegex(mc.InputWarning, "so there is no fluid and all gauges are dry"):
+                found = mc.gauge(POSITIONS, ((0, 0, 0), (1, 1, 1)), smoothing_length=H, **{"only": wall < 0})
+            self.assertEqual(found.state.tolist(), ["dry"])
+        self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
+            "solid": wall, "fluid": ("wall", 1)}), *((r'it must be \("NAME", VALUE\)', {"fluid": fluid}) for fluid in ("wall", 3, ("wall",), {})),
+                   ("value of fluid is 'x'", {"fluid": "wall=x"}), call=mc.gauge, positions=POSITIONS,
                    lines=((0, 0, 0), (1, 1, 1)), smoothing_length=H)
 
 

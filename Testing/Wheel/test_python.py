@@ -155,10 +155,10 @@ class Objects(unittest.TestCase):
         joined = mc.isosurface(again, "Velocity", 0.4, smoothing_length=H, volume=V, solid=np.zeros(COUNT, bool),
                                attributes=["Velocity"])
         np.testing.assert_allclose(np.linalg.norm(joined.attributes["Velocity"], axis=1), 0.4, atol=0.03)
-        with self.assertRaisesRegex(mc.InvalidArgument, "a.vtk tells no smoothing length. Give .*Arrays: distance, Type"):
+        with self.assertRaisesRegex(mc.InvalidArgument, says("NO_SMOOTHING_LENGTH", "", "", "Point arrays: distance, Type")):
             mc.free_surface(particles)
         told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
-        self.assertIn("choose solid=particles['Type'] != VALUE", str(told[0].message))
+        self.assertIn("choose fluid=('Type', VALUE)", str(told[0].message))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             left = [mc.free_surface(particles, smoothing_length=H, volume=V, only={"Type": 1}),
@@ -171,6 +171,26 @@ class Objects(unittest.TestCase):
                       for each in (data.sph.gauge, lambda *line, **words: mc.gauge(particles, *line, **words))]
         for each in left[:2] + shown:
             self.assertEqual(np.asarray(each.points).tobytes(), left[2].points.tobytes())
+        for fluid in (("Type", 1), "Type=1", {"Type": 1.0}, (particles["Type"], 1)):  # The same words mean the same fluid in all functions.
+            words = {"smoothing_length": H, "volume": V, "fluid": fluid}
+            line, disc = ((0.6, 0.6, 0.6), (0.6, 0.6, 2)), ("disc", (0.6, 0.6, 0.6), (1, 0, 0), 0.2)
+            x, solid = particles.positions, {"smoothing_length": H, "volume": V, "solid": particles["Type"] != 1}
+            attributes = {"attributes": {"Type": particles["Type"]}}
+            self.assertEqual(mc.free_surface(particles, **words), mc.free_surface(x, **solid))
+            self.assertEqual(mc.free_surface(x, **words, **attributes), mc.free_surface(x, **solid, **attributes))
+            self.assertEqual(data.sph.free_surface(**words).points.tobytes(), mc.free_surface(x, **solid).points.tobytes())
+            for name, arguments in (("gauge", [line]), ("flux", [particles["Velocity"], disc]), ("project", [particles["distance"]])):
+                expected = getattr(mc, name)(x, *arguments, **solid)
+                self.assertEqual(getattr(mc, name)(particles, *arguments, **words), expected)
+                if name != "flux":
+                    self.assertEqual(getattr(data.sph, name)(*arguments, **words), expected)
+            self.assertEqual(data.sph.flux(disc, particles["Velocity"], **words), mc.flux(x, particles["Velocity"], disc, **solid))
+        with self.assertRaisesRegex(mc.Error, "has no array 'Typ'. Did you mean 'Type'"):
+            mc.free_surface(particles, smoothing_length=H, volume=V, fluid=("Typ", 1))
+        boundary = pyvista.PolyData(POSITIONS)
+        boundary["IsWall"] = (np.arange(COUNT) % 2).astype(np.int32)
+        found = boundary.sph.free_surface(smoothing_length=H, volume=V, fluid="auto")
+        self.assertEqual(found.points.tobytes(), boundary.sph.free_surface(smoothing_length=H, volume=V, fluid="IsWall=0").points.tobytes())
         self.assertEqual((rows.n_points, len(rows["Gradients"]), gauges[0]), (COUNT, COUNT, gauges[1]))
         self.assertEqual(set(shown[0]["Type"]), {1})
         for call in (lambda **words: mc.free_surface(particles, smoothing_length=H, **words),

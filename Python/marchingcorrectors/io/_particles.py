@@ -8,9 +8,9 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .._find import choose_volumes, describe_unused, find_named
-from .._library import Error, lib, say
-from .._options import did_you_mean, words_of
+from .._find import Found, choose_volumes, describe_unused, find_named
+from .._library import Error, InvalidArgument, lib, say
+from .._options import BOUNDS, did_you_mean, words_of
 from .._warnings import warn
 
 # Solvers' names for their kernels begin like this, in letters and digits alone; the first that fits counts. Wendland's names are also PySPH's:
@@ -103,8 +103,6 @@ class Particles:
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
-    remedy = "solid=particles['{name}'] != VALUE (in a shell --fluid {name}=VALUE)"  # All particles count as fluid here.
-
     def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
                  **more: Any) -> None:
         self.file, self.layout = str(file), layout
@@ -180,6 +178,16 @@ class Particles:
             value = value * self.h_factor
         return value
 
+    def find_period(self, word):
+        """Returns the period that "auto" means."""
+        if word != "auto":
+            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", {BOUNDS}, or three lengths.")
+        if self.cell is not None:
+            raise InvalidArgument(f"{say('CELL_TILTED')} Leave periodic out.")
+        if self.period is None:
+            raise InvalidArgument(say("NO_PERIOD"))
+        return self.period
+
     def words(self, given, beside=False):
         """Returns keywords of the functions for NumPy; arguments that are given replace these. beside: masses and densities are wanted beside
         volumes."""
@@ -188,9 +196,14 @@ class Particles:
             words["smoothing_length"] = self.quantity("smoothing_length")
             if words["smoothing_length"] is not None:
                 words.setdefault("smoothing_length_is_support_radius", self.support_radius)
+            elif len(self):
+                names = {name: NO_VALUE for name in self.arrays}
+                raise InvalidArgument(Found(np.empty((len(self), 3)), names, ["sizes"]).error)
         self._choose_volumes(words, beside)
-        if words.get("solid") is None and self.solid is not None:
+        if words.get("solid") is None and words.get("fluid") is None and self.solid is not None:
             words["solid"] = self.solid
+        if isinstance(words.get("periodic"), str):
+            words["periodic"] = self.find_period(words["periodic"])
         if self.period is not None:
             words.setdefault("periodic", self.period)
         if self.cell is not None and words.get("periodic") is None:

@@ -62,8 +62,10 @@ void mcor_read_project_chunk(
   const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk)
 {
   const mcor_input* input = job->input;
+  double h[MCOR_CHUNK];
   mcor_read_positions(input, first, count, chunk->x);
-  mcor_read_smoothing_length(job->context, input, first, count, chunk->h);
+  mcor_read_smoothing_length(job->context, input, first, count, h);
+  mcor_widen_lengths(input, first, count, h, chunk->h);
   if (amounts)
   {
     mcor_read_amounts(job, first, count, chunk->amount);

@@ -132,31 +132,43 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   return MCOR_OK;
 }
 
-/* Moves particles to where `order` says, one array after the other, so that each may take the
- * place of the one before; then orders those of each cell. */
-static mcor_status mcor_move_particles(mcor_context* context)
+/* Orders the particles of each cell, then moves particles to where `order` says, one array after
+ * the other, so that each may take the place of the one before. An array whose elements are all
+ * the same is in order already. */
+static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
   mcor_stage_data* stage = &context->stage;
   const int count = grid->count;
+  const size_t size = context->cl.fix_size;
   mcor_buffer* from[] = { &stage->x, &stage->y, &stage->z, &stage->inv_h, &stage->size };
   mcor_buffer* to[] = { &grid->px, &grid->py, &grid->pz, &grid->inv_h, &grid->trim_weight };
+  MCOR_TRY(mcor_reserve_padded(context, &grid->px, count, size));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
+    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->x), MCOR_BUFFER(&stage->y),
+    MCOR_BUFFER(&stage->z), MCOR_BUFFER(&stage->inv_h), MCOR_BUFFER(&stage->size),
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px)));
+  const bool has_x = grid->most_in_cell <= MCOR_INSERTION_OF(context->cl.lanes);
+  const bool is_moved[] = { !has_x, true, true, !staging->one_inv_h, !staging->one_size };
   for (int i = 0; i < 5; ++i)
   {
-    MCOR_TRY(mcor_reserve_padded(context, to[i], count, context->cl.fix_size));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-      MCOR_BUFFER(&grid->order), MCOR_BUFFER(from[i]), MCOR_BUFFER(to[i]), MCOR_INT(0)));
+    if (is_moved[i])
+    {
+      MCOR_TRY(mcor_reserve_padded(context, to[i], count, size));
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
+        MCOR_BUFFER(&grid->order), MCOR_BUFFER(from[i]), MCOR_BUFFER(to[i]), MCOR_INT(0)));
+    }
+    else if (i > 0)
+    {
+      mcor_take_buffer(context, from[i], to[i]);
+      MCOR_TRY(mcor_reserve_padded(context, to[i], count, size));
+    }
     mcor_release(context, from[i]);
   }
   MCOR_TRY(mcor_reserve_padded(context, &grid->value, count, context->cl.real_size));
-  if (grid->has_solids)
-  {
-    MCOR_TRY(mcor_reserve_padded(context, &grid->fluid_weight, count, context->cl.real_size));
-  }
-  return MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
-    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
-    MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(&grid->trim_weight),
-    MCOR_BUFFER(&grid->order));
+  return grid->has_solids
+    ? mcor_reserve_padded(context, &grid->fluid_weight, count, context->cl.real_size)
+    : MCOR_OK;
 }
 
 /* Makes the tables in which queries look up the particles of a search cell: of all cells if they
@@ -200,9 +212,15 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   MCOR_TRY(mcor_write(
     context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
   MCOR_TRY(mcor_reserve(context, &grid->cell_keys, n * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
-    MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
+  bool is_simple = grid->level_count == 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    is_simple = is_simple && context->lattice.period[a] == 0;
+  }
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, mcor_batches(context, count),
+    MCOR_INT(count), MCOR_INT(is_simple), MCOR_BUFFER(&grid->level_buffer),
+    MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x), MCOR_BUFFER(&stage->y),
+    MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
   MCOR_RELEASE_EACH(context, &context->sort);
   cl_int most_in_cell = MCOR_USUAL_IN_CELL;
@@ -217,7 +235,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
       &stage->size, &stage->inv_h, 0, most_in_cell };
     MCOR_TRY(mcor_sort_same_keys(context, &sort));
   }
-  MCOR_TRY(mcor_move_particles(context));
+  MCOR_TRY(mcor_move_particles(context, staging));
   return mcor_index_cells(context, cells);
 }
 

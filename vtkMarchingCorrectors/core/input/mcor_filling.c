@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The bounds of the fluid are divided into so many cells along their longest side. */
 #define MCOR_FILLING_CELLS 32
@@ -16,68 +17,79 @@
 /* The densities of a liquid are within this factor, the low sums at its surface included. */
 #define MCOR_LIQUID_RANGE 2.0
 
-/* The ranges of x, y, z, smoothing length and density, each with the sign of the greatest value
- * changed, so that one reduction finds all; and whether there are solids. */
+/* The ranges of x, y, z, smoothing length and density of the fluid, each with the sign of the
+ * greatest value changed, so that one reduction finds all; and how many fluid particles and solids
+ * there are. */
 typedef struct mcor_filling
 {
   double least[10];
-  int64_t count, solids;
+  int64_t counts[2];
 } mcor_filling;
 
 static mcor_filling mcor_measure_filling(const mcor_input* input)
 {
-  mcor_filling found = { .count = 0 };
+  mcor_filling found = { .counts = { input->solid ? 0 : input->count } };
   const mcor_array positions = mcor_positions_of(input);
-  for (int k = 0; k < 10; ++k)
+  for (int k = 0; k < 5; ++k)
   {
-    found.least[k] = INFINITY;
+    const mcor_array* array = k < 3 ? &positions
+      : k < 4                       ? &input->smoothing_length
+                                    : &input->density;
+    double range[2];
+    mcor_find_range(
+      NULL, array, input->solid, MCOR_SKIP_SOLIDS, input->count, k < 3 ? k : 0, range);
+    found.least[k] = range[0];
+    found.least[5 + k] = -range[1];
   }
-  for (int64_t i = 0; i < input->count; ++i)
+  for (int64_t i = 0; i < input->count && input->solid; ++i)
   {
-    found.solids += input->solid && input->solid[i] && input->solid[i] != MCOR_ABSENT;
-    if (input->solid && input->solid[i])
-    {
-      continue;
-    }
-    ++found.count;
-    for (int k = 0; k < 5; ++k)
-    {
-      const double value = k < 3 ? mcor_array_at(&positions, i, k)
-        : k < 4                  ? mcor_array_at(&input->smoothing_length, i, 0)
-                                 : mcor_array_at(&input->density, i, 0);
-      found.least[k] = mcor_least(found.least[k], value);
-      found.least[5 + k] = mcor_least(found.least[5 + k], -value);
-    }
+    found.counts[0] += !input->solid[i];
+    found.counts[1] += input->solid[i] && input->solid[i] != MCOR_ABSENT;
   }
   return found;
 }
 
 /* Marks the cells that particles reach by their smoothing length. */
-static void mcor_mark_filling(const mcor_input* input, const mcor_filling* of, double length,
-  double size, const int cells[3], int64_t* marks)
+typedef struct mcor_filling_job
 {
-  const mcor_array positions = mcor_positions_of(input);
-  for (int64_t i = 0; i < input->count; ++i)
+  const mcor_input* input;
+  const double* low; /* of the bounds */
+  double length;     /* the smoothing length of all particles; 0: they have their own */
+  double size;
+  int cells[3], all;
+  uint8_t* marks; /* [MCOR_SLICES][all] */
+} mcor_filling_job;
+
+static void mcor_mark_filling(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_filling_job* job = data;
+  const mcor_input* input = job->input;
+  const mcor_array constant = { .constant = job->length }, positions = mcor_positions_of(input);
+  uint8_t* marks = job->marks + (size_t)slice * (size_t)job->all;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
-    if (input->solid && input->solid[i])
-    {
-      continue;
-    }
-    const double h = length > 0 ? length : mcor_array_at(&input->smoothing_length, i, 0);
-    int from[3], to[3];
     for (int a = 0; a < 3; ++a)
     {
-      const double x = mcor_array_at(&positions, i, a) - of->least[a];
-      from[a] = (int)fmax(0, fmin(cells[a] - 1, floor((x - h) / size)));
-      to[a] = (int)fmax(0, fmin(cells[a] - 1, floor((x + h) / size)));
+      mcor_read_array(&positions, first, count, a, x[a]);
     }
-    for (int z = from[2]; z <= to[2]; ++z)
+    mcor_read_array(job->length > 0 ? &constant : &input->smoothing_length, first, count, 0, h);
+    for (int i = 0; i < count; ++i)
     {
-      for (int y = from[1]; y <= to[1]; ++y)
+      int from[3], to[3];
+      for (int a = 0; a < 3; ++a)
       {
-        for (int x = from[0]; x <= to[0]; ++x)
+        const double at = x[a][i] - job->low[a], most = job->cells[a] - 1;
+        from[a] = (int)fmax(0, fmin(most, floor((at - h[i]) / job->size)));
+        to[a] = (int)fmax(0, fmin(most, floor((at + h[i]) / job->size)));
+      }
+      const bool is_marked = (!input->solid || !input->solid[first + i]) && from[0] <= to[0];
+      for (int z = from[2]; z <= to[2] && is_marked; ++z)
+      {
+        for (int y = from[1]; y <= to[1]; ++y)
         {
-          marks[x + cells[0] * (y + (int64_t)cells[1] * z)] = 1;
+          const size_t row = (size_t)job->cells[0] * (size_t)(y + job->cells[1] * z);
+          memset(marks + row + from[0], 1, (size_t)(to[0] - from[0] + 1));
         }
       }
     }
@@ -88,7 +100,7 @@ static bool mcor_fills_bounds(
   const mcor_input* input, const mcor_ranks* ranks, const mcor_filling* of)
 {
   double longest = 0, filled = 1;
-  int axes = 0, cells[3], all = 1;
+  int axes = 0;
   for (int a = 0; a < 3; ++a)
   {
     const double side = -of->least[5 + a] - of->least[a];
@@ -96,50 +108,56 @@ static bool mcor_fills_bounds(
     filled *= side > 0 ? side : 1;
     axes += side > 0;
   }
-  const double size = longest / MCOR_FILLING_CELLS;
-  if (!(size > 0) || !isfinite(size))
+  const bool is_known =
+    !input->estimate_smoothing_length && mcor_is_given(&input->smoothing_length);
+  mcor_filling_job job = { .input = input,
+    .low = of->least,
+    .length = is_known ? 0 : pow(filled / (double)of->counts[0], 1.0 / axes),
+    .size = longest / MCOR_FILLING_CELLS,
+    .all = 1 };
+  if (!(job.size > 0) || !isfinite(job.size))
   {
     return false;
   }
   for (int a = 0; a < 3; ++a)
   {
-    cells[a] = (int)fmax(1, ceil((-of->least[5 + a] - of->least[a]) / size));
-    all *= cells[a];
+    job.cells[a] = (int)fmax(1, ceil((-of->least[5 + a] - of->least[a]) / job.size));
+    job.all *= job.cells[a];
   }
-  const bool is_known =
-    !input->estimate_smoothing_length && mcor_is_given(&input->smoothing_length);
-  const double spacing = pow(filled / (double)of->count, 1.0 / axes);
-  int64_t* marks = calloc((size_t)all, sizeof *marks);
-  int64_t reached = 0;
-  if (marks)
+  int64_t* reached = calloc((size_t)job.all, sizeof *reached);
+  job.marks = calloc((size_t)job.all, MCOR_SLICES);
+  int64_t count = 0;
+  if (reached && job.marks)
   {
-    mcor_mark_filling(input, of, is_known ? 0 : spacing, size, cells, marks);
-    if (ranks && ranks->reduce_counts(ranks->user, MCOR_GREATEST, marks, all))
+    const int slices =
+      mcor_parallel_for(NULL, input->count, MCOR_LIGHT_GRAIN, mcor_mark_filling, &job);
+    for (int i = 0; i < slices * job.all; ++i)
     {
-      all = INT32_MAX; /* another rank failed */
+      reached[i % job.all] |= job.marks[i];
     }
-    for (int i = 0; i < all && all < INT32_MAX; ++i)
+    const bool failed = ranks && ranks->reduce_counts(ranks->user, MCOR_GREATEST, reached, job.all);
+    for (int i = 0; i < job.all && !failed; ++i)
     {
-      reached += marks[i];
+      count += reached[i];
     }
   }
-  free(marks);
-  return (double)reached >= MCOR_FILLING_SHARE * all;
+  free(reached);
+  free(job.marks);
+  return (double)count >= MCOR_FILLING_SHARE * job.all;
 }
 
 int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks)
 {
   mcor_filling found = mcor_measure_filling(input);
-  int64_t counts[2] = { found.count, found.solids };
   if (ranks &&
-    (ranks->reduce_counts(ranks->user, MCOR_SUM_OF, counts, 2) ||
+    (ranks->reduce_counts(ranks->user, MCOR_SUM_OF, found.counts, 2) ||
       ranks->reduce_doubles(ranks->user, MCOR_LEAST, found.least, 10)))
   {
     return 1; /* another rank failed */
   }
-  found.count = counts[0];
   const double h = found.least[3], rho = found.least[4];
   const bool is_liquid =
     rho > 0 && -found.least[9] <= MCOR_LIQUID_RANGE * rho && -found.least[8] == h;
-  return counts[1] > 0 || found.count == 0 || is_liquid || !mcor_fills_bounds(input, ranks, &found);
+  return found.counts[1] > 0 || found.counts[0] == 0 || is_liquid ||
+    !mcor_fills_bounds(input, ranks, &found);
 }

@@ -23,7 +23,8 @@ static inline void mcor_read_floats(const float* data, int64_t stride, int count
   }
 }
 
-void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out)
+MCOR_VECTOR_LOOPS void mcor_read_array(
+  const mcor_array* array, int64_t first, int count, int component, double* out)
 {
   const int64_t stride = mcor_components(array), begin = first * stride + component;
   const float* floats = array->data;
@@ -41,8 +42,20 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
   }
 }
 
-void mcor_read_positions(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
+MCOR_VECTOR_LOOPS void mcor_read_positions(
+  const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
 {
+  if (input->positions.type != MCOR_FLOAT64 && mcor_components(&input->positions) == 3)
+  {
+    const float* data = (const float*)input->positions.data + 3 * first;
+    for (int i = 0; i < count; ++i) /* reads memory once for the three */
+    {
+      x[0][i] = (double)data[3 * i];
+      x[1][i] = (double)data[3 * i + 1];
+      x[2][i] = (double)data[3 * i + 2];
+    }
+    return;
+  }
   for (int a = 0; a < 3; ++a)
   {
     mcor_read_array(&input->positions, first, count, a, x[a]);
@@ -62,7 +75,7 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
 /* Elements that are tested together; one by one, each test would wait for the one before. */
 #define MCOR_ELEMENTS 4
 
-void mcor_widen_range(const double* x, int count, double* low, double* high)
+MCOR_VECTOR_LOOPS void mcor_widen_range(const double* x, int count, double* low, double* high)
 {
   double least[MCOR_ELEMENTS], most[MCOR_ELEMENTS];
   int i = 0;
@@ -190,7 +203,7 @@ typedef struct mcor_legal_job
     illegal |= !((x <= most) & (positive ? x > 0 : x >= -most));                                   \
   }
 
-static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
+MCOR_VECTOR_LOOPS static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
   const bool positive = job->positive;

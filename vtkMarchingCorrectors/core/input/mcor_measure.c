@@ -96,7 +96,26 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK])
+/* Whether a watched particle may reach a place in these bounds. */
+static bool mcor_watch_reaches(const mcor_watch* watch, const double low[3], const double high[3])
+{
+  uint32_t all = UINT32_MAX;
+  for (int a = 0; a < 3; ++a)
+  {
+    uint32_t reached = 0;
+    const int last = mcor_watch_cell(watch, a, high[a]);
+    for (int c = mcor_watch_cell(watch, a, low[a]); c <= last; ++c)
+    {
+      reached |= watch->reached[a][c];
+    }
+    all &= reached;
+  }
+  return all;
+}
+
+/* low, high: bounds of the positions. */
+static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
+  const double low[3], const double high[3])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   double* beyond = watch->beyond[slice];
@@ -105,6 +124,10 @@ static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
+  }
+  if (!mcor_watch_reaches(watch, low, high))
+  {
+    return;
   }
   int cell[3][MCOR_CHUNK];
   for (int a = 0; a < 3; ++a)
@@ -242,34 +265,42 @@ enum
 /* The most that one factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes
- * may be taken first: rounding keeps the order of numbers. */
-static void mcor_measure_chunk(
-  const mcor_places* chunk, bool solids, double reach, mcor_findings* r)
+/* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all lengths
+ * are one, the extremes may be taken first: rounding keeps the order of numbers. */
+static void mcor_measure_chunk(const mcor_places* chunk, bool is_widened, bool solids, double reach,
+  const double low[3], const double high[3], mcor_findings* r)
 {
-  double h_min = DBL_MAX, h_max = -DBL_MAX, least = DBL_MAX, most = -DBL_MAX;
+  double h_min = DBL_MAX, h_max = -DBL_MAX;
   mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
-  mcor_widen_range(chunk->length, chunk->count, &least, &most);
+  double least = h_min, most = h_max;
+  if (is_widened)
+  {
+    least = DBL_MAX;
+    most = -DBL_MAX;
+    mcor_widen_range(chunk->length, chunk->count, &least, &most);
+  }
   for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
     const double* x = chunk->x[a];
-    double low = DBL_MAX, high = -DBL_MAX;
-    mcor_widen_range(x, chunk->count, &low, &high);
-    mcor_add_range(r, MCOR_SPOTS + a, low, high);
+    mcor_add_range(r, MCOR_SPOTS + a, low[a], high[a]);
     if (!solids)
     {
-      mcor_add_range(r, MCOR_PLACES + a, low, high);
+      mcor_add_range(r, MCOR_PLACES + a, low[a], high[a]);
     }
     if (least == most)
     {
-      mcor_add_range(r, MCOR_REACHES + a, low - least * reach, high + least * reach);
+      mcor_add_range(r, MCOR_REACHES + a, low[a] - least * reach, high[a] + least * reach);
       continue;
     }
+    double below[MCOR_CHUNK], above[MCOR_CHUNK], unused[2] = { -DBL_MAX, DBL_MAX };
     for (int i = 0; i < chunk->count; ++i)
     {
       const double support = chunk->length[i] * reach;
-      mcor_add_range(r, MCOR_REACHES + a, x[i] - support, x[i] + support);
+      below[i] = x[i] - support;
+      above[i] = x[i] + support;
     }
+    mcor_widen_range(below, chunk->count, &r->least[MCOR_REACHES + a], &unused[0]);
+    mcor_widen_range(above, chunk->count, &unused[1], &r->most[MCOR_REACHES + a]);
   }
   if (chunk->count > 0)
   {
@@ -350,14 +381,21 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     mcor_part_chunk(solid, &part[0], &part[1]);
     for (int k = 0; k < 2; ++k)
     {
+      double low[3], high[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        low[a] = DBL_MAX;
+        high[a] = -DBL_MAX;
+        mcor_widen_range(part[k].x[a], part[k].count, &low[a], &high[a]);
+      }
       r.sums[k] += part[k].count;
       if (k == 0 || !input->ignore_solids)
       {
-        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x);
+        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x, low, high);
       }
       if (k == 0 || context->kept.uses_solids)
       {
-        mcor_measure_chunk(&part[k], k == 1, job->reach, &r);
+        mcor_measure_chunk(&part[k], is_widened, k == 1, job->reach, low, high, &r);
       }
     }
   }

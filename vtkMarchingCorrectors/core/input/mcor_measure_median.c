@@ -37,29 +37,31 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   mcor_bin_job* job = data;
   const uint8_t* solid = job->input->solid;
   const double width = job->high / MCOR_BINS - job->low / MCOR_BINS;
-  double chunk[MCOR_CHUNK];
+  double chunk[MCOR_CHUNK], part[MCOR_CHUNK];
   for (int b = 0; b < MCOR_BINS; ++b)
   {
     job->count[slice][b] = 0;
     job->least[slice][b] = job->minus[slice][b] = INFINITY;
   }
-  for (int64_t i = first; i < last; ++i)
+  for (int n; (n = mcor_chunk_of(last - first)) > 0; first += n)
   {
-    const int64_t at = (i - first) % MCOR_CHUNK;
-    if (at == 0)
-    {
-      mcor_read_scalar(job->input, i, mcor_chunk_of(last - i), chunk);
-    }
-    const double v = chunk[at];
-    if (isfinite(v) && v >= job->low && v <= job->high && !(solid && solid[i]))
+    mcor_read_scalar(job->input, first, n, chunk);
+    for (int i = 0; i < n; ++i)
     {
       /* Halved, because the difference may be too large for a number. */
-      const double part = (0.5 * v - 0.5 * job->low) / width * 2;
-      const int b = part < MCOR_BINS - 1 ? (int)part : MCOR_BINS - 1;
-      double *least = &job->least[slice][b], *minus = &job->minus[slice][b];
-      ++job->count[slice][b];
-      *least = v < *least ? v : *least;
-      *minus = -v < *minus ? -v : *minus;
+      part[i] = (0.5 * chunk[i] - 0.5 * job->low) / width * 2;
+    }
+    for (int i = 0; i < n; ++i)
+    {
+      const double v = chunk[i];
+      if (isfinite(v) && v >= job->low && v <= job->high && !(solid && solid[first + i]))
+      {
+        const int b = part[i] < MCOR_BINS - 1 ? (int)part[i] : MCOR_BINS - 1;
+        double *least = &job->least[slice][b], *minus = &job->minus[slice][b];
+        ++job->count[slice][b];
+        *least = v < *least ? v : *least;
+        *minus = -v < *minus ? -v : *minus;
+      }
     }
   }
 }

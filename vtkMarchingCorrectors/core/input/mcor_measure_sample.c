@@ -60,25 +60,27 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   mcor_sampling* job = data;
   const mcor_input* input = job->input;
   double x[3][MCOR_CHUNK];
+  uint64_t hash[MCOR_CHUNK];
   for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
     mcor_read_positions(input, first, count, x);
+    for (int i = 0; i < count; ++i) /* alone, so that processors hash several at once */
+    {
+      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      hash[i] = mcor_hash_position(at);
+    }
     for (int i = 0; i < count; ++i)
     {
       const int64_t particle = first + i;
       const bool is_solid = input->solid && input->solid[particle];
       mcor_sample_list* found = &job->found[slice][is_solid];
-      mcor_sample sample = { .x = { x[0][i], x[1][i], x[2][i] } };
-      if (!mcor_is_present(input, particle) || !isfinite(x[0][i]) || !isfinite(x[1][i]) ||
+      if ((found->count == found->most && hash[i] > found->of[found->most - 1].hash) ||
+        !mcor_is_present(input, particle) || !isfinite(x[0][i]) || !isfinite(x[1][i]) ||
         !isfinite(x[2][i]))
       {
         continue;
       }
-      sample.hash = mcor_hash_position(sample.x);
-      if (found->count == found->most && sample.hash > found->of[found->most - 1].hash)
-      {
-        continue;
-      }
+      mcor_sample sample = { .hash = hash[i], .x = { x[0][i], x[1][i], x[2][i] } };
       if (!is_solid)
       {
         mcor_read_smoothing_length(job->context, input, particle, 1, &sample.h);

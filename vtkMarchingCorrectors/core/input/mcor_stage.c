@@ -5,6 +5,7 @@
  * in input order; in a periodic box their images, too. */
 
 #include "mcor_stage.h"
+#include "mcor_adaptive.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
@@ -46,7 +47,7 @@ typedef struct mcor_stage_chunk
 } mcor_stage_chunk;
 
 /* Reads positions and smoothing lengths of a chunk whose count is set. */
-static void mcor_read_stage_places(
+MCOR_VECTOR_LOOPS static void mcor_read_stage_places(
   const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk)
 {
   const mcor_context* context = staging->context;
@@ -54,11 +55,11 @@ static void mcor_read_stage_places(
   const mcor_reach_box* reach = staging->reach;
   const int count = chunk->count;
   double h[MCOR_CHUNK];
+  mcor_read_positions(staging->input, first, count, chunk->x);
   for (int a = 0; a < 3; ++a)
   {
     const double origin = (double)lattice->origin[a], scale = (double)lattice->step[a];
     double* x = chunk->x[a];
-    mcor_read_array(&staging->input->positions, first, count, a, x);
     for (int i = 0; i < count; ++i)
     {
       x[i] = (x[i] / lattice->edge[a] - origin) * scale;
@@ -70,10 +71,14 @@ static void mcor_read_stage_places(
   }
   mcor_read_smoothing_length(context, staging->input, first, count, h);
   mcor_widen_lengths(staging->input, first, count, h, chunk->h);
-  for (int i = 0; i < count; ++i)
+  memset(chunk->level, 0, (size_t)count);
+  for (int i = 0; i < count && mcor_is_adaptive(lattice); ++i)
   {
     chunk->level[i] =
       (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->levels - 1);
+  }
+  for (int i = 0; i < count; ++i)
+  {
     chunk->source[i] = (int32_t)(first + i);
   }
 }
@@ -215,23 +220,64 @@ int mcor_spared_bits(const mcor_context* context, double support, double cube, i
   return bits > 0 ? bits : 0;
 }
 
+/* Whether all numbers are the same as one. */
+MCOR_VECTOR_LOOPS static bool mcor_is_all_one(const double* x, int count, double one)
+{
+  int64_t differ = 0; /* as wide as the numbers, so that compilers vectorise the loop */
+  for (int i = 0; i < count; ++i)
+  {
+    differ |= x[i] == one ? 0 : 1;
+  }
+  return !differ;
+}
+
+/* Whether all numbers are in a range. */
+MCOR_VECTOR_LOOPS static bool mcor_is_all_within(
+  const double* x, int count, double least, double most)
+{
+  int64_t beyond = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    beyond |= (x[i] >= least) & (x[i] <= most) ? 0 : 1;
+  }
+  return !beyond;
+}
+
+/* Writes the inverse scaled lengths of a chunk's kernels, in cubes. */
+MCOR_VECTOR_LOOPS static void mcor_invert_lengths(
+  const mcor_context* context, const mcor_stage_chunk* chunk, double* inv_h)
+{
+  const double scaled_cube = context->lattice.cube / context->run.options->h_scale;
+  const double* h = chunk->h;
+  const bool one = mcor_is_all_one(h, chunk->count, h[0]); /* then one division is enough */
+  const double inverse = scaled_cube / h[0];
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    inv_h[i] = one ? inverse : scaled_cube / h[i];
+  }
+}
+
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
-static void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to)
+MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
+  const mcor_staging* staging, mcor_stage_chunk* chunk, const double* inv_h, int64_t to)
 {
   const mcor_context* context = staging->context;
   const uint8_t* solid = staging->input->solid;
   const mcor_measure* m = &context->measure;
   const int count = chunk->count, top = context->lattice.levels - 1;
-  const double h_scale = context->run.options->h_scale, cube = context->lattice.cube,
-               scaled_cube = cube / h_scale;
+  const double h_scale = context->run.options->h_scale, cube = context->lattice.cube;
   const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
   uint8_t* level = (uint8_t*)staging->level + to;
   /* Rounds positions to the digits that evaluations use. */
   const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
+  double unit = 1;
   for (int i = 0; i < count && are_rounded; ++i)
   {
-    const double unit =
-      ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
+    const bool is_like_last =
+      i > 0 && chunk->h[i] == chunk->h[i - 1] && chunk->level[i] == chunk->level[i - 1];
+    unit = is_like_last
+      ? unit
+      : ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
@@ -275,7 +321,7 @@ static void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk
   }
   for (int i = 0; i < count; ++i)
   {
-    mcor_put_real(context, staging->inv_h, to + i, scaled_cube / chunk->h[i]);
+    mcor_put_real(context, staging->inv_h, to + i, inv_h[i]);
   }
   if (context->source)
   {
@@ -289,12 +335,11 @@ static double mcor_weight_limit(const mcor_context* context)
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
 }
 
-/* Returns the weight of particle i of a chunk on the device: large where the volume is huge
- * against the smoothing length. */
-static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
+/* Returns a particle's weight on the device: large where the volume is huge against the smoothing
+ * length. */
+static double mcor_stage_weight(double size, double inv_h)
 {
-  const double inv_h = context->lattice.cube / context->run.options->h_scale / chunk->h[i];
-  return chunk->size[i] * inv_h * inv_h * inv_h;
+  return size * inv_h * inv_h * inv_h;
 }
 
 /* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy, or
@@ -305,39 +350,43 @@ static void mcor_stage_chunk_at(
   const mcor_context* context = staging->context;
   const mcor_lattice* lattice = &context->lattice;
   const double limit = mcor_weight_limit(context);
-  const int weighed = mcor_needs_density(staging->input) ? 0 : chunk->count;
-  int outside = *to + chunk->count > slice->to + slice->used;
-  for (int a = 0; a < 3; ++a)
+  const int count = chunk->count, weighed = mcor_needs_density(staging->input) ? 0 : count;
+  double inv_h[MCOR_CHUNK], weight[MCOR_CHUNK];
+  bool changed = slice->changed || *to + count > slice->to + slice->used ||
+    !mcor_is_all_within(chunk->h, count, DBL_TRUE_MIN, staging->h_max);
+  for (int a = 0; a < 3 && !changed; ++a)
   {
     const double high = (double)lattice->last[a] * (double)lattice->step[a];
-    for (int i = 0; i < chunk->count; ++i)
-    {
-      outside |= !(chunk->x[a][i] >= 0 && chunk->x[a][i] <= high);
-    }
+    changed = !mcor_is_all_within(chunk->x[a], count, 0, high);
   }
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    outside |= !(chunk->h[i] > 0 && chunk->h[i] <= staging->h_max);
-  }
-  slice->changed = slice->changed || outside;
-  if (slice->changed || slice->heavy >= 0)
+  slice->changed = changed;
+  if (changed || slice->heavy >= 0 || count == 0)
   {
     return;
   }
-  double largest = slice->largest_weight;
-  int64_t heavy = -1;
+  mcor_invert_lengths(context, chunk, inv_h);
   for (int i = 0; i < weighed; ++i)
   {
-    const double weight = mcor_stage_weight(context, chunk, i);
-    heavy = heavy < 0 && !(weight < limit) ? chunk->source[i] : heavy;
-    largest = weight > largest ? weight : largest;
+    weight[i] = mcor_stage_weight(chunk->size[i], inv_h[i]);
   }
-  slice->largest_weight = largest;
-  slice->heavy = heavy;
-  if (heavy < 0)
+  const bool heavy = !mcor_is_all_within(weight, weighed, 0, limit);
+  double unused = DBL_MAX;
+  mcor_widen_range(weight, weighed, &unused, &slice->largest_weight);
+  for (int i = 0; i < weighed && heavy && slice->heavy < 0; ++i)
   {
-    mcor_store_stage_chunk(staging, chunk, *to);
-    *to += chunk->count;
+    slice->heavy = weight[i] <= limit ? -1 : chunk->source[i];
+  }
+  if (!heavy)
+  {
+    mcor_store_stage_chunk(staging, chunk, inv_h, *to);
+    if (*to == slice->to)
+    {
+      slice->inv_h = inv_h[0];
+      slice->size = chunk->size[0];
+    }
+    slice->one_inv_h = slice->one_inv_h && mcor_is_all_one(inv_h, count, slice->inv_h);
+    slice->one_size = slice->one_size && mcor_is_all_one(chunk->size, count, slice->size);
+    *to += count;
   }
 }
 
@@ -388,6 +437,7 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   int64_t to = slice->to, begin = first;
   mcor_stage_chunk chunk, out;
   slice->heavy = -1;
+  slice->one_inv_h = slice->one_size = true;
   out.count = 0;
   while (
     slice->heavy < 0 && !slice->changed && (chunk.count = mcor_next_run(staging, &begin, last)) > 0)
@@ -444,7 +494,9 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
   staging->view_count = MCOR_STAGE_VIEWS;
   for (int i = 0; i < MCOR_STAGE_VIEWS && count > 0; ++i)
   {
-    MCOR_TRY(mcor_reserve(context, buffers[i], views[i].bytes));
+    /* The search grid may take a buffer as it is, see mcor_move_particles. */
+    const size_t padded = views[i].bytes + MCOR_PADDING * context->cl.real_size;
+    MCOR_TRY(mcor_reserve(context, buffers[i], padded));
     MCOR_TRY(mcor_map(context, buffers[i], views[i].bytes, true, views[i].data));
   }
   return MCOR_OK;
@@ -463,6 +515,8 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
     mcor_needs_density(staging->input) ? 100 * pow(options->h_scale, -3) : 0;
   MCOR_FAIL_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(H_SCALE_TOO_SMALL), options->h_scale);
+  const mcor_stage_slice* one = NULL; /* the first slice with images */
+  staging->one_inv_h = staging->one_size = true;
   for (int i = 0; i < slices; ++i)
   {
     const mcor_stage_slice* slice = &staging->slices[i];
@@ -471,14 +525,21 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
     if (slice->heavy >= 0)
     {
       mcor_stage_chunk chunk = { .count = 1 };
+      double inv_h;
       staging->reach = NULL;
       mcor_read_stage_places(staging, slice->heavy, &chunk);
       mcor_read_stage_sizes(staging, slice->heavy, &chunk);
+      mcor_invert_lengths(context, &chunk, &inv_h);
       return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
-        (long long)slice->heavy, mcor_stage_weight(context, &chunk, 0),
+        (long long)slice->heavy, mcor_stage_weight(chunk.size[0], inv_h),
         context->cl.real_size == sizeof(float) ? "single" : "double");
     }
     context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
+    one = slice->used > 0 && !one ? slice : one;
+    staging->one_inv_h =
+      staging->one_inv_h && (slice->used == 0 || (slice->one_inv_h && slice->inv_h == one->inv_h));
+    staging->one_size =
+      staging->one_size && (slice->used == 0 || (slice->one_size && slice->size == one->size));
   }
   return MCOR_OK;
 }

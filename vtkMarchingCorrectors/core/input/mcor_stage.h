@@ -13,7 +13,9 @@ typedef struct mcor_stage_slice
   int64_t heavy;    /* the first particle whose weight is too large, or -1 */
   bool changed;     /* values differ from the measured ones: another thread writes to the arrays */
   double largest_weight;
-  double farthest; /* the largest reach, in cubes, of the particles that reach the box */
+  double inv_h, size;       /* those of the first image */
+  bool one_inv_h, one_size; /* whether all images have these */
+  double farthest;          /* the largest reach, in cubes, of the particles that reach the box */
 } mcor_stage_slice;
 
 /* The input in the device's form, in input order, without unused solids. The arrays are views of
@@ -29,10 +31,11 @@ typedef struct mcor_staging
   void* level;                          /* uint8_t */
   mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of these six, once there are any */
   int view_count;
-  double size_scale;     /* see mcor_size_scale */
-  double h_max;          /* the largest support that was measured, with rounding */
-  mcor_reach_box* reach; /* NULL: all particles are needed */
-  uint8_t* images;       /* by particle: whether an image is staged; NULL without reach */
+  double size_scale;        /* see mcor_size_scale */
+  double h_max;             /* the largest support that was measured, with rounding */
+  mcor_reach_box* reach;    /* NULL: all particles are needed */
+  bool one_inv_h, one_size; /* whether all elements of these arrays are the same */
+  uint8_t* images;          /* by particle: whether an image is staged; NULL without reach */
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;
 

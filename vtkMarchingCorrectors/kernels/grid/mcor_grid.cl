@@ -4,17 +4,34 @@
 /* Search grid [III-A]: particles sorted by cell; volumes. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one particle. Reads position and level. Writes the key of its search cell. */
-__kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
+/* One work-item = a batch of particles. Reads positions and levels. Writes the keys of their search
+ * cells. is_simple: there is one level, and no period. */
+__kernel void mcor_grid_key(const int count, const int is_simple, __global const mcor_level* levels,
   __global const uchar* level_of, __global const fix* x, __global const fix* y,
   __global const fix* z, __global ulong* keys)
 {
-  MCOR_ITEM(i, i < count);
-  __global const mcor_level* level = levels + level_of[i];
-  const ulong cell_x = mcor_cell_of_particle(level, 0, x[i]);
-  const ulong cell_y = mcor_cell_of_particle(level, 1, y[i]);
-  const ulong cell_z = mcor_cell_of_particle(level, 2, z[i]);
-  keys[i] = level->base + (cell_z * level->cells[1] + cell_y) * level->cells[0] + cell_x;
+  const int begin = get_global_id(0) * MCOR_BATCH, end = min(begin + MCOR_BATCH, count);
+  if (is_simple) /* what does not change is read once, so that compilers vectorise the loop */
+  {
+    const mcor_level level = levels[0];
+    const uint row = level.cells[0], layer = level.cells[1];
+    for (int i = begin; i < end; ++i)
+    {
+      const uint cell_x = clamp((int)((float)x[i] * level.inv_cell[0]), 0, level.cells[0] - 1);
+      const uint cell_y = clamp((int)((float)y[i] * level.inv_cell[1]), 0, level.cells[1] - 1);
+      const uint cell_z = clamp((int)((float)z[i] * level.inv_cell[2]), 0, level.cells[2] - 1);
+      keys[i] = level.base + ((ulong)cell_z * layer + cell_y) * row + cell_x;
+    }
+    return;
+  }
+  for (int i = begin; i < end; ++i)
+  {
+    __global const mcor_level* level = levels + level_of[i];
+    const ulong cell_x = mcor_cell_of_particle(level, 0, x[i]);
+    const ulong cell_y = mcor_cell_of_particle(level, 1, y[i]);
+    const ulong cell_z = mcor_cell_of_particle(level, 2, z[i]);
+    keys[i] = level->base + (cell_z * level->cells[1] + cell_y) * level->cells[0] + cell_x;
+  }
 }
 
 /* One work-item = the cells that begin in a batch of sorted keys. Raises `most` to the largest
@@ -52,51 +69,79 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 /* Most elements of an insertion sort. */
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
 
-/* Sorts elements from[0 .. count) of an array in place. */
-#define MCOR_GRID_PERMUTE(type, array)                                                             \
-  {                                                                                                \
-    type old[MCOR_INSERTION_LIMIT];                                                                \
-    for (int i = 0; i < count; ++i)                                                                \
-    {                                                                                              \
-      old[i] = array[i];                                                                           \
-    }                                                                                              \
-    for (int i = 0; i < count; ++i)                                                                \
-    {                                                                                              \
-      array[i] = old[from[i]];                                                                     \
-    }                                                                                              \
-  }
+#if MCOR_LANES > 1
+#define MCOR_LOAD_OWN MCOR_CAT(vload, MCOR_LANES)
+#define MCOR_STORE_OWN MCOR_CAT(vstore, MCOR_LANES)
 
-/* Sorts the particles of each of several whole cells. */
-void mcor_grid_insert(__global const ulong* keys, __global fix* x, __global fix* y, __global fix* z,
-  __global real* inv_h, __global real* size, __global int* order, int count)
+/* Sorts a cell by x, unless two of its particles share it: then returns false. A particle's place
+ * is the number of particles before it, which is counted for several at once. */
+bool mcor_grid_rank(
+  const fix* own, const int* item, int cell, int end, __global int* order, __global fix* px)
 {
-  fix sorted[MCOR_INSERTION_LIMIT];
-  int from[MCOR_INSERTION_LIMIT];
-  for (int i = 0, cell = 0; i < count; ++i)
+  fixv most = 1;
+  for (int begin = cell; begin < end; begin += MCOR_LANES)
   {
-    const fix item = x[i];
-    cell = i > 0 && keys[i] == keys[i - 1] ? cell : i;
-    int to = i;
-    for (; to > cell &&
-         (item < sorted[to - 1] ||
-           (item == sorted[to - 1] && mcor_grid_before(x, y, z, inv_h, size, i, from[to - 1])));
-         --to)
+    const fixv at = MCOR_LOAD_OWN(0, own + begin);
+    fixv before = 0, same = 0;
+    for (int k = cell; k < end; ++k)
     {
-      sorted[to] = sorted[to - 1];
-      from[to] = from[to - 1];
+      before -= (fixv)own[k] < at;
+      same -= (fixv)own[k] == at;
     }
-    sorted[to] = item;
-    from[to] = i;
+    for (int lane = 0; lane < MCOR_LANES && begin + lane < end; ++lane)
+    {
+      const int to = cell + (int)MCOR_GET_FIX(before, lane);
+      px[to] = own[begin + lane];
+      order[to] = item[begin + lane];
+    }
+    most = max(most, mcor_lane_index() < (fixv)(end - begin) ? same : (fixv)1);
   }
+  return !MCOR_ANY(most > (fixv)1);
+}
+#endif
+
+/* Sorts the particles of each of several whole cells. keys, order, px: from the first cell on. */
+void mcor_grid_insert(
+  __global const ulong* keys, MCOR_PARTICLES, __global int* order, __global fix* px, int count)
+{
+  fix own[MCOR_INSERTION_LIMIT + MCOR_LANES];
+  int item[MCOR_INSERTION_LIMIT];
   for (int i = 0; i < count; ++i)
   {
-    x[i] = sorted[i];
+    item[i] = order[i];
+    own[i] = x[item[i]];
   }
-  MCOR_GRID_PERMUTE(fix, y)
-  MCOR_GRID_PERMUTE(fix, z)
-  MCOR_GRID_PERMUTE(real, inv_h)
-  MCOR_GRID_PERMUTE(real, size)
-  MCOR_GRID_PERMUTE(int, order)
+#if MCOR_LANES > 1
+  MCOR_STORE_OWN((fixv)0, 0, own + count); /* the last vector's other lanes, which nobody reads */
+#endif
+  for (int cell = 0, end; cell < count; cell = end)
+  {
+    for (end = cell + 1; end < count && keys[end] == keys[cell];)
+    {
+      ++end;
+    }
+#if MCOR_LANES > 1
+    if (mcor_grid_rank(own, item, cell, end, order, px))
+    {
+      continue;
+    }
+#endif
+    for (int i = cell; i < end; ++i)
+    {
+      int to = i;
+      for (; to > cell &&
+           (own[i] < px[to - 1] ||
+             (own[i] == px[to - 1] &&
+               mcor_grid_before(x, y, z, inv_h, size, item[i], order[to - 1])));
+           --to)
+      {
+        px[to] = px[to - 1];
+        order[to] = order[to - 1];
+      }
+      px[to] = own[i];
+      order[to] = item[i];
+    }
+  }
 }
 
 /* Returns the end of the whole cells from `first` on that begin before `end` and that insertion
@@ -119,12 +164,12 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
   return last;
 }
 
-/* One work-item = the cells that begin in a batch of sorted particles. Sorts the particles of
- * these cells, so that their order no longer depends on the input. Leaves out cells with more
- * than MCOR_INSERTION_LIMIT particles, which mcor_grid_sort_runs and mcor_grid_merge have
- * sorted. */
-__kernel void mcor_grid_order(const int count, __global const ulong* keys, __global fix* x,
-  __global fix* y, __global fix* z, __global real* inv_h, __global real* size, __global int* order)
+/* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order,
+ * and their order. Sorts the particles of these cells, so that their order no longer depends on the
+ * input; writes it, and x in this order. Leaves out cells with more than MCOR_INSERTION_LIMIT
+ * particles, which mcor_grid_sort_runs and mcor_grid_merge have sorted. */
+__kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_PARTICLES,
+  __global int* order, __global fix* px)
 {
   int first = get_global_id(0) * MCOR_BATCH;
   const int end = min(first + MCOR_BATCH, count);
@@ -135,8 +180,7 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, __glo
   while (first < end)
   {
     const int last = mcor_grid_cells_end(keys, first, end, count);
-    mcor_grid_insert(keys + first, x + first, y + first, z + first, inv_h + first, size + first,
-      order + first, last - first);
+    mcor_grid_insert(keys + first, x, y, z, inv_h, size, order + first, px + first, last - first);
     first = last > first ? last : mcor_find_key(keys, first, count, keys[first] + 1);
   }
 }

@@ -63,7 +63,8 @@ static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)
   {
-    const int doublings = (int)(random_bits(seed) % 6); /* pow is avoided, because its bits differ between systems */
+    /* pow() is avoided, because its bits differ between systems. */
+    const int doublings = (int)(random_bits(seed) % 6);
     const double factor = ldexp(1 + random_unit(seed), doublings);
     set->smoothing_length[i] *= factor;
     set->volume[i] *= factor * factor * factor;

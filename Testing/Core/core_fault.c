@@ -57,8 +57,7 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
 #define FAULT_WRITE(name, mem, parameters, arguments)                                              \
   WRAP(cl_int, name, parameters)                                                                   \
   {                                                                                                \
-    return fails(#name, COMMAND) ? fail_with                                                       \
-                                 : write_again(queue, mem, __real_##name arguments);               \
+    return fails(#name, COMMAND) ? fail_with : write_again(queue, mem, __real_##name arguments);   \
   }
 
 FAULT_CALL(mcor_clBuildProgram,
@@ -107,8 +106,8 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error)
   {
     return error;
   }
-  error = (*(cl_icd_dispatch* const*)mem)
-            ->clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size, &size, NULL);
+  error =
+    (*(cl_icd_dispatch* const*)mem)->clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size, &size, NULL);
   void* data = calloc(size, 1);
   if (error == CL_SUCCESS && data)
   {
@@ -282,9 +281,7 @@ const char* core_failed_call(void)
 void core_expect_nothing_held(mcor_context* context, int64_t bytes, int buffers)
 {
   mcor_release_memory(context);
-  CORE_CHECK(context->cl.bytes == bytes, "after a fault in %s: %lld bytes are held, not %lld",
-    failed_call, (long long)context->cl.bytes, (long long)bytes);
+  CORE_CHECK(context->cl.bytes == bytes, failed_call, context->cl.bytes, bytes);
   wait_for_release(context, buffers);
-  CORE_CHECK(live_buffers == buffers, "after a fault in %s: %d buffers are held, not %d",
-    failed_call, (int)live_buffers, buffers);
+  CORE_CHECK(live_buffers == buffers, failed_call, live_buffers, buffers);
 }

@@ -235,8 +235,7 @@ static mesh_report check_mesh(const mcor_surface* surface, bool may_coincide)
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
     CORE_CHECK((may_coincide && fault == MESH_COINCIDENT_POINT) || report.faults[fault] == 0,
-      "%lld of: %s; %s", (long long)report.faults[fault], mesh_fault_name(fault),
-      report.first[fault]);
+      report.faults[fault], mesh_fault_name(fault), report.first[fault]);
   }
   return report;
 }
@@ -265,8 +264,7 @@ void core_check_flags(const mcor_surface* surface)
   }
   for (int64_t i = 0; i < surface->point_count; ++i)
   {
-    CORE_CHECK((surface->boundary_flag[i] != 0) == on_boundary[i],
-      "point %lld: flag %d, on boundary %d", (long long)i, surface->boundary_flag[i],
+    CORE_CHECK((surface->boundary_flag[i] != 0) == on_boundary[i], i, surface->boundary_flag[i],
       on_boundary[i]);
   }
 }

@@ -11,6 +11,7 @@
 #include "mesh_check.h"
 #include "oracle.h"
 #include "particle_sets.h"
+#include "print_values.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,22 +20,33 @@
 /* cmocka needs the headers above to be included first. */
 #include <cmocka.h>
 
+/* Fails unless the condition holds, and prints these values. */
 #define CORE_CHECK(condition, ...)                                                                 \
   do                                                                                               \
   {                                                                                                \
     if (!(condition))                                                                              \
     {                                                                                              \
       print_error("%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);                        \
-      fail_msg(__VA_ARGS__);                                                                       \
+      PRINT_VALUES(__VA_ARGS__)                                                                    \
+      fail();                                                                                      \
     }                                                                                              \
   } while (0)
+
+/* The program's main, which runs these tests. */
+#define CORE_MAIN(set_up, tear_down, ...)                                                          \
+  int main(void)                                                                                   \
+  {                                                                                                \
+    const struct CMUnitTest tests[] = { PRINT_EACH(CORE_TEST, __VA_ARGS__) };                      \
+    return cmocka_run_group_tests(tests, set_up, tear_down);                                       \
+  }
+#define CORE_TEST(test) cmocka_unit_test(test),
 
 #define CORE_OK(context, call)                                                                     \
   do                                                                                               \
   {                                                                                                \
     const mcor_status core_status_ = (call);                                                       \
-    CORE_CHECK(core_status_ == MCOR_OK, "%s: %s", mcor_status_name(core_status_),                  \
-      mcor_last_error(context));                                                                   \
+    CORE_CHECK(                                                                                    \
+      core_status_ == MCOR_OK, #call, mcor_status_name(core_status_), mcor_last_error(context));   \
   } while (0)
 
 /* Whether the message, or the context's last failure, has all of these words, with | between them:
@@ -47,7 +59,7 @@ bool core_told(const mcor_context* context, const char* words);
   do                                                                                               \
   {                                                                                                \
     const mcor_status core_status_ = (call);                                                       \
-    CORE_CHECK(core_status_ == (expected) && core_told(context, words), "%s: %s",                  \
+    CORE_CHECK(core_status_ == (expected) && core_told(context, words), #call,                     \
       mcor_status_name(core_status_), mcor_last_error(context));                                   \
   } while (0)
 

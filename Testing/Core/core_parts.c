@@ -99,16 +99,14 @@ void core_expect_same(const char* name, core_triangles* all, core_triangles* who
 {
   core_sort_records(all->bytes, all->count, all->width);
   core_sort_records(whole->bytes, whole->count, whole->width);
-  CORE_CHECK(all->count == whole->count, "%s: %lld triangles, not %lld", name,
-    (long long)all->count, (long long)whole->count);
+  CORE_CHECK(all->count == whole->count, name, all->count, whole->count);
   int64_t other = 0;
   for (int64_t i = 0; i < all->count; ++i)
   {
     const size_t at = (size_t)i * all->width;
     other += memcmp(all->bytes + at, whole->bytes + at, all->width) != 0;
   }
-  CORE_CHECK(
-    other == 0, "%s: %lld of %lld triangles differ", name, (long long)other, (long long)all->count);
+  CORE_CHECK(other == 0, name, other, all->count);
 }
 
 /* Fails if a point is used by no triangle, or a triangle names a point that does not exist. */
@@ -134,13 +132,12 @@ static void check_keys(const mcor_surface* s)
   {
     const uint64_t *a = s->point_keys + MCOR_POINT_KEY * (i - 1), *b = a + MCOR_POINT_KEY;
     const int at = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
-    CORE_CHECK(a[at] < b[at], "keys of points %lld and the next", (long long)(i - 1));
+    CORE_CHECK(a[at] < b[at], i - 1);
   }
   for (int64_t i = 1; s->triangle_keys && i < s->triangle_count; ++i)
   {
     const uint64_t *a = s->triangle_keys + MCOR_TRIANGLE_KEY * (i - 1), *b = a + MCOR_TRIANGLE_KEY;
-    CORE_CHECK(a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1]), "keys of triangles %lld and the next",
-      (long long)(i - 1));
+    CORE_CHECK(a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1]), i - 1);
   }
 }
 
@@ -214,8 +211,7 @@ void core_check_these_cuts(mcor_context* context, const char* name, const mcor_i
 {
   core_whole whole = { 0 };
   mcor_surface surface = core_extract(context, input, options);
-  CORE_CHECK(surface.triangle_count > 300, "%s: only %lld triangles", name,
-    (long long)surface.triangle_count);
+  CORE_CHECK(surface.triangle_count > 300, name, surface.triangle_count);
   check_keys(&surface);
   core_add_surface(&whole.triangles, input, &surface);
   whole.statistics = surface.statistics;

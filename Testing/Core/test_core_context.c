@@ -14,10 +14,9 @@
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   CORE_SURFACE surface = core_extract(context, input, options);
-  CORE_CHECK(surface.triangle_count > 0, "no triangles");
-  CORE_CHECK(options->boundary_detection == MCOR_BOUNDARY_WEIGHT_SUM ||
-      surface.statistics.trim_vertices > surface.statistics.trim_vertices_linear,
-    "nothing trimmed by the eigenvalue");
+  assert_true(surface.triangle_count > 0);
+  assert_true(options->boundary_detection == MCOR_BOUNDARY_WEIGHT_SUM ||
+    surface.statistics.trim_vertices > surface.statistics.trim_vertices_linear);
   const uint64_t hash = core_hash(&surface);
   return hash;
 }
@@ -39,9 +38,8 @@ static void test_several_iso_values(void** state)
   {
     options.iso_values = iso + i;
     CORE_SURFACE one = core_extract(*state, &input, &options);
-    CORE_CHECK(point + one.point_count <= all.point_count &&
-        triangle + one.triangle_count <= all.triangle_count,
-      "too few");
+    assert_true(point + one.point_count <= all.point_count &&
+      triangle + one.triangle_count <= all.triangle_count);
     assert_memory_equal(
       all.points + 3 * point, one.points, (size_t)one.point_count * 3 * sizeof(double));
     assert_memory_equal(
@@ -52,7 +50,7 @@ static void test_several_iso_values(void** state)
     }
     for (int64_t p = 0; p < one.point_count; ++p)
     {
-      CORE_CHECK(all.iso_value[point + p] == iso[i], "iso value %g", all.iso_value[point + p]);
+      CORE_CHECK(all.iso_value[point + p] == iso[i], all.iso_value[point + p]);
     }
     point += one.point_count;
     triangle += one.triangle_count;
@@ -67,7 +65,8 @@ typedef struct permuted_case
   mcor_field field;
   mcor_type precision;
   mcor_seed_mode seeds;
-  int volumes; /* where volumes come from: 0 an array, 1 mass / density, 2 mass alone, 3 the positions */
+  /* Where volumes come from: 0 an array, 1 mass / density, 2 mass alone, 3 the positions. */
+  int volumes;
   int solids, coincident, estimate, topology, levels;
   mcor_boundary_detection boundary;
   double wall_share;
@@ -164,7 +163,7 @@ static void test_order_of_input(void** state)
       ++different;
     }
   }
-  CORE_CHECK(different == 0, "%d cases", different);
+  CORE_CHECK(different == 0, different);
 }
 
 /* A limit below the peak fails with a sentence. One at the peak suffices, even while the context keeps buffers from
@@ -190,10 +189,10 @@ static void test_memory_limit(void** state)
   mcor_options unlimited = core_options(&iso);
   big_input.particles_version = big_input.scalar_version = 7; /* kept */
   surface = core_extract(context, &big_input, &unlimited);
-  CORE_CHECK(surface.statistics.device_bytes_peak > peak, "the bigger set needs no more");
+  assert_true(surface.statistics.device_bytes_peak > peak);
   mcor_free_surface(&surface);
   options.memory_limit = peak;
-  CORE_CHECK(hash_of(context, &input, &options) == expected, "another surface in limited memory");
+  assert_true(hash_of(context, &input, &options) == expected);
 }
 
 /* A large buffer that was released serves the next request of about its size. Other kept buffers are freed where more
@@ -214,13 +213,13 @@ static void test_kept_buffers(void** state)
   const cl_mem first = a.mem;
   mcor_release(context, &a);
   mcor_release(context, &small);
-  CORE_CHECK(!a.mem && cl->bytes > tables, "a released buffer is not kept");
+  assert_true(!a.mem && cl->bytes > tables);
   CORE_OK(context, mcor_reserve(context, &small, size / 4));
-  CORE_CHECK(small.mem != first, "a buffer was used that is far too large");
+  assert_true(small.mem != first);
   CORE_OK(context, mcor_reserve(context, &b, size / 10 * 9));
-  CORE_CHECK(b.mem == first && b.size >= size, "a kept buffer was not used");
+  assert_true(b.mem == first && b.size >= size);
   CORE_OK(context, mcor_reserve(context, &a, size));
-  CORE_CHECK(a.mem && a.mem != b.mem, "two buffers are one");
+  assert_true(a.mem && a.mem != b.mem);
   mcor_release(context, &a);
   mcor_release(context, &b);
   mcor_release(context, &small);
@@ -228,8 +227,7 @@ static void test_kept_buffers(void** state)
   mcor_begin_buffers(context);
   assert_int_equal(cl->bytes, held);
   CORE_OK(context, mcor_reserve(context, &a, 2 * size));
-  CORE_CHECK(cl->bytes <= held / 8 * 9, "%lld bytes are held, %lld were needed",
-    (long long)cl->bytes, (long long)held);
+  CORE_CHECK(cl->bytes <= held / 8 * 9, cl->bytes, held);
   mcor_release(context, &a);
   mcor_begin_buffers(context); /* a call that needs nothing */
   mcor_begin_buffers(context);
@@ -248,7 +246,7 @@ static void test_devices(void** state)
 {
   char* list = NULL;
   assert_int_equal(mcor_list_devices(&list), MCOR_OK);
-  CORE_CHECK(strncmp(list, "0: ", 3) == 0, "list: %s", list);
+  CORE_CHECK(strncmp(list, "0: ", 3) == 0, list);
   free(list);
   const char* const unknown[] = { "no such device", "99999", "-1", "1e9" };
   for (int i = 0; i < 4; ++i)
@@ -282,10 +280,9 @@ static void test_devices(void** state)
 
 static void test_names(void** state)
 {
-  (void)state;
   for (int s = 0; s <= MCOR_CANCELLED; ++s)
   {
-    CORE_CHECK(!strstr(mcor_status_name((mcor_status)s), "unknown"), "status %d", s);
+    CORE_CHECK(!strstr(mcor_status_name((mcor_status)s), "unknown"), s);
   }
   assert_string_equal(mcor_status_name((mcor_status)99), "unknown status");
   assert_string_equal(mcor_status_name((mcor_status)-1), "unknown status");
@@ -309,24 +306,21 @@ static void test_statistics(void** state)
   const mcor_statistics* s = &surface.statistics;
   assert_int_equal(s->fluid_particles, 900);
   assert_int_equal(s->solid_particles, 100);
-  CORE_CHECK(fabs(s->cube_size - 0.65) < 1e-12, "cube size %g", s->cube_size);
-  CORE_CHECK(s->smoothing_length_min == 1.3 && s->smoothing_length_max == 1.3, "smoothing length");
-  CORE_CHECK(s->virtual_cells == s->lattice_cells[0] * s->lattice_cells[1] * s->lattice_cells[2],
-    "virtual cells");
+  CORE_CHECK(fabs(s->cube_size - 0.65) < 1e-12, s->cube_size);
+  assert_true(s->smoothing_length_min == 1.3 && s->smoothing_length_max == 1.3);
+  assert_true(s->virtual_cells == s->lattice_cells[0] * s->lattice_cells[1] * s->lattice_cells[2]);
   const int64_t hits = s->seed_cells - s->seed_cells_not_intersected;
-  CORE_CHECK(hits > 0 && hits <= s->cells_used && s->cells_used <= s->seed_cells,
-    "%lld cells of %lld used", (long long)s->cells_used, (long long)s->seed_cells);
-  CORE_CHECK(s->triangles_before_trimming >= s->cells_used, "triangles before trimming");
+  CORE_CHECK(hits > 0 && hits <= s->cells_used && s->cells_used <= s->seed_cells, s->cells_used,
+    s->seed_cells);
+  assert_true(s->triangles_before_trimming >= s->cells_used);
   CORE_CHECK(s->correction_max >= s->correction_mean && s->correction_mean > 0 &&
       s->correction_max <= s->cube_size,
-    "correction mean %g, max %g", s->correction_mean, s->correction_max);
+    s->correction_mean, s->correction_max);
   CORE_CHECK(
     s->iterations_max >= 1 && s->iterations_mean > 0 && s->iterations_mean <= s->iterations_max,
-    "iterations mean %g, max %d", s->iterations_mean, s->iterations_max);
-  CORE_CHECK(s->vertices_above_tolerance == 0,
-    "%lld vertices above the tolerance, worst residual %g", (long long)s->vertices_above_tolerance,
-    s->residual_max);
-  CORE_CHECK(s->device[0] && s->platform[0], "no device");
+    s->iterations_mean, s->iterations_max);
+  CORE_CHECK(s->vertices_above_tolerance == 0, s->vertices_above_tolerance, s->residual_max);
+  assert_true(s->device[0] && s->platform[0]);
 }
 
 /* The number of lanes follows from the registers that the device's compiler uses, not from the width that the device
@@ -362,7 +356,6 @@ static int on_building(void* user, double fraction, const char* phase)
 /* A context's first run with a kernel compiles, and says so; a later run does not. */
 static void test_build(void** state)
 {
-  (void)state;
   CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
@@ -378,16 +371,10 @@ static void test_build(void** state)
     told = 0;
     CORE_SURFACE surface = core_extract(context, &input, &options);
     CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == (run != 1),
-      "run %d: %g s of building, told %d times", run, surface.statistics.build_seconds, told);
+      run, surface.statistics.build_seconds, told);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_several_iso_values),
-    cmocka_unit_test(test_order_of_input), cmocka_unit_test(test_memory_limit),
-    cmocka_unit_test(test_kept_buffers), cmocka_unit_test(test_devices),
-    cmocka_unit_test(test_names), cmocka_unit_test(test_lanes), cmocka_unit_test(test_build),
-    cmocka_unit_test(test_statistics) };
-  return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_several_iso_values, test_order_of_input,
+  test_memory_limit, test_kept_buffers, test_devices, test_names, test_lanes, test_build,
+  test_statistics)

@@ -13,7 +13,7 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
 {
   CORE_SURFACE surface = core_extract(context, input, options);
   const uint64_t hash = core_hash(&surface);
-  CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  assert_true(surface.triangle_count > 0);
   return hash;
 }
 
@@ -27,7 +27,7 @@ typedef struct cancel_at
 static int on_progress(void* user, double fraction, const char* phase)
 {
   cancel_at* c = user;
-  CORE_CHECK(fraction >= c->last && fraction <= 1, "progress %g after %g", fraction, c->last);
+  CORE_CHECK(fraction >= c->last && fraction <= 1, fraction, c->last);
   c->last = fraction;
   snprintf(c->phases + strlen(c->phases), sizeof c->phases - strlen(c->phases), "%s;", phase);
   return c->calls++ == c->stop_at;
@@ -79,15 +79,15 @@ static void test_cancel_between_launches(void** state)
     context->report_interval = 0;
     options.progress_user = &launches;
     CORE_OK(context, run_kind(context, kind, &input, &options));
-    CORE_CHECK(launches.calls > phases.calls + 10, "kind %d: %d calls", kind, launches.calls);
+    CORE_CHECK(launches.calls > phases.calls + 10, kind, launches.calls);
     assert_true(launches.last == 1);
     for (int stop = 0; stop < launches.calls; stop += 1 + stop / 4)
     {
       cancel_at at = { .stop_at = stop };
       options.progress_user = &at;
       const mcor_status status = run_kind(context, kind, &input, &options);
-      CORE_CHECK(status == MCOR_CANCELLED && at.calls == stop + 1, "kind %d, stop %d: %s, %d calls",
-        kind, stop, mcor_status_name(status), at.calls);
+      CORE_CHECK(status == MCOR_CANCELLED && at.calls == stop + 1, kind, stop,
+        mcor_status_name(status), at.calls);
     }
     options.progress_user = &again;
     CORE_OK(context, run_kind(context, kind, &input, &options));
@@ -135,8 +135,7 @@ static void test_all_phases_ask(void** state)
     hash_of(context, &input, &options);
     for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
     {
-      CORE_CHECK(calls[p] >= expected[p], "%s: asked %d times",
-        mcor_phase_name((mcor_phase)p), calls[p]);
+      CORE_CHECK(calls[p] >= expected[p], mcor_phase_name((mcor_phase)p), calls[p]);
     }
   }
   context->report_interval = interval;
@@ -164,18 +163,14 @@ static void test_long_launches_are_cut(void** state)
   hash_of(context, &input, &options);
   context->cl.units = 1;
   options.progress_user = &cut;
-  CORE_CHECK(hash_of(context, &input, &options) == expected, "parts change the result");
+  assert_true(hash_of(context, &input, &options) == expected);
   context->cl.units = units;
   if (context->cl.is_cpu)
   {
-    CORE_CHECK(cut.calls >= whole.calls + 4, "%d reports, %d", cut.calls, whole.calls);
+    CORE_CHECK(cut.calls >= whole.calls + 4, cut.calls, whole.calls);
   }
   context->report_interval = interval;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_between_launches),
-    cmocka_unit_test(test_all_phases_ask), cmocka_unit_test(test_long_launches_are_cut) };
-  return cmocka_run_group_tests_name("progress", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_cancel_between_launches, test_all_phases_ask,
+  test_long_launches_are_cut)

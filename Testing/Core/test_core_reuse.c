@@ -221,22 +221,23 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(FREE_SURFACE, h_scale), AT(ARRAYS, cube_size_factor), AT(ARRAYS, cube_size),
   AT(ARRAYS, iso_value), AT(ARRAYS, iso_count), AT(ARRAYS, node_threshold),
   AT(ARRAYS, boundary_detection), AT(ARRAYS, vertex_threshold), AT(MASS_ONLY, wall_share),
-  AT(MASS_ONLY, no_wall_share), AT(ARRAYS, preview), AT(ARRAYS, compact),
-  AT(ARRAYS, widen), AT(MASS_ONLY, widen), AT(FREE_SURFACE, smooth), AT(ARRAYS, tolerance),
+  AT(MASS_ONLY, no_wall_share), AT(ARRAYS, preview), AT(ARRAYS, compact), AT(ARRAYS, widen),
+  AT(MASS_ONLY, widen), AT(FREE_SURFACE, smooth), AT(ARRAYS, tolerance),
   AT(ARRAYS, iteration_limit), AT(ARRAYS, precision),
   { "memory_limit", REUSE_ARRAYS, change_memory_limit, 1 }, AT(ARRAYS, periodic),
   AT(MASS_ONLY, periodic), AT(ARRAYS, box), AT(MASS_ONLY, box), AT(ROUGH, box), AT(ARRAYS, normals),
   AT(ARRAYS, gradients), AT(ARRAYS, weight_sum), AT(ARRAYS, boundary_eigenvalue),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
-  AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
+  AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle),
+  AT(ARRAYS, triangle_normals) };
 
 /* Hashes the surface and its statistics of cells. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
   CORE_SURFACE surface = core_extract(context, &call->input, &call->options);
   const mcor_statistics* s = &surface.statistics;
-  CORE_CHECK(surface.triangle_count > 0, "%s: no triangles", step);
-  CORE_CHECK(s->seed_cells > s->seed_cells_not_intersected, "%s: no seeds", step);
+  CORE_CHECK(surface.triangle_count > 0, step);
+  CORE_CHECK(s->seed_cells > s->seed_cells_not_intersected, step);
   const uint64_t hash = core_hash(&surface) + 1000003 * (uint64_t)s->seed_cells +
     7919 * (uint64_t)s->seed_cells_not_intersected + (uint64_t)s->cells_used;
   return hash;
@@ -290,7 +291,7 @@ static void test_one_change_at_a_time(void** state)
   {
     wrong += check_step(*state, &call, steps + i, base);
   }
-  CORE_CHECK(wrong == 0, "%d steps", wrong);
+  CORE_CHECK(wrong == 0, wrong);
   end_call(&call);
 }
 
@@ -312,7 +313,7 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   mcor_surface surface = { 0 };
   const mcor_status status = mcor_extract(context, &call->input, &options, &surface);
   assert_int_equal(status, kind == 0 ? MCOR_INVALID_ARGUMENT : MCOR_CANCELLED);
-  CORE_CHECK(!surface.points && surface.point_count == 0, "a surface after a failure");
+  assert_true(!surface.points && surface.point_count == 0);
 }
 
 /* Data that a failed call announced by new versions do not exist for the next call, and a failed call does not spoil
@@ -333,7 +334,7 @@ static void test_failed_calls(void** state)
         continue; /* this part has not changed */
       }
       set_base(&call, REUSE_ARRAYS);
-      CORE_CHECK(hash_of(context, &call, "before") == before, "before");
+      assert_true(hash_of(context, &call, "before") == before);
       if (parts & 1)
       {
         change_positions(&call);
@@ -344,14 +345,13 @@ static void test_failed_calls(void** state)
       }
       const uint64_t expected = fresh_hash(&call, "after");
       fail_call(context, &call, kind);
-      CORE_CHECK(hash_of(context, &call, "after") == expected, "parts %d, failure %d", parts, kind);
+      CORE_CHECK(hash_of(context, &call, "after") == expected, parts, kind);
       if (kind != MCOR_PHASE_SEARCH_GRID) /* the search grid exists now */
       {
         fail_call(context, &call, kind);
       }
       set_base(&call, REUSE_ARRAYS);
-      CORE_CHECK(
-        hash_of(context, &call, "back") == before, "parts %d, back after failure %d", parts, kind);
+      CORE_CHECK(hash_of(context, &call, "back") == before, parts, kind);
     }
   }
   end_call(&call);
@@ -378,7 +378,6 @@ static void extract_all(mcor_context* context, reuse_call* call)
 /* After a release only tables are held, whose size does not depend on the input. */
 static void test_release(void** state)
 {
-  (void)state;
   CORE_CONTEXT context = NULL;
   reuse_call call;
   CORE_OK(context, mcor_create_context(NULL, &context));
@@ -386,7 +385,7 @@ static void test_release(void** state)
   start_call(&call);
   set_base(&call, REUSE_ARRAYS);
   hash_of(context, &call, "release");
-  CORE_CHECK(context->cl.bytes > at_first, "nothing is kept for reuse");
+  assert_true(context->cl.bytes > at_first);
   mcor_release_memory(context);
   assert_int_equal(context->cl.bytes, at_first);
   extract_all(context, &call);
@@ -398,7 +397,7 @@ static void test_release(void** state)
   assert_int_equal(context->cl.bytes, at_first);
   mcor_release_memory(context);
   set_base(&call, REUSE_ARRAYS);
-  CORE_CHECK(hash_of(context, &call, "after") == fresh_hash(&call, "fresh"), "after a release");
+  assert_true(hash_of(context, &call, "after") == fresh_hash(&call, "fresh"));
   end_call(&call);
 }
 
@@ -417,17 +416,12 @@ static void test_globals(void** state)
   {
     globals.measured.wall_share = k == 1 ? 0.3 : 0.6;
     const uint64_t hash = hash_of(*state, &call, "wall share");
-    CORE_CHECK(hash == fresh_hash(&call, "fresh") && hash != last, "wall share %d", k);
+    CORE_CHECK(hash == fresh_hash(&call, "fresh") && hash != last, k);
     last = hash;
   }
   mcor_free_globals(&globals);
   end_call(&call);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_one_change_at_a_time),
-    cmocka_unit_test(test_failed_calls), cmocka_unit_test(test_release),
-    cmocka_unit_test(test_globals) };
-  return cmocka_run_group_tests_name("reuse", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_one_change_at_a_time, test_failed_calls, test_release,
+  test_globals)

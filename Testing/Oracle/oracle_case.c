@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "oracle_case.h"
 #include "oracle_period.h"
+#include "print_values.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,19 +94,16 @@ typedef struct case_run
   int good;
 } case_run;
 
-static void case_expect(case_run* run, int condition, const char* format, ...)
-{
-  if (!condition)
-  {
-    va_list arguments;
-    va_start(arguments, format);
-    printf("  FAILED: %s %s: ", run->at->name, run->mode);
-    vprintf(format, arguments);
-    printf("\n");
-    va_end(arguments);
-    run->good = 0;
-  }
-}
+#define CASE_EXPECT(run, condition, ...)                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      printf("  FAILED: %s %s: %s\n", run->at->name, run->mode, #condition);                       \
+      PRINT_VALUES(__VA_ARGS__)                                                                    \
+      run->good = 0;                                                                               \
+    }                                                                                              \
+  } while (0)
 
 static void case_print(const case_run* run)
 {
@@ -143,11 +140,10 @@ static void case_check_mesh(case_run* run)
     const int64_t allowed = fault == MESH_COINCIDENT_POINT ? c->split
       : fault == MESH_ZERO_AREA && slivers                 ? run->mesh.faults[fault]
                                                            : 0;
-    case_expect(run, run->mesh.faults[fault] <= allowed, "%lld x %s: %s",
-      (long long)run->mesh.faults[fault], mesh_fault_name((mesh_fault)fault),
-      run->mesh.first[fault]);
+    CASE_EXPECT(run, run->mesh.faults[fault] <= allowed, run->mesh.faults[fault],
+      mesh_fault_name((mesh_fault)fault), run->mesh.first[fault]);
   }
-  case_expect(run, c->holes == 0, "%lld holes: %s", (long long)c->holes, c->first);
+  CASE_EXPECT(run, c->holes == 0, c->holes, c->first);
 }
 
 /* Checks a periodic box: the surface meets itself at the sides, and ends there only for reasons that end it elsewhere. */
@@ -159,39 +155,32 @@ static void case_check_seam(case_run* run)
   }
   const oracle_seam seam =
     oracle_check_seam(&run->options, run->reference->lattice.edge, &run->surface, &run->mesh);
-  case_expect(run, seam.open == 0, "%lld edges at faces without their like", (long long)seam.open);
-  case_expect(run, seam.torn == 0, "%lld edges at faces do not fit", (long long)seam.torn);
-  case_expect(run, seam.different == 0, "%lld points differ from themselves a period away",
-    (long long)seam.different);
-  case_expect(run, seam.joined > 0, "the surface does not meet itself");
+  CASE_EXPECT(run, seam.open == 0, seam.open);
+  CASE_EXPECT(run, seam.torn == 0, seam.torn);
+  CASE_EXPECT(run, seam.different == 0, seam.different);
+  CASE_EXPECT(run, seam.joined > 0, seam.joined);
   printf("  %lld edges join opposite faces\n", (long long)seam.joined);
 }
 
 static void case_check_edges(case_run* run, int pairs)
 {
   const oracle_comparison* c = &run->comparison;
-  case_expect(run, c->off_lattice == 0, "%lld vertices off the lattice: %s",
-    (long long)c->off_lattice, c->first);
-  case_expect(run, c->doubled == 0, "%lld edges with two vertices", (long long)c->doubled);
-  case_expect(run, c->extra == 0, "%lld extra edges: %s", (long long)c->extra, c->first);
-  case_expect(run, c->segments_missing == 0, "%lld faces not connected: %s",
-    (long long)c->segments_missing, c->first);
+  CASE_EXPECT(run, c->off_lattice == 0, c->off_lattice, c->first);
+  CASE_EXPECT(run, c->doubled == 0, c->doubled);
+  CASE_EXPECT(run, c->extra == 0, c->extra, c->first);
+  CASE_EXPECT(run, c->segments_missing == 0, c->segments_missing, c->first);
   /* Rounding is the only excuse, so excuses must be rare: a few in ten thousand. */
-  case_expect(run, run->at->at_iso || pairs || c->excused + c->rounding <= 2 + c->edges / 2000,
-    "%lld edges differ where values or weights are close to their thresholds",
-    (long long)(c->excused + c->rounding));
-  case_expect(
-    run, run->at->rough || c->noisy == 0, "%lld vertices with noisy values", (long long)c->noisy);
+  CASE_EXPECT(run, run->at->at_iso || pairs || c->excused + c->rounding <= 2 + c->edges / 2000,
+    c->excused + c->rounding);
+  CASE_EXPECT(run, run->at->rough || c->noisy == 0, c->noisy);
   if (pairs)
   {
     /* The paper's seeds may miss components, but must find whole ones. */
-    case_expect(run, c->components_partial == 0, "%lld components torn: %s",
-      (long long)c->components_partial, c->first);
+    CASE_EXPECT(run, c->components_partial == 0, c->components_partial, c->first);
   }
   else
   {
-    case_expect(run, c->missing == 0, "%lld missing edges (%lld whole components): %s",
-      (long long)c->missing, (long long)c->components_missing, c->first);
+    CASE_EXPECT(run, c->missing == 0, c->missing, c->components_missing, c->first);
   }
 }
 
@@ -202,48 +191,37 @@ static void case_check_accuracy(case_run* run, int trimmed)
   const double residual = single ? 5e-6 : 1e-6;
   const mcor_statistics* told = &run->surface.statistics;
   const double range = told->scalar_max - told->scalar_min;
-  case_expect(run, c->residual * range <= told->residual_max + 1e-6 * range,
-    "residual %.3g of the range, and %.3g was told", c->residual, told->residual_max / range);
-  case_expect(run, c->residual <= residual, "residual %.3g: %s", c->residual, c->first);
-  case_expect(
-    run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g", c->weight_error);
-  case_expect(run, c->eigenvalue_error <= (single ? 1e-5 : 1e-6), "eigenvalue off by %.3g",
-    c->eigenvalue_error);
-  case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g: %s",
-    c->trim_weight_error, c->first);
+  CASE_EXPECT(run, c->residual * range <= told->residual_max + 1e-6 * range, c->residual,
+    told->residual_max / range);
+  CASE_EXPECT(run, c->residual <= residual, c->residual, c->first);
+  CASE_EXPECT(run, c->weight_error <= (single ? 1e-5 : 1e-6), c->weight_error);
+  CASE_EXPECT(run, c->eigenvalue_error <= (single ? 1e-5 : 1e-6), c->eigenvalue_error);
+  CASE_EXPECT(run, c->trim_weight_error <= 1e-4, c->trim_weight_error, c->first);
   /* Kernels with negative lobes leave gaps, so trimming may cut steep parts of the surface at low weight. */
-  case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual,
-    "trim vertices: residual %.3g", c->trim_residual);
+  CASE_EXPECT(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual, c->trim_residual);
   /* No cut would be exact if the gradient of the eigenvalue were wrong. */
-  case_expect(run,
+  CASE_EXPECT(run,
     run->at->rough || run->options.boundary_detection != MCOR_BOUNDARY_EIGENVALUE ||
       c->trim_linear <= 2 + c->trim_vertices / 25,
-    "%lld of %lld trim vertices are linear cuts", (long long)c->trim_linear,
-    (long long)c->trim_vertices);
+    c->trim_linear, c->trim_vertices);
   /* A cut stays linear where the two surfaces do not meet nearby. With negative lobes the weight has many extrema. */
-  case_expect(run,
+  CASE_EXPECT(run,
     c->trim_avoidable <=
       4 + c->trim_vertices / (run->options.sph_kernel == MCOR_M_PRIME_4 ? 12 : 50),
-    "%lld of %lld trim vertices are linear cuts and need not be", (long long)c->trim_avoidable,
-    (long long)c->trim_vertices);
-  case_expect(run, c->below_threshold == 0, "%lld vertices below the vertex threshold",
-    (long long)c->below_threshold);
+    c->trim_avoidable, c->trim_vertices);
+  CASE_EXPECT(run, c->below_threshold == 0, c->below_threshold);
   if (!run->at->at_iso)
   {
-    case_expect(run, c->distance <= 1e-4, "distance %.3g cubes", c->distance);
-    case_expect(run, c->normal_degrees <= (single ? 0.5 : 0.1), "normal off by %.3g degrees: %s",
-      c->normal_degrees, c->first);
+    CASE_EXPECT(run, c->distance <= 1e-4, c->distance);
+    CASE_EXPECT(run, c->normal_degrees <= (single ? 0.5 : 0.1), c->normal_degrees, c->first);
   }
   if (!run->at->rough)
   {
     /* Small pieces that trimming leaves may be too coarse to judge their orientation by the gradient. */
-    case_expect(run, trimmed || c->inverted_components == 0, "%lld components inside out",
-      (long long)c->inverted_components);
-    case_expect(
-      run, c->gradient_error <= (single ? 1e-4 : 1e-9), "gradient off by %.3g", c->gradient_error);
+    CASE_EXPECT(run, trimmed || c->inverted_components == 0, c->inverted_components);
+    CASE_EXPECT(run, c->gradient_error <= (single ? 1e-4 : 1e-9), c->gradient_error);
     /* At a kernel's rim w has few digits in single precision. */
-    case_expect(run, c->rim_gradient_error <= (single ? 2e-4 : 1e-9),
-      "gradient at a kernel's rim off by %.3g", c->rim_gradient_error);
+    CASE_EXPECT(run, c->rim_gradient_error <= (single ? 2e-4 : 1e-9), c->rim_gradient_error);
   }
 }
 
@@ -272,8 +250,7 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   memset(&run->comparison, 0, sizeof(run->comparison));
   const mcor_status status =
     mcor_extract(suite->context, &run->at->input, &run->options, &run->surface);
-  case_expect(
-    run, status == MCOR_OK, "%s: %s", mcor_status_name(status), mcor_last_error(suite->context));
+  CASE_EXPECT(run, status == MCOR_OK, mcor_status_name(status), mcor_last_error(suite->context));
   if (status != MCOR_OK)
   {
     return 0;
@@ -286,16 +263,15 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   }
   case_print(run);
   const double cube = run->surface.statistics.cube_size;
-  case_expect(
-    run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, "cube size %.17g", cube);
+  CASE_EXPECT(run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, cube);
   case_check_mesh(run);
   case_check_seam(run);
   case_check_edges(run, pairs);
   case_check_accuracy(run, trimmed);
   if (!trimmed && !pairs)
   {
-    case_expect(run, !run->at->has_euler || run->mesh.euler == run->at->euler,
-      "Euler number %lld, not %d", (long long)run->mesh.euler, run->at->euler);
+    CASE_EXPECT(run, !run->at->has_euler || run->mesh.euler == run->at->euler, run->mesh.euler,
+      run->at->euler);
   }
   return run->good;
 }

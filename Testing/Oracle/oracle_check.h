@@ -3,7 +3,7 @@
 #ifndef oracle_check_h
 #define oracle_check_h
 
-#include <stdio.h>
+#include "print_values.h"
 
 /* A failed check prints its place and condition and is counted; the program goes on. */
 #define ORACLE_CHECK(condition, ...)                                                               \
@@ -11,9 +11,8 @@
   {                                                                                                \
     if (!(condition))                                                                              \
     {                                                                                              \
-      fprintf(stderr, "%s:%d: failed: %s: ", __FILE__, __LINE__, #condition);                      \
-      fprintf(stderr, __VA_ARGS__);                                                                \
-      fprintf(stderr, "\n");                                                                       \
+      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);                      \
+      PRINT_VALUES(__VA_ARGS__)                                                                    \
       ++oracle_failures;                                                                           \
     }                                                                                              \
   } while (0)

@@ -115,7 +115,9 @@ static int edge_axis(const fixture* f, int64_t v)
   for (int a = 1; a < 3; ++a)
   {
     const double *x = &f->surface.points[3 * v], cube = f->reference.lattice.cube;
-    axis = fabs(x[a] / cube - round(x[a] / cube)) > fabs(x[axis] / cube - round(x[axis] / cube)) ? a : axis;
+    axis = fabs(x[a] / cube - round(x[a] / cube)) > fabs(x[axis] / cube - round(x[axis] / cube))
+      ? a
+      : axis;
   }
   return axis;
 }
@@ -207,9 +209,9 @@ static void test_damage(void)
   for (int kind = 0; kind < 13; ++kind)
   {
     fixture f;
-    ORACLE_CHECK(create_fixture(&f), "no surface");
+    ORACLE_CHECK(create_fixture(&f), f.set.count);
     const double shown = kind < 10 ? damage(&f, kind) : damage_trimmed(&f, kind - 10);
-    ORACLE_CHECK(shown > 0.0, "damage of kind %d was not seen", kind);
+    ORACLE_CHECK(shown > 0.0, kind);
     free_fixture(&f);
   }
 }
@@ -218,7 +220,7 @@ static void test_damage(void)
 static void test_vertex_on_node(void)
 {
   fixture f;
-  ORACLE_CHECK(create_fixture(&f), "no surface");
+  ORACLE_CHECK(create_fixture(&f), f.set.count);
   const double cube = f.reference.lattice.cube;
   for (int64_t v = 0; v < f.surface.point_count; v += 50)
   {
@@ -226,9 +228,8 @@ static void test_vertex_on_node(void)
     *x = round(*x / cube) * cube;
   }
   const oracle_comparison c = compare(&f, 0);
-  ORACLE_CHECK(c.matched == c.edges && c.extra == 0 && c.doubled == 0, "%lld of %lld, %s",
-    (long long)c.matched, (long long)c.edges, c.first);
-  ORACLE_CHECK(c.residual > 1e-3, "the residual must show that the vertices were moved");
+  ORACLE_CHECK(c.matched == c.edges && c.extra == 0 && c.doubled == 0, c.matched, c.edges, c.first);
+  ORACLE_CHECK(c.residual > 1e-3, c.residual);
   free_fixture(&f);
 }
 

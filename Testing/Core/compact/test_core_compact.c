@@ -220,15 +220,13 @@ static void check_triangles(
   measure(with, &sharp, &turned);
   CORE_CHECK(after.boundary_edges == before.boundary_edges &&
       after.components == before.components && after.euler == before.euler,
-    "%s: %lld border edges, %lld pieces, %lld", at->name, (long long)after.boundary_edges,
-    (long long)after.components, (long long)after.euler);
-  CORE_CHECK(hash_border(with) == hash_border(without), "%s: another border", at->name);
-  CORE_CHECK((double)after.triangles < at->share * (double)before.triangles,
-    "%s: %lld triangles of %lld", at->name, (long long)after.triangles,
-    (long long)before.triangles);
-  CORE_CHECK(turned <= turned_before, "%s: %lld turned over", at->name, (long long)turned);
-  CORE_CHECK((double)sharp <= at->sharp * (double)after.triangles, "%s: %lld sharp of %lld",
-    at->name, (long long)sharp, (long long)after.triangles);
+    at->name, after.boundary_edges, after.components, after.euler);
+  CORE_CHECK(hash_border(with) == hash_border(without), at->name);
+  CORE_CHECK((double)after.triangles < at->share * (double)before.triangles, at->name,
+    after.triangles, before.triangles);
+  CORE_CHECK(turned <= turned_before, at->name, turned);
+  CORE_CHECK(
+    (double)sharp <= at->sharp * (double)after.triangles, at->name, sharp, after.triangles);
 }
 
 static mcor_input input_of(
@@ -257,12 +255,11 @@ static void surfaces(void** state)
     const mcor_statistics *s = &with.statistics, *old = &without.statistics;
     if (with.line_offsets)
     {
-      CORE_CHECK((double)with.point_count < at->share * (double)without.point_count,
-        "%s: %lld points of %lld", at->name, (long long)with.point_count,
-        (long long)without.point_count);
+      CORE_CHECK((double)with.point_count < at->share * (double)without.point_count, at->name,
+        with.point_count, without.point_count);
       CORE_CHECK(
         with.line_count == without.line_count && count_drops(&with) == count_drops(&without),
-        "%s: other pieces", at->name);
+        at->name);
     }
     else
     {
@@ -270,8 +267,7 @@ static void surfaces(void** state)
     }
     CORE_CHECK(s->residual_max <= 1.5 * old->residual_max &&
         s->vertices_above_tolerance <= old->vertices_above_tolerance,
-      "%s: residual %g, before %g; %lld above", at->name, s->residual_max, old->residual_max,
-      (long long)s->vertices_above_tolerance);
+      at->name, s->residual_max, old->residual_max, s->vertices_above_tolerance);
   }
 }
 
@@ -334,7 +330,7 @@ static void away_from_caps(void** state)
     far += is_far;
     same += is_far && has_point(&capped, open.points + 3 * i);
   }
-  CORE_CHECK(far > 100 && same > 0.95 * far, "%d of %d points are the same", same, far);
+  CORE_CHECK(far > 100 && same > 0.95 * far, same, far);
 }
 
 /* In a period, images of particles of several levels must be kept from farther away than those of
@@ -348,16 +344,7 @@ static void boxes_in_period(void** state)
   options.field = MCOR_WEIGHT_SUM;
   options.compact = 1;
   memcpy(options.periodic, period, sizeof period);
-  core_check_these_cuts(*state, "levels in a period", &input, &options, core_cuts, 2);
+  core_check_these_cuts(*state, "levels, period", &input, &options, core_cuts, 2);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(surfaces),
-    cmocka_unit_test(boxes),
-    cmocka_unit_test(boxes_in_period),
-    cmocka_unit_test(away_from_caps),
-  };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes, boxes_in_period, away_from_caps)

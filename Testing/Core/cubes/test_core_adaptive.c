@@ -75,9 +75,4 @@ static void far_apart(void** state)
   assert_true(surface.triangle_count < 20000);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(one_level_is_uniform),
-    cmocka_unit_test(few_nodes_are_evaluated), cmocka_unit_test(far_apart) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, one_level_is_uniform, few_nodes_are_evaluated, far_apart)

@@ -147,19 +147,16 @@ static void check_box(const particles* p, const mcor_options* options, double is
     place_sample(box, s, seed, at);
     evaluate(p, options, iso, at, &field, &weight);
     CORE_CHECK(field >= (double)out[0] - (double)out[2] && field <= (double)out[1] + (double)out[2],
-      "kernel %s, field %d: %.9g at %g %g %g, not in [%.9g, %.9g] +- %.3g; box %d %d %d, %d",
-      mcor_sph_kernel_name(options->sph_kernel), (int)options->field, field, at[0], at[1], at[2],
-      (double)out[0], (double)out[1], (double)out[2], box->s[0], box->s[1], box->s[2], box->s[3]);
+      mcor_sph_kernel_name(options->sph_kernel), options->field, field, at[0], at[1], at[2], out[0],
+      out[1], out[2], box->s[0], box->s[1], box->s[2], box->s[3]);
     CORE_CHECK(options->field == MCOR_WEIGHT_SUM || weight <= (double)out[3] + (double)out[4],
-      "kernel %s, field %d: weight %.9g, not below %.9g + %.3g",
-      mcor_sph_kernel_name(options->sph_kernel), (int)options->field, weight, (double)out[3],
-      (double)out[4]);
+      mcor_sph_kernel_name(options->sph_kernel), options->field, weight, out[3], out[4]);
     const int state = (int)out[6]; /* mcor_bound.cl defines the states */
     CORE_CHECK(state == 0 ? weight < options->node_threshold
         : state == 1      ? field > level
         : state == 2      ? field < level
                           : 1,
-      "state %d of a box, but field %.9g, weight %.9g", state, field - level, weight);
+      state, field - level, weight);
   }
 }
 
@@ -226,10 +223,9 @@ static void check_bound(mcor_context* context, const particle_set* set, mcor_opt
     decided += out[7 * b + 5] > 0 && out[7 * b + 6] < 3;
     most = out[7 * b + 5] > (float)most ? (int)out[7 * b + 5] : most;
   }
-  CORE_CHECK(decided >= decided_at_least, "kernel %s, field %d: only %d of %d boxes are certain",
-    mcor_sph_kernel_name(options->sph_kernel), (int)options->field, decided, boxes);
-  CORE_CHECK(set->count < 10000 || most > 1000 * context->cl.lanes,
-    "%d particles in a box, for %d lanes", most, context->cl.lanes);
+  CORE_CHECK(decided >= decided_at_least, mcor_sph_kernel_name(options->sph_kernel), options->field,
+    decided, boxes);
+  CORE_CHECK(set->count < 10000 || most > 1000 * context->cl.lanes, most, context->cl.lanes);
   mcor_release(context, &box_buffer);
   mcor_release(context, &results);
   free_particles(&p);
@@ -339,11 +335,10 @@ static void check_inside(mcor_context* context, const particles* p, const mcor_o
   for (int b = 0; b < count; ++b)
   {
     const int above = inside[b] ? count_above(p, options, bricks + b, iso) : 64;
-    CORE_CHECK(above == 64, "iso %g: brick %d %d %d is not inside, only %d of its nodes are above",
-      iso, bricks[b].s[0], bricks[b].s[1], bricks[b].s[2], above);
+    CORE_CHECK(above == 64, iso, bricks[b].s[0], bricks[b].s[1], bricks[b].s[2], above);
     found += inside[b];
   }
-  CORE_CHECK(iso > 0.5 || found > 20, "iso %g: only %d of %d bricks inside", iso, found, count);
+  CORE_CHECK(iso > 0.5 || found > 20, iso, found, count);
   mcor_release(context, &box_buffer);
   mcor_release(context, &results);
 }
@@ -375,9 +370,4 @@ static void test_inside(void** state)
   free_particles(&p);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_bound),
-    cmocka_unit_test(test_many_particles), cmocka_unit_test(test_inside) };
-  return cmocka_run_group_tests_name("bound", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_bound, test_many_particles, test_inside)

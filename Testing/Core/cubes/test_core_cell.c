@@ -79,8 +79,7 @@ static void check_closed(lattice* l, double volume_above)
     .triangle_count = l->triangle_count };
   CORE_REPORT report = core_check_mesh(&surface);
   assert_int_equal(report.boundary_edges, 0);
-  CORE_CHECK(report.volume > 0.4 * volume_above, "%lld triangles, volume %g of %g",
-    (long long)report.triangles, report.volume, volume_above);
+  CORE_CHECK(report.volume > 0.4 * volume_above, report.triangles, report.volume, volume_above);
   free(l->above);
   free(l->vertex);
   free(l->points);
@@ -93,7 +92,6 @@ static mcor_case_table table;
 
 static int set_up(void** state)
 {
-  (void)state;
   mcor_make_case_table(&table);
   return 0;
 }
@@ -132,8 +130,7 @@ static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
       (cube_case >> corner & 1) != (joined >> face & 1))
     {
       const int a = edge_of(corner, u), b = edge_of(corner, v);
-      CORE_CHECK(side[a][b] + side[b][a] == 1, "case %d, joined %x: corner %d on face %d",
-        cube_case, joined, corner, face);
+      CORE_CHECK(side[a][b] + side[b][a] == 1, cube_case, joined, corner, face);
     }
   }
 }
@@ -154,10 +151,8 @@ static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed
   const int tunnels = (row->tunnel[0] > 0) + (row->tunnel[1] > 0);
   const uint64_t way = random_bits(seed) % 3;
   const int tunnel = way < 2 ? row->tunnel[way] : 0;
-  CORE_CHECK(loops == 2 ? tunnels == 1 : loops > 2 || tunnels == 0,
-    "case %d, joined %x: %d tunnels", cube_case, joined, tunnels);
-  CORE_CHECK(tunnel == 0 || first[tunnel].triangles == row->triangles + 4, "case %d, joined %x",
-    cube_case, joined);
+  CORE_CHECK(loops == 2 ? tunnels == 1 : loops > 2 || tunnels == 0, cube_case, joined, tunnels);
+  CORE_CHECK(tunnel == 0 || first[tunnel].triangles == row->triangles + 4, cube_case, joined);
   check_faces(cube_case, joined, row);
   return tunnel > 0 ? first + tunnel : row;
 }
@@ -211,9 +206,8 @@ static void test_whole_table(void** state)
   }
   for (int r = 0; r < table.row_count; ++r)
   {
-    CORE_CHECK(used[r], "row %d was not used", r);
+    CORE_CHECK(used[r], r);
   }
-  (void)state;
 }
 
 /* A cell with no finer cell around it has the table's row where nothing is joined, without a tunnel. Only two opposite
@@ -224,7 +218,8 @@ static void test_first_rows(void** state)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-    uint32_t above = 0x2aaaaaa; /* these bits of nodes that do not exist are set to test that they do not matter */
+    /* These bits of nodes that do not exist are set to test that they do not matter. */
+    uint32_t above = 0x2aaaaaa;
     int flat = 0;
     for (int k = 0; k < 8; ++k)
     {
@@ -241,7 +236,6 @@ static void test_first_rows(void** state)
   const mcor_cell_row* opposite = table.rows + (table.cases[0x81] >> 6);
   assert_int_equal(opposite->tunnel[0], 0);
   assert_int_equal((opposite + opposite->tunnel[1])->triangles, 6);
-  (void)state;
 }
 
 /* ---- cells beside finer ones ---- */
@@ -262,8 +256,7 @@ static void check_inner_side(
     }
     const int divided = split >> (13 + (face & 1 ? 1 : -1) * stride[axis]) & 1;
     const int in_one = !divided || ((a[u] - 1) * (b[u] - 1) >= 0 && (a[v] - 1) * (b[v] - 1) >= 0);
-    CORE_CHECK(
-      !in_one || (c[axis] == at && d[axis] == at), "split %x: a side within face %d", split, face);
+    CORE_CHECK(!in_one || (c[axis] == at && d[axis] == at), split, face);
   }
 }
 
@@ -368,12 +361,6 @@ static void test_beside_finer(void** state)
     }
     check_closed(&l, volume);
   }
-  (void)state;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_rows),
-    cmocka_unit_test(test_whole_table), cmocka_unit_test(test_beside_finer) };
-  return cmocka_run_group_tests_name("cell", tests, set_up, NULL);
-}
+CORE_MAIN(set_up, NULL, test_first_rows, test_whole_table, test_beside_finer)

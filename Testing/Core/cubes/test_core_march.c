@@ -24,14 +24,13 @@ static void test_outlier(void** state)
     const mcor_options options = core_options(&iso);
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     CORE_REPORT report = core_check_mesh(&surface);
-    CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0,
-      "sign %d: %lld triangles, %lld boundary edges", sign, (long long)report.triangles,
-      (long long)report.boundary_edges);
+    CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0, sign, report.triangles,
+      report.boundary_edges);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
       const double* x = surface.points + 3 * i;
       const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-      CORE_CHECK(r > 0.9 * reach && r < 1.01 * reach, "sign %d: a point at distance %g", sign, r);
+      CORE_CHECK(r > 0.9 * reach && r < 1.01 * reach, sign, r);
     }
   }
 }
@@ -99,7 +98,8 @@ typedef struct node_pattern
 {
   int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
   int64_t points, triangles;       /* of the surface that the pattern must have */
-  int64_t pinched[3][2];           /* [axis][which two opposite cells are valid]: edges that have two vertices */
+  /* [axis][which two opposite cells are valid]: edges that have two vertices. */
+  int64_t pinched[3][2];
 } node_pattern;
 
 static int pattern_at(const node_pattern* p, const int at[3])
@@ -187,7 +187,8 @@ static particle_set pattern_particles(const node_pattern* p)
     const int64_t i = set.count;
     for (int a = 0; a < 3; ++a)
     {
-      set.position[3 * i + a] = at[a] - 3; /* the pattern lies across borders of bricks and blocks */
+      /* The pattern lies across borders of bricks and blocks. */
+      set.position[3 * i + a] = at[a] - 3;
     }
     set.smoothing_length[i] = 0.45;
     set.volume[i] = 1;
@@ -214,16 +215,15 @@ static void check_pattern(
   }
   assert_int_equal(surface.point_count, p->points);
   CORE_CHECK(topology == MCOR_TOPOLOGY_FIELD || surface.triangle_count == p->triangles,
-    "%lld triangles, not %lld", (long long)surface.triangle_count, (long long)p->triangles);
+    surface.triangle_count, p->triangles);
   CORE_REPORT report;
   mesh_check(
     surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
     /* The two vertices of a pinched edge are in the same place. */
-    CORE_CHECK(report.faults[fault] == (fault == MESH_COINCIDENT_POINT ? pinched : 0),
-      "topology %d, %lld of: %s; %s", (int)topology, (long long)report.faults[fault],
-      mesh_fault_name(fault), report.first[fault]);
+    CORE_CHECK(report.faults[fault] == (fault == MESH_COINCIDENT_POINT ? pinched : 0), topology,
+      report.faults[fault], mesh_fault_name(fault), report.first[fault]);
   }
 }
 
@@ -245,13 +245,9 @@ static void test_node_by_node(void** state)
   }
   for (int k = 0; k < 6; ++k)
   {
-    CORE_CHECK(pinched[k] > 0, "no pinched edge along axis %d with diagonal %d", k / 2, k % 2);
+    CORE_CHECK(pinched[k] > 0, k / 2, k % 2);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_outlier),
-    cmocka_unit_test(test_parts_have_the_bits_of_the_whole), cmocka_unit_test(test_node_by_node) };
-  return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_outlier, test_parts_have_the_bits_of_the_whole,
+  test_node_by_node)

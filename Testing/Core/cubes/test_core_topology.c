@@ -79,9 +79,8 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
   CORE_REPORT report = core_check_mesh(&surface);
   const int64_t parts = report.components;
   *statistics = surface.statistics;
-  CORE_CHECK(report.boundary_edges == 0 && report.euler == 2 * parts,
-    "%lld boundary edges, %lld components, Euler number %lld", (long long)report.boundary_edges,
-    (long long)parts, (long long)report.euler);
+  CORE_CHECK(report.boundary_edges == 0 && report.euler == 2 * parts, report.boundary_edges, parts,
+    report.euler);
   return parts;
 }
 
@@ -111,8 +110,4 @@ static void test_diagonals(void** state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_diagonals) };
-  return cmocka_run_group_tests_name("topology", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_diagonals)

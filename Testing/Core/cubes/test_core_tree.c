@@ -44,14 +44,14 @@ static void level_limit(void** state)
 /* Level L begins at exactly 2^L times the smallest h. */
 static void levels_of_particles(void** state)
 {
-  (void)state;
   assert_int_equal(mcor_tree_level_of(1, 1, 24), 0);
   assert_int_equal(mcor_tree_level_of(nextafter(2, 0), 1, 24), 0);
   assert_int_equal(mcor_tree_level_of(2, 1, 24), 1);
   assert_int_equal(mcor_tree_level_of(0.3 * 1024, 0.3, 24), 10);
   assert_int_equal(mcor_tree_level_of(nextafter(0.3 * 1024, 0), 0.3, 24), 9);
   assert_int_equal(mcor_tree_level_of(1e30, 1, 24), 24);
-  assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0); /* a solid smaller than all fluid has level 0 */
+  /* A solid smaller than all fluid has level 0. */
+  assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0);
 }
 
 /* There are so many levels that bricks of the lowest one have numbers too large for an int. */
@@ -62,9 +62,10 @@ static void more_bricks_than_numbers(void** state)
   mcor_input input;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
-  context->lattice.levels = 24; /* as with h from 1 to 10^7 and a cube size that the lattice allows */
+  /* As with h from 1 to 10^7 and a cube size that the lattice allows. */
+  context->lattice.levels = 24;
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), "%s", mcor_last_error(context));
+  CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), mcor_last_error(context));
   context->run.options = NULL;
 }
 
@@ -81,13 +82,13 @@ static void more_leaves_than_the_limit(void** state)
   options.h_scale = 220;
   CORE_OK(context, mcor_measure_input(context, &input, &options));
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), "%s", mcor_last_error(context));
+  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), mcor_last_error(context));
   size_t room = 0;
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
     room += context->tree.split[l].clusters.capacity * sizeof(mcor_entry);
   }
-  CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
+  CORE_CHECK(room < 50000000, room);
   mcor_release_tree(&context->tree);
   context->run.options = NULL;
 }
@@ -102,7 +103,7 @@ static void more_leaves_of_all_levels(void** state)
   CORE_SET set = core_make_random(90000, 1, 3e-6, 0.03, 3);
   measure(context, &set, 24, &options, &input);
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), "%s", mcor_last_error(context));
+  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), mcor_last_error(context));
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
     assert_in_range(context->tree.split[l].count, 0, 4000000);
@@ -143,7 +144,7 @@ static void making_leaves_can_be_cancelled(void** state)
   context->run.fraction_end = 1;
   CORE_OK(context, mcor_make_tree(context, &input));
   const int calls = often - left, splits = (int)context->tree.split[1].count;
-  CORE_CHECK(calls > 50, "%d calls, %d bricks of level 1", calls, splits);
+  CORE_CHECK(calls > 50, calls, splits);
   for (int stop = 0; stop < calls; stop += 1 + stop / 3)
   {
     left = stop;
@@ -157,11 +158,5 @@ static void making_leaves_can_be_cancelled(void** state)
   context->run.options = NULL;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(more_bricks_than_numbers),
-    cmocka_unit_test(making_leaves_can_be_cancelled), cmocka_unit_test(more_leaves_than_the_limit),
-    cmocka_unit_test(more_leaves_of_all_levels), cmocka_unit_test(level_limit),
-    cmocka_unit_test(levels_of_particles) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, more_bricks_than_numbers, making_leaves_can_be_cancelled,
+  more_leaves_than_the_limit, more_leaves_of_all_levels, level_limit, levels_of_particles)

@@ -32,7 +32,6 @@ static mcor_status extract(mcor_context* context, uint64_t* hash)
 /* The message names the kernels that were not compiled with the library, and what to do. */
 static void test_names_what_is_missing(void** state)
 {
-  (void)state;
   static const struct
   {
     mcor_sph_kernel kernel;
@@ -53,14 +52,13 @@ static void test_names_what_is_missing(void** state)
     CORE_CHECK(CORE_AHEAD_ALL ||
         (strstr(text, cases[c].words) && strstr(text, "MCOR_AHEAD=all") &&
           !strstr(text, cases[c].others)),
-      "%s", text);
+      text);
   }
 }
 
 /* A call that no device can do fails, and does not change later calls. */
 static void test_goes_on(void** state)
 {
-  (void)state;
   CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   assert_string_equal(context->cl.platform_name, "built in");
@@ -76,9 +74,4 @@ static void test_goes_on(void** state)
   assert_true(after == before);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_goes_on),
-    cmocka_unit_test(test_names_what_is_missing) };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+CORE_MAIN(NULL, NULL, test_goes_on, test_names_what_is_missing)

@@ -59,7 +59,6 @@ static void test_named_device(void** state)
 
 static void test_no_such_place(void** state)
 {
-  (void)state;
   CORE_CONTEXT context;
   assert_int_equal(mcor_create_shared_context(NULL, 2, 2, &context), MCOR_INVALID_ARGUMENT);
   assert_true(core_told(context, "PLACE_ILLEGAL|2"));

@@ -36,7 +36,7 @@ static mcor_status extract(
   CORE_CHECK(status == MCOR_OK ? surface.triangle_count > 20
                                : !surface.points && !surface.triangles && !surface.attributes &&
         !surface.point_keys && !surface.triangle_keys && surface.point_count == 0,
-    "%s: %d triangles", mcor_status_name(status), (int)surface.triangle_count);
+    mcor_status_name(status), surface.triangle_count);
   return status;
 }
 
@@ -55,7 +55,7 @@ static mcor_status probe(
   CORE_CHECK(status == MCOR_OK
       ? n == s->point_count && samples.weight_sum && samples.values && samples.gradients
       : !samples.weight_sum && !samples.valid && !samples.values && !samples.gradients && n == 0,
-    "%s: %d points", mcor_status_name(status), (int)n);
+    mcor_status_name(status), n);
   *hash = status != MCOR_OK ? 0
                             : hash_numbers(samples.weight_sum, n) +
       3 * hash_numbers(samples.values[0], n) + 5 * hash_numbers(samples.gradients[0], 3 * n);
@@ -71,7 +71,7 @@ static mcor_status derive(
   const int64_t n = found.count;
   CORE_CHECK(status == MCOR_OK ? n == input->count && found.gradients && found.corrected
                                : !found.gradients && !found.corrected && n == 0,
-    "%s: %d particles", mcor_status_name(status), (int)n);
+    mcor_status_name(status), n);
   *hash = status == MCOR_OK ? hash_numbers(found.gradients[0], 3 * n) : 0;
   mcor_free_derivatives(&found);
   return status;
@@ -86,7 +86,7 @@ static mcor_status gauge(
   const mcor_status status = mcor_gauge(context, input, &s->options, lines, 2, &found);
   CORE_CHECK(status == MCOR_OK ? found.count == 2 && found.crossing_count == 3
                                : !found.readings && !found.crossings && found.count == 0,
-    "%s: %d crossings", mcor_status_name(status), (int)found.crossing_count);
+    mcor_status_name(status), found.crossing_count);
   *hash = hash_numbers(found.crossings, found.crossing_count);
   return status;
 }
@@ -103,7 +103,7 @@ static mcor_status flux(
   const mcor_status status = mcor_flux(context, &moving, &s->options, &section, 1, &found);
   CORE_CHECK(status == MCOR_OK ? found.count == 1 && found.readings[0].area > 1
                                : !found.readings && found.count == 0,
-    "%s: %d sections", mcor_status_name(status), (int)found.count);
+    mcor_status_name(status), found.count);
   *hash = status == MCOR_OK ? hash_numbers(&found.readings[0].area, 2) : 0;
   return status;
 }
@@ -151,7 +151,7 @@ static mcor_status extract_as_rank(
   }
   else
   {
-    CORE_CHECK(!globals.components && globals.component_count == 0, "globals are not empty");
+    assert_true(!globals.components && globals.component_count == 0);
   }
   mcor_free_globals(&globals);
   return status;
@@ -161,7 +161,7 @@ static void expect_right(mcor_context* context, const sweep* s)
 {
   uint64_t hash;
   CORE_OK(context, s->call(context, s, &s->input, &hash));
-  CORE_CHECK(hash == s->expected, "after a fault in %s: another result", core_failed_call());
+  CORE_CHECK(hash == s->expected, core_failed_call());
 }
 
 /* Checks, after a fault that made the call fail, that there is a sentence and nothing is left over, and that the next
@@ -169,8 +169,8 @@ static void expect_right(mcor_context* context, const sweep* s)
 static void expect_sound(mcor_context* context, const sweep* s, const char* words)
 {
   const char* sentence = mcor_last_error(context);
-  CORE_CHECK(strstr(sentence, words) || strstr(sentence, "could not allocate"),
-    "fault in %s: \"%s\"", core_failed_call(), sentence);
+  CORE_CHECK(strstr(sentence, words) || strstr(sentence, "could not allocate"), core_failed_call(),
+    sentence);
   core_expect_nothing_held(context, s->bytes, BUFFERS_KEPT);
   expect_right(context, s);
 }
@@ -205,12 +205,11 @@ static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int 
       CORE_OK(context, status);
       break;
     }
-    CORE_CHECK(status == expected, "call %d, %s fails with %d: status %s, not %s: %s", n,
-      core_failed_call(), (int)error, mcor_status_name(status), mcor_status_name(expected),
-      mcor_last_error(context));
+    CORE_CHECK(status == expected, n, core_failed_call(), error, mcor_status_name(status),
+      mcor_status_name(expected), mcor_last_error(context));
     if (status == MCOR_OK)
     {
-      CORE_CHECK(hash == s->expected, "fault in %s: another result", core_failed_call());
+      CORE_CHECK(hash == s->expected, core_failed_call());
     }
     else
     {
@@ -232,12 +231,11 @@ static int sweep_allocations(mcor_context* context, const sweep* s)
     core_fail_allocation(n);
     const mcor_status status = s->call(context, s, &input, &hash);
     core_fail_nothing();
-    CORE_CHECK(status == MCOR_OK || (core_failed_call()[0] && status == MCOR_OUT_OF_CAPACITY),
-      "allocation %d, of %s: status %s: %s", n, core_failed_call(), mcor_status_name(status),
-      mcor_last_error(context));
+    CORE_CHECK(status == MCOR_OK || (core_failed_call()[0] && status == MCOR_OUT_OF_CAPACITY), n,
+      core_failed_call(), mcor_status_name(status), mcor_last_error(context));
     if (status == MCOR_OK)
     {
-      CORE_CHECK(hash == s->expected, "allocation %d fails: another result", n);
+      CORE_CHECK(hash == s->expected, n);
     }
     else
     {
@@ -267,7 +265,7 @@ static void sweep_room(mcor_context* context, sweep* s, int step, int least_call
   begin_sweep(context, s);
   s->step = 1;
   const int calls = sweep_calls(context, s, CL_INVALID_COMMAND_QUEUE, 0);
-  CORE_CHECK(calls > least_calls, "only %d calls", calls);
+  CORE_CHECK(calls > least_calls, calls);
   s->step = step;
   sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
   if (!s->options.ranks) /* ranks do not try again */
@@ -275,7 +273,7 @@ static void sweep_room(mcor_context* context, sweep* s, int step, int least_call
     sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 1);
   }
   const int allocations = sweep_allocations(context, s);
-  CORE_CHECK(allocations > 1, "only %d allocations", allocations);
+  CORE_CHECK(allocations > 1, allocations);
   print_message("%d calls, %d allocations\n", calls, allocations);
 }
 
@@ -305,7 +303,7 @@ static void test_every_call_fails_once(void** state)
   s.options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_NEAREST_PARTICLE;
   begin_sweep(context, &s);
   const int calls = sweep_calls(context, &s, CL_INVALID_COMMAND_QUEUE, 0);
-  CORE_CHECK(calls > 500, "only %d calls", calls);
+  CORE_CHECK(calls > 500, calls);
   s.step = 3;
   sweep_calls(context, &s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
   s.step = 7;
@@ -421,7 +419,7 @@ static void test_ranks(void** state)
   callbacks = 0;
   expect_right(context, &s);
   const int count = callbacks;
-  CORE_CHECK(count > 5, "only %d callbacks", count);
+  CORE_CHECK(count > 5, count);
   for (int n = 0; n < count; ++n)
   {
     uint64_t hash;
@@ -430,8 +428,8 @@ static void test_ranks(void** state)
     fail_callback = n;
     const mcor_status status = s.call(context, &s, &input, &hash);
     fail_callback = -1;
-    CORE_CHECK(status == MCOR_CANCELLED && callbacks == n + 1,
-      "callback %d of %d, %d were made: %s", n, count, callbacks, mcor_status_name(status));
+    CORE_CHECK(status == MCOR_CANCELLED && callbacks == n + 1, n, count, callbacks,
+      mcor_status_name(status));
     expect_sound(context, &s, "Another rank");
   }
 }
@@ -501,7 +499,7 @@ static void test_error_names(void** state)
     core_fail_call(0, names[i].code);
     assert_int_equal(mcor_fill(context, &buffer, 0, 1), MCOR_DEVICE_ERROR);
     core_fail_nothing();
-    CORE_CHECK(strstr(mcor_last_error(context), names[i].name), "%s", mcor_last_error(context));
+    CORE_CHECK(strstr(mcor_last_error(context), names[i].name), mcor_last_error(context));
   }
   /* These are all codes of OpenCL 1.2: -1 to -19, and -30 to -68. */
   for (cl_int code = -68; code < 0; ++code)
@@ -509,8 +507,8 @@ static void test_error_names(void** state)
     core_fail_call(0, code);
     mcor_fill(context, &buffer, 0, 1);
     core_fail_nothing();
-    CORE_CHECK((code < -19 && code > -30) || strstr(mcor_last_error(context), "with CL_"), "%d: %s",
-      (int)code, mcor_last_error(context));
+    CORE_CHECK((code < -19 && code > -30) || strstr(mcor_last_error(context), "with CL_"), code,
+      mcor_last_error(context));
   }
   mcor_release(context, &buffer);
 }
@@ -518,7 +516,6 @@ static void test_error_names(void** state)
 /* When a context cannot be made, its sentence says why, and a run on it fails. */
 static void test_no_context(void** state)
 {
-  (void)state;
   static const double iso = 0;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
   mcor_input input = core_input(&set);
@@ -530,27 +527,20 @@ static void test_no_context(void** state)
     const mcor_status status = mcor_create_context(NULL, &context);
     core_fail_nothing();
     done = !core_failed_call()[0];
-    CORE_CHECK(done == (status == MCOR_OK), "call %d: %s", n, mcor_status_name(status));
-    CORE_CHECK(!done || n >= 2, "only %d calls", n);
+    CORE_CHECK(done == (status == MCOR_OK), n, mcor_status_name(status));
+    CORE_CHECK(!done || n >= 2, n);
     if (!done)
     {
       mcor_surface surface = { .point_count = 7 };
       mcor_release_memory(context);
       assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
-      CORE_CHECK(strstr(mcor_last_error(context), "CL_OUT_OF_RESOURCES"), "%s: %s",
-        core_failed_call(), mcor_last_error(context));
+      CORE_CHECK(strstr(mcor_last_error(context), "CL_OUT_OF_RESOURCES"), core_failed_call(),
+        mcor_last_error(context));
       assert_int_equal(surface.point_count, 0);
     }
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
-    cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_probe_and_derive),
-    cmocka_unit_test(test_regions), cmocka_unit_test(test_filled),
-    cmocka_unit_test(test_adaptive_cubes), cmocka_unit_test(test_ranks),
-    cmocka_unit_test(test_extend), cmocka_unit_test(test_build_fails),
-    cmocka_unit_test(test_error_names) };
-  return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_no_context, test_every_call_fails_once,
+  test_probe_and_derive, test_regions, test_filled, test_adaptive_cubes, test_ranks, test_extend,
+  test_build_fails, test_error_names)

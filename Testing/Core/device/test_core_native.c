@@ -114,7 +114,6 @@ static size_t result_size(const char* name)
 
 static void test_functions(void** state)
 {
-  (void)state;
   CORE_CONTEXT context = NULL;
   if (mcor_create_context("pocl", &context) != MCOR_OK)
   {
@@ -199,7 +198,6 @@ static void check_loops(mcor_pool* pool)
 
 static void test_loops(void** state)
 {
-  (void)state;
   for (int threads = 1; threads < 9; ++threads)
   {
     mcor_pool pool = { .threads = threads };
@@ -236,7 +234,6 @@ static mcor_context* make_native(void)
 /* A process made by fork has threads of its own. */
 static void test_fork(void** state)
 {
-  (void)state;
   CORE_CONTEXT context = make_native();
   const uint64_t hash = extract(context);
   const pid_t child = fork();
@@ -256,7 +253,6 @@ static void test_fork(void** state)
  * refused in a sentence. Only threads are limited, where the test may start any number, as root may. */
 static void test_little_room_for_drivers(void** state)
 {
-  (void)state;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   skip(); /* sanitizers reserve all address space */
 #endif
@@ -304,7 +300,6 @@ static void* extract_alone(void* hash)
 
 static void test_contexts_side_by_side(void** state)
 {
-  (void)state;
   pthread_t threads[4];
   uint64_t hashes[4];
   for (int t = 0; t < 4; ++t)
@@ -320,7 +315,6 @@ static void test_contexts_side_by_side(void** state)
 
 static void test_threads_of_environment(void** state)
 {
-  (void)state;
   setenv("MCOR_THREADS", "1", 1);
   mcor_context* context = make_native();
   assert_int_equal(context->cl.units, 1);
@@ -335,7 +329,6 @@ static void test_threads_of_environment(void** state)
 /* Processes that share a machine have fewer threads each. */
 static void test_shares(void** state)
 {
-  (void)state;
   uint64_t hash = 0;
   for (int count = 1; count < 4; ++count)
   {
@@ -352,7 +345,6 @@ static void test_shares(void** state)
 /* Memory that is locked for mappings, as with a GPU, stays within what a driver allows. */
 static void test_locked(void** state)
 {
-  (void)state;
   enum
   {
     LARGEST = 1 << 20,
@@ -375,12 +367,5 @@ static void test_locked(void** state)
   mcor_release(context, &buffer);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
-    cmocka_unit_test(test_loops), cmocka_unit_test(test_fork),
-    cmocka_unit_test(test_little_room_for_drivers), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
-    cmocka_unit_test(test_locked) };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+CORE_MAIN(NULL, NULL, test_functions, test_loops, test_fork, test_little_room_for_drivers,
+  test_contexts_side_by_side, test_threads_of_environment, test_shares, test_locked)

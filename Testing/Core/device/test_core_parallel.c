@@ -76,7 +76,6 @@ static bool are_all_complete(void)
 
 static void test_every_element_once(void** state)
 {
-  (void)state;
   assert_true(are_all_complete());
 }
 
@@ -105,7 +104,6 @@ static void test_cancelled(void** state)
   CORE_CONTEXT context = NULL;
   const double iso = 0;
   const int64_t count = MCOR_SLICES * 64;
-  (void)state;
   const char* before = getenv("MCOR_THREADS");
   setenv("MCOR_THREADS", "1", 1);
   CORE_OK(context, mcor_create_context(NULL, &context));
@@ -139,7 +137,6 @@ static void test_cancelled(void** state)
 
 static void test_several_at_once(void** state)
 {
-  (void)state;
   pthread_t threads[4];
   bool good[4] = { false };
   for (int t = 0; t < 4; ++t)
@@ -171,7 +168,7 @@ static void test_first_bad_particle(void** state)
     }
     mcor_surface surface;
     assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
-    CORE_CHECK(strstr(mcor_last_error(*state), "particle 30007 "), "%s", mcor_last_error(*state));
+    CORE_CHECK(strstr(mcor_last_error(*state), "particle 30007 "), mcor_last_error(*state));
     for (int64_t i = 30007; i < set.count; i += 5000)
     {
       arrays[kind][i] = good;
@@ -182,7 +179,6 @@ static void test_first_bad_particle(void** state)
 /* Ranges cover the fluid alone; where all particles are solids they are empty. Slices may have no fluid. */
 static void test_ranges(void** state)
 {
-  (void)state;
   const int64_t count = 4 * MCOR_MEMORY_GRAIN;
   CORE_FREED float* values = malloc((size_t)count * sizeof *values);
   CORE_FREED uint8_t* solid = malloc((size_t)count);
@@ -205,10 +201,5 @@ static void test_ranges(void** state)
   assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
-    cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_cancelled),
-    cmocka_unit_test(test_first_bad_particle), cmocka_unit_test(test_ranges) };
-  return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_every_element_once, test_several_at_once,
+  test_cancelled, test_first_bad_particle, test_ranges)

@@ -54,8 +54,7 @@ static void derive_check_linear(
     for (int k = 0; k < 9; ++k)
     {
       const double expected = derive_jacobian[k / 3][k % 3], got = d.gradients[0][9 * i + k];
-      CORE_CHECK(fabs(got - expected) <= 2 * tolerance, "particle %lld, component %d: %.12g for %g",
-        (long long)i, k, got, expected);
+      CORE_CHECK(fabs(got - expected) <= 2 * tolerance, i, k, got, expected);
     }
   }
   mcor_free_derivatives(&d);
@@ -114,8 +113,7 @@ static void test_standard_form(void** state)
     for (int a = 0; a < 3; ++a)
     {
       const double got = d.gradients[0][3 * i + a];
-      CORE_CHECK(fabs(got - expected[a]) <= 2e-5, "particle %lld: %.9g, expected %.9g",
-        (long long)i, got, expected[a]);
+      CORE_CHECK(fabs(got - expected[a]) <= 2e-5, i, got, expected[a]);
     }
   }
   mcor_free_derivatives(&d);
@@ -143,7 +141,7 @@ static void test_too_few_neighbours(void** state)
     assert_int_equal(d.corrected[i], 0);
     for (int a = 0; a < 3; ++a)
     {
-      CORE_CHECK(fabs(d.gradients[0][3 * i + a] - expected[a]) <= 1e-5, "particle %d", i);
+      CORE_CHECK(fabs(d.gradients[0][3 * i + a] - expected[a]) <= 1e-5, i);
     }
   }
   mcor_free_derivatives(&d);
@@ -163,20 +161,14 @@ static void test_decomposition(void** state)
                expected_lambda2[] = { -1, 0, 4, 1, -0.38 };
   for (int i = 0; i < 5; ++i)
   {
-    CORE_CHECK(fabs(divergence[i] - expected_divergence[i]) < 1e-12, "divergence %d", i);
-    CORE_CHECK(fabs(q[i] - expected_q[i]) < 1e-12, "Q %d: %g", i, q[i]);
-    CORE_CHECK(fabs(lambda2[i] - expected_lambda2[i]) < 1e-15 * (1 + fabs(lambda2[i])),
-      "lambda2 %d: %g", i, lambda2[i]);
+    CORE_CHECK(fabs(divergence[i] - expected_divergence[i]) < 1e-12, i);
+    CORE_CHECK(fabs(q[i] - expected_q[i]) < 1e-12, i, q[i]);
+    CORE_CHECK(
+      fabs(lambda2[i] - expected_lambda2[i]) < 1e-15 * (1 + fabs(lambda2[i])), i, lambda2[i]);
   }
   assert_true(vorticity[2] == 2 && vorticity[5] == -2 && vorticity[8] == 0);
   assert_true(strain[9 + 1] == 1 && strain[9 + 3] == 1 && strain[1] == 0);
-  (void)state;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_linear_is_exact),
-    cmocka_unit_test(test_standard_form), cmocka_unit_test(test_too_few_neighbours),
-    cmocka_unit_test(test_decomposition) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_linear_is_exact, test_standard_form,
+  test_too_few_neighbours, test_decomposition)

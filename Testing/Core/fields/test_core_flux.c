@@ -146,11 +146,10 @@ static void check_reading(
   const mcor_flux_reading* r, double area, double flux, const char* what, size_t number)
 {
   const double scale = area * sqrt(14);
-  CORE_CHECK(!r->outside && fabs(r->area - area) <= 1e-6 * area, "%s %zu: area %.9g, not %.9g",
-    what, number, r->area, area);
+  CORE_CHECK(!r->outside && fabs(r->area - area) <= 1e-6 * area, what, number, r->area, area);
   CORE_CHECK(
     fabs(r->volume_flux - flux) <= 1e-6 * scale && fabs(r->mass_flux - 1000 * flux) <= 1e-3 * scale,
-    "%s %zu: fluxes %.9g, %.9g, not %.9g", what, number, r->volume_flux, r->mass_flux, flux);
+    what, number, r->volume_flux, r->mass_flux, flux);
   assert_true(fabs(r->velocity - r->volume_flux / r->area) < 1e-12);
 }
 
@@ -195,7 +194,8 @@ static void test_uniform_in_a_plane(void** state)
     shape section; /* the section in the plane of constant z */
     double area, flux;
   } cases[] = {
-    { { MCOR_SECTION_LINES, 2, { 5, 3, 8, 5, 7, 8 }, 0 }, 4, 4 }, /* the normal points to the right of upwards */
+    { { MCOR_SECTION_LINES, 2, { 5, 3, 8, 5, 7, 8 }, 0 }, 4,
+      4 }, /* the normal points to the right of upwards */
     { { MCOR_SECTION_LINES, 4, { 5, 3, 8, 9, 3, 8, 9, 3, 8, 9, 7, 8 }, 0 }, 8,
       8 + 4 }, /* -v is 2 */
     { { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 7, 5, 7, 7, 5, 3, 9 }, 0 }, 4, 4 },
@@ -301,10 +301,8 @@ static void test_half_out_of_the_water(void** state)
     flux += share[i] * samples.values[0][3 * i] * samples.values[1][i];
   }
   const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
-  CORE_CHECK(area > 60 && area < 84 && fabs(r.area - area) < 1e-6 * area,
-    "area %.9g, expected %.9g", r.area, area);
-  CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), "mass flux %.9g, expected %.9g",
-    r.mass_flux, flux);
+  CORE_CHECK(area > 60 && area < 84 && fabs(r.area - area) < 1e-6 * area, r.area, area);
+  CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
 /* A corner on the level itself is all that is near the fluid: the flux is 0, or a small number, not NaN. */
@@ -322,8 +320,7 @@ static void test_corner_on_the_level(void** state)
   options.iso_values = &level;
   options.iso_count = 1;
   const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
-  CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, "level %g: area %g",
-    level, r.area);
+  CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, level, r.area);
 }
 
 /* The bits are the same for a section alone and among others, for particles that stay on the device or not, and from
@@ -364,8 +361,8 @@ static void test_period(void** state)
     wall.points[p] -= 48;
   }
   const mcor_flux_reading there = flux_of(*state, &input, &options, &wall);
-  CORE_CHECK(fabs(here.area - 7 * sqrt(32)) < 1e-4 && here.mass_flux == there.mass_flux,
-    "%g, %.17g, %.17g", here.area, here.mass_flux, there.mass_flux);
+  CORE_CHECK(fabs(here.area - 7 * sqrt(32)) < 1e-4 && here.mass_flux == there.mass_flux, here.area,
+    here.mass_flux, there.mass_flux);
 }
 
 /* A channel has walls of solids beyond y = 0 and y = 12. The fluid begins a spacing inside of them. With solids it ends
@@ -400,14 +397,14 @@ static void test_walls(void** state)
     const double begin = alone ? 0.5 : 0.25, width = 12 - 2 * begin, error = alone ? 5e-3 : 1e-4;
     input.ignore_solids = alone;
     const mcor_flux_reading r = flux_of(*state, &input, &options, &across);
-    CORE_CHECK(fabs(r.area - 4 * width) < 4 * error && fabs(r.volume_flux - r.area) < 1e-5,
-      "area %.9g, expected %.9g; flux %.9g", r.area, 4 * width, r.volume_flux);
+    CORE_CHECK(fabs(r.area - 4 * width) < 4 * error && fabs(r.volume_flux - r.area) < 1e-5, r.area,
+      4 * width, r.volume_flux);
     CORE_GAUGES gauges;
     CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
     const double* at = gauges.crossings;
     CORE_CHECK(gauges.crossing_count == 2 && fabs(at[0] - 2 - begin) < error &&
         fabs(at[1] - 14 + begin) < error,
-      "%lld crossings, at %g and %g", (long long)gauges.crossing_count, at[0], at[1]);
+      gauges.crossing_count, at[0], at[1]);
   }
 }
 
@@ -416,8 +413,8 @@ static void refuse(mcor_context* context, const mcor_input* input, const mcor_op
   const mcor_section* section, const char* words)
 {
   mcor_fluxes fluxes;
-  CORE_CHECK(mcor_flux(context, input, options, section, 1, &fluxes) != MCOR_OK, "%s", words);
-  CORE_CHECK(core_told(context, words), "%s", mcor_last_error(context));
+  CORE_CHECK(mcor_flux(context, input, options, section, 1, &fluxes) != MCOR_OK, words);
+  CORE_CHECK(core_told(context, words), mcor_last_error(context));
   assert_true(fluxes.count == 0 && !fluxes.readings);
 }
 
@@ -492,11 +489,6 @@ static void test_weird(void** state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
-    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_half_out_of_the_water),
-    cmocka_unit_test(test_corner_on_the_level), cmocka_unit_test(test_same_bits),
-    cmocka_unit_test(test_period), cmocka_unit_test(test_walls), cmocka_unit_test(test_weird) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_uniform, test_uniform_in_a_plane,
+  test_half_out_of_the_water, test_corner_on_the_level, test_same_bits, test_period, test_walls,
+  test_weird)

@@ -75,9 +75,10 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
   for (int64_t i = 0; i < r->crossing_count; ++i)
   {
     const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
-    CORE_CHECK(error <= ERROR_OF_WEIGHT, "line %lld: off by %g", (long long)number, error);
-    CORE_CHECK(i == 0 || at[i] >= at[i - 1], "line %lld: not in order", (long long)number);
-    counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step; /* the samples are 10 steps apart */
+    CORE_CHECK(error <= ERROR_OF_WEIGHT, number, error);
+    CORE_CHECK(i == 0 || at[i] >= at[i - 1], number);
+    /* The samples are 10 steps apart. */
+    counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step;
   }
   double before = weight_at(field, line, 0), depth = 0;
   int64_t next = 0;
@@ -91,8 +92,7 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
     const int changes = (before >= LEVEL) != (after >= LEVEL);
     const int certain =
       fabs(before - LEVEL) > ERROR_OF_WEIGHT && fabs(after - LEVEL) > ERROR_OF_WEIGHT;
-    CORE_CHECK(!certain || passed % 2 == changes, "line %lld, at %g: %lld crossings, expected %d",
-      (long long)number, length * i / n, (long long)passed, changes);
+    CORE_CHECK(!certain || passed % 2 == changes, number, length * i / n, passed, changes);
     depth += (before >= LEVEL) + (after >= LEVEL);
     before = after;
   }
@@ -193,9 +193,8 @@ static void test_noise(void** state)
     const mcor_sph_kernel k = (mcor_sph_kernel)kernel;
     gauge_counts counts = { 0 };
     check_lines(*state, &set, lines, k == MCOR_CUBIC_SPLINE ? 1000 : 400, k, MCOR_FLOAT32, &counts);
-    CORE_CHECK(counts.crossings > 700, "kernel %d: %d crossings", kernel, counts.crossings);
-    CORE_CHECK(counts.close_pairs > (k == MCOR_CUBIC_SPLINE ? 5 : 0),
-      "kernel %d: %d crossings were near each other", kernel, counts.close_pairs);
+    CORE_CHECK(counts.crossings > 700, kernel, counts.crossings);
+    CORE_CHECK(counts.close_pairs > (k == MCOR_CUBIC_SPLINE ? 5 : 0), kernel, counts.close_pairs);
   }
 }
 
@@ -234,8 +233,8 @@ static void test_still_pool_of_computed_volumes(void** state)
     CORE_GAUGES gauges;
     CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
     const double level = gauges.readings[0].place[2];
-    CORE_CHECK(fabs(level - 10) < 0.05, "%s, h %g, %d dimensions: level %g",
-      mcor_sph_kernel_name(options.sph_kernel), h, c % 2 ? 2 : 3, level);
+    CORE_CHECK(
+      fabs(level - 10) < 0.05, mcor_sph_kernel_name(options.sph_kernel), h, c % 2 ? 2 : 3, level);
   }
 }
 
@@ -309,8 +308,8 @@ static void test_weird(void** state)
   CORE_OK(*state, mcor_gauge(*state, &input, &options, &far, 1, &gauges));
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
   mcor_free_gauges(&gauges);
-  CORE_OK(
-    *state, mcor_gauge(*state, &input, &options, &good, 1, &gauges)); /* the line is shorter than a step */
+  CORE_OK(*state,
+    mcor_gauge(*state, &input, &options, &good, 1, &gauges)); /* the line is shorter than a step */
   assert_true(gauges.readings[0].state == MCOR_GAUGE_FULL && !gauges.readings[0].outside);
   assert_true(fabs(gauges.readings[0].depth - 0.1) < 1e-9);
   mcor_free_gauges(&gauges);
@@ -322,10 +321,5 @@ static void test_weird(void** state)
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_pool_with_waves),
-    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool_of_computed_volumes),
-    cmocka_unit_test(test_period), cmocka_unit_test(test_same_bits), cmocka_unit_test(test_weird) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_pool_with_waves, test_noise,
+  test_still_pool_of_computed_volumes, test_period, test_same_bits, test_weird)

@@ -51,7 +51,7 @@ static double probe_compare(const oracle_field* field, const double point[3], do
   oracle_sample expected;
   oracle_evaluate(field, NULL, point, &expected);
   CORE_CHECK(fabs(samples->weight_sum[i] - expected.weight) <= tolerance * fmax(1, expected.weight),
-    "point %lld: weight %g, expected %g", (long long)i, samples->weight_sum[i], expected.weight);
+    i, samples->weight_sum[i], expected.weight);
   if (fabs(expected.weight - threshold) < tolerance && threshold > 0)
   {
     return steepest;
@@ -59,11 +59,11 @@ static double probe_compare(const oracle_field* field, const double point[3], do
   assert_int_equal(samples->valid[i], expected.weight >= threshold);
   if (!samples->valid[i])
   {
-    CORE_CHECK(samples->values[0][i] == 0, "a value where none is valid");
+    assert_true(samples->values[0][i] == 0);
     return steepest;
   }
-  CORE_CHECK(fabs(samples->values[0][i] - expected.value) <= tolerance * scale,
-    "point %lld: value %.9g, expected %.9g", (long long)i, samples->values[0][i], expected.value);
+  CORE_CHECK(fabs(samples->values[0][i] - expected.value) <= tolerance * scale, i,
+    samples->values[0][i], expected.value);
   for (int a = 0; a < 3 && steep; ++a)
   {
     steepest = fmax(steepest, fabs(expected.gradient[a]));
@@ -71,8 +71,8 @@ static double probe_compare(const oracle_field* field, const double point[3], do
   for (int a = 0; a < 3; ++a)
   {
     const double got = samples->gradients[0][3 * i + a];
-    CORE_CHECK(fabs(got - expected.gradient[a]) <= 20 * tolerance * scale * steepest,
-      "point %lld: gradient %.9g, expected %.9g", (long long)i, got, expected.gradient[a]);
+    CORE_CHECK(fabs(got - expected.gradient[a]) <= 20 * tolerance * scale * steepest, i, got,
+      expected.gradient[a]);
   }
   return steepest;
 }
@@ -86,7 +86,8 @@ static void test_against_oracle(void** state)
     mcor_type precision;
     double offset; /* added to the scalar */
     double tolerance;
-    double size; /* the edge of the particles' cube; in a small one more particles reach a point than are gathered at
+    double
+      size; /* the edge of the particles' cube; in a small one more particles reach a point than are gathered at
                   * once */
   } cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6, 10 },
     { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 1e-5, 3 },
@@ -118,8 +119,8 @@ static void test_against_oracle(void** state)
     int valid = 0;
     for (int64_t i = 0; i < count; ++i)
     {
-      probe_compare(&field, points + 3 * i, options.node_threshold,
-        1 + (is_sum ? fabs(offset) : 0), false, cases[c].tolerance, &samples, i);
+      probe_compare(&field, points + 3 * i, options.node_threshold, 1 + (is_sum ? fabs(offset) : 0),
+        false, cases[c].tolerance, &samples, i);
       valid += samples.valid[i];
     }
     assert_in_range(valid, count / 4, count - 1);
@@ -263,8 +264,10 @@ static void test_only_particles_nearby_are_needed(void** state)
   {
     assert_true(probe_near(*state, &set, volumes, 0, 2) > 0);
     assert_true(probe_near(*state, &set, volumes, 41, 1e-9) > 0);
-    assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* the points lie between the groups */
-    assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* the points lie outside of everything */
+    /* The points lie between the groups. */
+    assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);
+    /* The points lie outside of everything. */
+    assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0);
   }
 }
 
@@ -355,13 +358,12 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
   CORE_OK(fresh, mcor_probe(fresh, &alone, &call->options, &at, KEPT_POINTS, &expected));
   for (int a = 0; a < call->input.attribute_count; ++a)
   {
-    CORE_CHECK(got.attribute_not_finite[a] == expected.attribute_not_finite[a], "%s: finite", step);
+    CORE_CHECK(got.attribute_not_finite[a] == expected.attribute_not_finite[a], step);
     if (expected.values[a])
     {
       const size_t bytes =
         (size_t)mcor_components(&call->attributes[a]) * KEPT_POINTS * sizeof(double);
-      CORE_CHECK(
-        memcmp(got.values[a], expected.values[a], bytes) == 0, "%s: values of %d", step, a);
+      CORE_CHECK(memcmp(got.values[a], expected.values[a], bytes) == 0, step, a);
     }
   }
 }
@@ -441,8 +443,7 @@ static void test_at_particles(void** state)
     {
       CORE_CHECK(fabs(samples.gradients[0][3 * i + a] - expected.gradient[a]) < 1e-4 &&
           fabs(samples.weight_gradient[3 * i + a] - expected.weight_gradient[a]) < 1e-4,
-        "particle %lld, h %g: gradient %g, expected %g", (long long)i, set.smoothing_length[i],
-        samples.gradients[0][3 * i + a], expected.gradient[a]);
+        i, set.smoothing_length[i], samples.gradients[0][3 * i + a], expected.gradient[a]);
     }
   }
 }
@@ -464,20 +465,14 @@ static void test_means_are_between(void** state)
   int zero = 0, more = 0;
   for (int64_t i = 0; i < 20000; ++i)
   {
-    CORE_CHECK(samples.values[0][i] >= 0, "point %lld: %g", (long long)i, samples.values[0][i]);
+    CORE_CHECK(samples.values[0][i] >= 0, i, samples.values[0][i]);
     zero += samples.valid[i] && samples.values[0][i] == 0;
     more += samples.values[0][i] > 1;
   }
-  CORE_CHECK(zero > 1000 && more > 1000, "%d of 0, %d above", zero, more);
+  CORE_CHECK(zero > 1000 && more > 1000, zero, more);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_threshold_itself),
-    cmocka_unit_test(test_against_oracle), cmocka_unit_test(test_wide_range_against_oracle),
-    cmocka_unit_test(test_bits_do_not_depend_on_other_points),
-    cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points),
-    cmocka_unit_test(test_kept_attributes), cmocka_unit_test(test_at_particles),
-    cmocka_unit_test(test_means_are_between) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_threshold_itself, test_against_oracle,
+  test_wide_range_against_oracle, test_bits_do_not_depend_on_other_points,
+  test_only_particles_nearby_are_needed, test_odd_points, test_kept_attributes, test_at_particles,
+  test_means_are_between)

@@ -101,8 +101,9 @@ static double expected_factor(const particle_set* set, int64_t j, double iso, do
       offset[a] += near * (set->position[3 * k + a] - set->position[3 * j + a]);
     }
   }
-  const double middle = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) /
-    fmax(crowd, 1) / set->smoothing_length[j];
+  const double middle =
+    sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) / fmax(crowd, 1) /
+    set->smoothing_length[j];
   double upper = WIDEST, above = weight_with(set, j, upper);
   const double sided = ramp(middle, 0.4, 0.6) * (1.5 * ramp(crowd, 4.5, 6) - 0.5);
   const double least =
@@ -159,18 +160,16 @@ static void test_factors(void** state)
       outside += is;
       const int takes_mean = s[j] == 1 && sided[j] > 0;
       const double share = 4 * sided[j] * (1 - sided[j]);
-      const double expected = takes_mean ? 1 + share * fmax(mean / weight - 1, 0)
-                                         : fmax(fmin(s[j], mean / weight), 1);
+      const double expected =
+        takes_mean ? 1 + share * fmax(mean / weight - 1, 0) : fmax(fmin(s[j], mean / weight), 1);
       corners += takes_mean && expected > 1.05;
-      CORE_CHECK(fabs(w.factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
-        w.factor[j], expected);
+      CORE_CHECK(fabs(w.factor[j] - expected) < 2e-4, j, w.factor[j], expected);
       wide += expected > 1.9;
       narrow += expected < 1.01;
     }
-    CORE_CHECK(wide > 50 && narrow >= 4 && corners > 0, "%d wide, %d narrow, %d take the mean", wide,
-      narrow, corners);
-    CORE_CHECK(outside > 10 && w.statistics.widening_outside == outside, "%d outside, expected %d",
-      (int)w.statistics.widening_outside, outside);
+    CORE_CHECK(wide > 50 && narrow >= 4 && corners > 0, wide, narrow, corners);
+    CORE_CHECK(outside > 10 && w.statistics.widening_outside == outside,
+      w.statistics.widening_outside, outside);
   }
 }
 
@@ -185,13 +184,13 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
   CORE_SURFACE widened = core_extract(context, &input, &options);
   assert_int_equal(w.volume != NULL, !mcor_is_given(&input.volume));
   const mcor_statistics* s = &widened.statistics;
-  CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1, "%g %g %g",
+  CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1,
     s->widening_min, s->widening_mean, s->widening_max);
   assert_int_equal(s->widening_outside, w.statistics.widening_outside);
   CORE_FREED double* length = oracle_allocate(input.count, sizeof *length);
   for (int64_t j = 0; j < input.count; ++j)
   {
-    CORE_CHECK(!(input.solid && input.solid[j]) || w.factor[j] == 1, "a solid has %g", w.factor[j]);
+    CORE_CHECK(!(input.solid && input.solid[j]) || w.factor[j] == 1, w.factor[j]);
     length[j] = ((const double*)input.smoothing_length.data)[j] * w.factor[j];
   }
   options.widen = 1;
@@ -199,8 +198,8 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
   input.smoothing_length.data = length;
   input.volume = w.volume ? core_array(w.volume, 1) : input.volume;
   CORE_SURFACE plain = core_extract(context, &input, &options);
-  CORE_CHECK(plain.point_count > 30 && plain.point_count == widened.point_count,
-    "%lld and %lld points", (long long)plain.point_count, (long long)widened.point_count);
+  CORE_CHECK(plain.point_count > 30 && plain.point_count == widened.point_count, plain.point_count,
+    widened.point_count);
   assert_true(core_hash(&plain) == core_hash(&widened));
 }
 
@@ -272,10 +271,10 @@ static void test_parts(void** state)
       for (int64_t j = 0; j < set.count - 20; ++j) /* without the thread and the drops */
       {
         const double x = set.position[3 * j];
-        CORE_CHECK(x < box[0] + 0.6 || x > box[1] - 0.6 || w.factor[j] == whole.factor[j],
-          "particle %lld at %g: %g, not %g", (long long)j, x, w.factor[j], whole.factor[j]);
-        CORE_CHECK(fabs(shifted.factor[j] - whole.factor[j]) < 2e-4,
-          "particle %lld moves from %g to %g", (long long)j, whole.factor[j], shifted.factor[j]);
+        CORE_CHECK(x < box[0] + 0.6 || x > box[1] - 0.6 || w.factor[j] == whole.factor[j], j, x,
+          w.factor[j], whole.factor[j]);
+        CORE_CHECK(
+          fabs(shifted.factor[j] - whole.factor[j]) < 2e-4, j, whole.factor[j], shifted.factor[j]);
       }
     }
     mcor_free_globals(&globals);
@@ -310,7 +309,7 @@ static void test_levels_and_reuse(void** state)
       assert_int_equal(surface.statistics.highest_level, 1);
       assert_true(surface.point_count > 300);
       expected[k] = reuse == 0 ? core_hash(&surface) : expected[k];
-      CORE_CHECK(expected[k] == core_hash(&surface), "call %d differs with reuse", i);
+      CORE_CHECK(expected[k] == core_hash(&surface), i);
     }
   }
 }
@@ -353,10 +352,5 @@ static void test_refused(void** state)
     "PERIOD_TOO_SHORT_WIDENED|widened to 4.4|{widen} of no more than 1.2");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_factors),
-    cmocka_unit_test(test_surface), cmocka_unit_test(test_parts),
-    cmocka_unit_test(test_levels_and_reuse), cmocka_unit_test(test_refused) };
-  return cmocka_run_group_tests_name("widen", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_factors, test_surface, test_parts,
+  test_levels_and_reuse, test_refused)

@@ -71,7 +71,7 @@ static void check_scan(mcor_context* context, int count, int largest)
   int sum = 0;
   for (int i = 0; i <= count; ++i)
   {
-    CORE_CHECK(scanned[i] == sum, "size %d: element %d is %d, not %d", count, i, scanned[i], sum);
+    CORE_CHECK(scanned[i] == sum, count, i, scanned[i], sum);
     sum += i < count ? counts[i] : 0;
   }
   assert_int_equal(total, sum);
@@ -102,7 +102,7 @@ static void test_scan_overflow(void** state)
     assert_int_equal(status, k == 2 ? MCOR_OK : MCOR_OUT_OF_CAPACITY);
     CORE_CHECK(
       k == 2 ? total == most[k] + 1 : strstr(mcor_last_error(context), "too large") != NULL,
-      "%d: %s", most[k], mcor_last_error(context));
+      most[k], mcor_last_error(context));
     mcor_release(context, &buffer);
   }
 }
@@ -119,7 +119,7 @@ static void test_argument_count(void** state)
   assert_int_equal(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, 1, MCOR_BUFFER(&buffer),
                      MCOR_INT(1), MCOR_INT(1)),
     MCOR_DEVICE_ERROR);
-  CORE_CHECK(strstr(mcor_last_error(context), "mcor_scan_fill"), "%s", mcor_last_error(context));
+  CORE_CHECK(strstr(mcor_last_error(context), "mcor_scan_fill"), mcor_last_error(context));
   mcor_release(context, &buffer);
 }
 
@@ -138,19 +138,19 @@ static void check_keys(mcor_context* context, int kind, int count)
   CORE_FREED uint8_t* seen = oracle_allocate(count + 1, 1);
   for (int i = 0; i < count; ++i)
   {
-    CORE_CHECK(from[i] >= 0 && from[i] < count && !seen[from[i]], "%s, size %d: value %d is %d",
-      kinds[kind].name, count, i, from[i]);
+    CORE_CHECK(
+      from[i] >= 0 && from[i] < count && !seen[from[i]], kinds[kind].name, count, i, from[i]);
     seen[from[i]] = 1;
-    CORE_CHECK(sorted[i] == keys[from[i]], "%s, size %d: key %d", kinds[kind].name, count, i);
+    CORE_CHECK(sorted[i] == keys[from[i]], kinds[kind].name, count, i);
     CORE_CHECK(
       i == 0 || sorted[i - 1] < sorted[i] || (sorted[i - 1] == sorted[i] && from[i - 1] < from[i]),
-      "%s, size %d: element %d is out of order", kinds[kind].name, count, i);
+      kinds[kind].name, count, i);
   }
   int shift = -1, next = 0, found = -1;
   CORE_OK(context, mcor_index_keys(context, &buffer, count, limit, &buckets, &shift));
   const uint64_t bucket_count = (limit >> shift) + 2;
-  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, "%s, size %d: %llu buckets",
-    kinds[kind].name, count, (unsigned long long)bucket_count);
+  CORE_CHECK(
+    bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, kinds[kind].name, count, bucket_count);
   CORE_FREED int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
   for (uint64_t b = 0; b < bucket_count; ++b)
   {
@@ -158,8 +158,7 @@ static void check_keys(mcor_context* context, int kind, int count)
     {
       ++next;
     }
-    CORE_CHECK(first[b] == next, "%s, size %d: bucket %llu begins at %d, not %d", kinds[kind].name,
-      count, (unsigned long long)b, first[b], next);
+    CORE_CHECK(first[b] == next, kinds[kind].name, count, b, first[b], next);
   }
   CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
   CORE_OK(context, mcor_unique(context, &buffer, count, limit, &distinct, &index_of, &found));
@@ -175,12 +174,12 @@ static void check_keys(mcor_context* context, int kind, int count)
     assert_int_equal(begins[found], count);
     for (int i = 0; i < count; ++i)
     {
-      CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i],
-        "%s, size %d: index %d of key %d", kinds[kind].name, count, index[i], i);
+      CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i], kinds[kind].name,
+        count, index[i], i);
       if (i == 0 || sorted[i] != sorted[i - 1])
       {
         CORE_CHECK(expected < found && values[expected] == sorted[i] && begins[expected] == i,
-          "%s, size %d: distinct key %d", kinds[kind].name, count, expected);
+          kinds[kind].name, count, expected);
         ++expected;
       }
     }
@@ -229,20 +228,14 @@ static void test_parts(void** state)
     CORE_FREED int* count = read_back(gpu, &visits, ITEMS, sizeof(int));
     for (int i = 0; i < ITEMS; ++i)
     {
-      CORE_CHECK(count[i] == round, "work-item %d ran %d times in %d launches", i, count[i], round);
+      CORE_CHECK(count[i] == round, i, count[i], round);
     }
   }
   mcor_release(gpu, &visits);
   check_scan(gpu, 100003, 20000);
   check_scan(gpu, 4097, 1);
   mcor_free_context(gpu);
-  (void)state;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_parts), cmocka_unit_test(test_scan),
-    cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_argument_count),
-    cmocka_unit_test(test_keys) };
-  return cmocka_run_group_tests_name("scan", tests, set_up, core_tear_down);
-}
+CORE_MAIN(
+  set_up, core_tear_down, test_parts, test_scan, test_scan_overflow, test_argument_count, test_keys)

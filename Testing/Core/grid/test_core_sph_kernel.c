@@ -74,13 +74,12 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
     const double twin =
       h * h * h * oracle_kernel_value((oracle_kernel)kernel, h, offsets + 3 * i, gradient);
     CORE_CHECK(fabs(at[0] - twin) < 1e-12 && fabs(at[1] - twin) < 1e-12,
-      "kernel %s, %g %g %g: W %.17g and %.17g, should be %.17g", mcor_sph_kernel_name(kernel),
-      offsets[3 * i], offsets[3 * i + 1], offsets[3 * i + 2], at[0], at[1], twin);
+      mcor_sph_kernel_name(kernel), offsets[3 * i], offsets[3 * i + 1], offsets[3 * i + 2], at[0],
+      at[1], twin);
     for (int a = 0; a < 3; ++a)
     {
-      CORE_CHECK(fabs(at[2 + a] - h * h * h * gradient[a]) < 1e-10,
-        "kernel %s: slope %g along %d, twin %g", mcor_sph_kernel_name(kernel), at[2 + a], a,
-        h * h * h * gradient[a]);
+      CORE_CHECK(fabs(at[2 + a] - h * h * h * gradient[a]) < 1e-10, mcor_sph_kernel_name(kernel),
+        at[2 + a], a, h * h * h * gradient[a]);
     }
   }
 }
@@ -96,12 +95,12 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   {
     const double* at = w + 5 * i;
     const int inside = i == 3 || i == 4;
-    CORE_CHECK((at[0] != 0) == inside && (at[1] != 0) == inside,
-      "kernel %s: W %g and %g at point %d", mcor_sph_kernel_name(kernel), at[0], at[1], i);
+    CORE_CHECK((at[0] != 0) == inside && (at[1] != 0) == inside, mcor_sph_kernel_name(kernel),
+      at[0], at[1], i);
     if (i != 3)
     {
-      CORE_CHECK(at[2] == 0 && at[3] == 0 && at[4] == 0, "kernel %s: slope %g %g %g at point %d",
-        mcor_sph_kernel_name(kernel), at[2], at[3], at[4], i);
+      CORE_CHECK(at[2] == 0 && at[3] == 0 && at[4] == 0, mcor_sph_kernel_name(kernel), at[2], at[3],
+        at[4], i);
     }
   }
 }
@@ -143,7 +142,6 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel)
   }
   CORE_CHECK(
     error < 1.5e-6 && slope < 3e-6 * steepest && (share < 3e-5 || kernel == MCOR_M_PRIME_4),
-    "kernel %s: W off by %.3g of the greatest, %.3g of itself; slope by %.3g of the steepest",
     mcor_sph_kernel_name(kernel), error, share, slope / steepest);
   mcor_release(context, &in);
   mcor_release(context, &out);
@@ -157,8 +155,8 @@ static void test_kernels(void** state)
     {
       const double found = mcor_kernel_of((mcor_sph_kernel)k)->variance[dimensions == 2],
                    twin = oracle_kernel_variance((oracle_kernel)k, dimensions);
-      CORE_CHECK(fabs(found - twin) < 1e-9, "kernel %s, %d dimensions: variance %.15g, not %.15g",
-        mcor_sph_kernel_name((mcor_sph_kernel)k), dimensions, found, twin);
+      CORE_CHECK(fabs(found - twin) < 1e-9, mcor_sph_kernel_name((mcor_sph_kernel)k), dimensions,
+        found, twin);
     }
     check_values(*state, (mcor_sph_kernel)k);
     check_support(*state, (mcor_sph_kernel)k);
@@ -168,7 +166,6 @@ static void test_kernels(void** state)
 
 static void test_names(void** state)
 {
-  (void)state;
   static const char* const names[] = { "cubic", "quadratic", "mprime4", "quintic", "wendland",
     "quartic", "wendland_c4", "wendland_c6", "sinc6" };
   assert_int_equal(sizeof names / sizeof names[0], MCOR_SPH_KERNEL_COUNT);
@@ -176,17 +173,12 @@ static void test_names(void** state)
   {
     assert_int_equal(mcor_find_sph_kernel(names[k]), k);
     assert_string_equal(mcor_sph_kernel_name((mcor_sph_kernel)k), names[k]);
-    CORE_CHECK(mcor_support_factor((mcor_sph_kernel)k) == oracle_support((oracle_kernel)k),
-      "support of %s", names[k]);
+    CORE_CHECK(
+      mcor_support_factor((mcor_sph_kernel)k) == oracle_support((oracle_kernel)k), names[k]);
   }
   assert_int_equal(mcor_find_sph_kernel("cubi"), -1);
   assert_int_equal(mcor_find_sph_kernel(NULL), -1);
   assert_null(mcor_sph_kernel_name((mcor_sph_kernel)99));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels),
-    cmocka_unit_test(test_names) };
-  return cmocka_run_group_tests_name("sph_kernel", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_kernels, test_names)

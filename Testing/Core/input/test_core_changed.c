@@ -123,7 +123,7 @@ static void test_changes_at_each_launch(void** state)
         const mcor_status status = mcor_extract(context, &call.input, &call.options, &surface);
         CORE_CHECK(status == MCOR_OK || status == MCOR_INVALID_DATA ||
             status == MCOR_INVALID_ARGUMENT || status == MCOR_OUT_OF_CAPACITY,
-          "%s: %s", mcor_status_name(status), mcor_last_error(context));
+          mcor_status_name(status), mcor_last_error(context));
         ++calls;
         done = c.calls <= at;
         free_call(&call);
@@ -131,7 +131,7 @@ static void test_changes_at_each_launch(void** state)
     }
   }
   context->report_interval = interval;
-  CORE_CHECK(calls > 200, "%d calls", calls);
+  CORE_CHECK(calls > 200, calls);
 }
 
 /* ---- Changed between measuring and extracting ---- */
@@ -153,11 +153,9 @@ static void test_other_globals(void** state)
     change(&c);
     const mcor_status status = mcor_extract(context, &call.input, &call.options, &surface);
     const bool within = kind == ONE_PLACE;
-    CORE_CHECK(status == (within ? MCOR_OK : MCOR_INVALID_DATA), "change %d: %s", kind,
-      mcor_last_error(context));
+    CORE_CHECK(status == (within ? MCOR_OK : MCOR_INVALID_DATA), kind, mcor_last_error(context));
     const char* sentence = kind == NO_NUMBER ? "ARRAY_VALUE" : "ARRAYS_CHANGED";
-    CORE_CHECK(
-      within || core_told(context, sentence), "change %d: %s", kind, mcor_last_error(context));
+    CORE_CHECK(within || core_told(context, sentence), kind, mcor_last_error(context));
     mcor_free_globals(&globals);
     free_call(&call);
   }
@@ -203,8 +201,8 @@ static void test_changes_all_the_time(void** state)
     for (int round = 0; round < 60; ++round)
     {
       const mcor_status status = mcor_extract(context, &call.input, &call.options, &surface);
-      CORE_CHECK(status == MCOR_OK || status == MCOR_INVALID_DATA, "%s: %s",
-        mcor_status_name(status), mcor_last_error(context));
+      CORE_CHECK(status == MCOR_OK || status == MCOR_INVALID_DATA, mcor_status_name(status),
+        mcor_last_error(context));
       noticed += core_told(context, "ARRAYS_CHANGED");
       mcor_free_surface(&surface);
     }
@@ -212,15 +210,11 @@ static void test_changes_all_the_time(void** state)
     pthread_join(thread, NULL);
     memcpy(call.set.position, call.before, (size_t)call.set.count * 3 * sizeof(double));
     surface = core_extract(context, &call.input, &call.options);
-    CORE_CHECK(core_hash(&surface) == expected, "case %d is another one afterwards", which);
+    CORE_CHECK(core_hash(&surface) == expected, which);
     free_call(&call);
   }
   print_message("%d calls of %d noticed\n", noticed, 60 * CASES);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_other_globals),
-    cmocka_unit_test(test_changes_at_each_launch), cmocka_unit_test(test_changes_all_the_time) };
-  return cmocka_run_group_tests_name("changed", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_other_globals, test_changes_at_each_launch,
+  test_changes_all_the_time)

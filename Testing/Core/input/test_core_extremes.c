@@ -65,9 +65,8 @@ static void test_far_reach(void** state)
       CORE_SURFACE surface = core_extract(*state, &input, &options);
       triangles[p] = surface.triangle_count;
     }
-    CORE_CHECK(triangles[0] > 100 && triangles[0] == triangles[1],
-      "kind %d: %lld triangles in single, %lld in double precision", kind, (long long)triangles[0],
-      (long long)triangles[1]);
+    CORE_CHECK(
+      triangles[0] > 100 && triangles[0] == triangles[1], kind, triangles[0], triangles[1]);
   }
 }
 
@@ -96,9 +95,8 @@ static void test_magnitude(void** state)
       cut = u == 0 ? surface.statistics.trim_vertices : cut;
       CORE_CHECK(surface.point_count == points && surface.statistics.trim_vertices == cut &&
           cut > 50 && surface.statistics.trim_vertices_linear == 0,
-        "precision %d, unit %g: %lld points, %lld cut, %lld of them linear", p, units[p][u],
-        (long long)surface.point_count, (long long)surface.statistics.trim_vertices,
-        (long long)surface.statistics.trim_vertices_linear);
+        p, units[p][u], surface.point_count, surface.statistics.trim_vertices,
+        surface.statistics.trim_vertices_linear);
     }
   }
 }
@@ -122,7 +120,7 @@ static void test_exact_threshold(void** state)
     mesh_free_report(&report);
     thresholds += surface.triangle_count > 0;
   }
-  CORE_CHECK(thresholds > 50, "%d thresholds", thresholds);
+  CORE_CHECK(thresholds > 50, thresholds);
 }
 
 /* Many coincident particles are sorted in no time, and an earlier scalar leaves no trace. */
@@ -163,7 +161,7 @@ static void test_coincident(void** state)
   CORE_SURFACE reused = core_extract(*state, &input, &options);
   mcor_release_memory(*state);
   CORE_SURFACE fresh = core_extract(*state, &input, &options);
-  CORE_CHECK(fresh.point_count > 50, "%lld points", (long long)fresh.point_count);
+  CORE_CHECK(fresh.point_count > 50, fresh.point_count);
   assert_int_equal(core_hash(&reused), core_hash(&fresh));
 }
 
@@ -192,8 +190,7 @@ static void test_plateau(void** state)
     options.iso_values = isos;
     options.iso_count = 2;
     CORE_SURFACE both = core_extract(*state, &input, &options);
-    CORE_CHECK(both.triangle_count == alone, "%g below: %lld triangles, not %lld", 3e-8 * k,
-      (long long)both.triangle_count, (long long)alone);
+    CORE_CHECK(both.triangle_count == alone, 3e-8 * k, both.triangle_count, alone);
   }
 }
 
@@ -243,17 +240,10 @@ static void test_wide_range(void** state)
   {
     oracle_sample sample;
     oracle_evaluate(&field, NULL, surface.points + 3 * v, &sample);
-    CORE_CHECK(fabs(sample.value - entry->iso) <= 5e-6 * range, "vertex %lld is off by %g of %g",
-      (long long)v, sample.value - entry->iso, range);
+    CORE_CHECK(
+      fabs(sample.value - entry->iso) <= 5e-6 * range, v, sample.value - entry->iso, range);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_apart),
-    cmocka_unit_test(test_far_reach), cmocka_unit_test(test_magnitude),
-    cmocka_unit_test(test_exact_threshold), cmocka_unit_test(test_coincident),
-    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density),
-    cmocka_unit_test(test_wide_range) };
-  return cmocka_run_group_tests_name("extremes", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_far_apart, test_far_reach, test_magnitude,
+  test_exact_threshold, test_coincident, test_plateau, test_no_density, test_wide_range)

@@ -118,7 +118,8 @@ static void test_absent(void** state)
     set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
     set.solid[i] ? (void)0 : particle_set_append(&block, &set, i);
   }
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the numbers of particles would differ */
+  /* The numbers of particles would differ. */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   check_same(*state, &block, &set, input_without_solids, &options);
 }
 
@@ -171,8 +172,8 @@ static void test_measures(void** state)
     }
     const mcor_measure *m = &measured[0], *same = &measured[1];
     assert_true(m->h_estimate == same->h_estimate && m->wall_share == same->wall_share);
-    CORE_CHECK((m->h_estimate > 0) == estimated && (m->wall_share > 0) == !ignored,
-      "way %d: h %g, wall share %g", way, m->h_estimate, m->wall_share);
+    CORE_CHECK((m->h_estimate > 0) == estimated && (m->wall_share > 0) == !ignored, way,
+      m->h_estimate, m->wall_share);
     double count[WATCHED], spacing[WATCHED], h[WATCHED];
     for (int s = 0; s < WATCHED; ++s)
     {
@@ -196,7 +197,7 @@ static void test_measures(void** state)
     CORE_CHECK(m->neighbours == mcor_median_of(count, WATCHED) &&
         fabs(m->spacing / mcor_median_of(spacing, WATCHED) - 1) < 1e-12 &&
         m->h_median == mcor_median_of(h, WATCHED),
-      "way %d: %g neighbours, spacing %g, h %g", way, m->neighbours, m->spacing, m->h_median);
+      way, m->neighbours, m->spacing, m->h_median);
   }
 }
 
@@ -273,8 +274,7 @@ static void test_region(void** state)
     options.widen = widest == 0 ? 1 : widest;
     CORE_SURFACE expected = core_extract(*state, &one, &options);
     CORE_SURFACE surface = core_extract(*state, &other, &options);
-    CORE_CHECK(surface.triangle_count > 0 && core_hash(&surface) == core_hash(&expected),
-      "widened by %d", widest);
+    CORE_CHECK(surface.triangle_count > 0 && core_hash(&surface) == core_hash(&expected), widest);
   }
   options.widen = 1;
   options.periodic[0] = -5; /* from there images reach the box */
@@ -346,15 +346,9 @@ static void test_zoom(void** state)
     assert_true(surface.statistics.is_closed);
     /* The sum of densities 1 is the small particles' weight sum. */
     CORE_CHECK(fabs(surface.statistics.volume / expected.statistics.volume - 1) < 0.005,
-      "%g for %g", surface.statistics.volume, expected.statistics.volume);
+      surface.statistics.volume, expected.statistics.volume);
     mcor_free_surface(&surface);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_absent),
-    cmocka_unit_test(test_measures), cmocka_unit_test(test_few), cmocka_unit_test(test_region),
-    cmocka_unit_test(test_zoom) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_absent, test_measures, test_few, test_region, test_zoom)

@@ -45,7 +45,6 @@ static mcor_status find(
 /* The rule of precedence is tested for all combinations of what the file has and what is given by hand. */
 static void test_volumes(void** state)
 {
-  (void)state;
   const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
   /* file: the file has the arrays of these letters (v, m, d). given: v, m, d by name, M, D by value, c computed, p one
@@ -101,11 +100,10 @@ static void test_volumes(void** state)
       strcat(used, k == 1 && mcor_is_given(source) ? "/" : "");
     }
     const char* why = found.unused.text ? found.unused.text : "(nothing)";
-    CORE_CHECK(
-      strcmp(used, cases[c].used) == 0, "file %s, given %s: %s", cases[c].file, given, used);
+    CORE_CHECK(strcmp(used, cases[c].used) == 0, cases[c].file, given, used);
     CORE_CHECK(cases[c].unused ? strncmp(why, cases[c].unused, strlen(cases[c].unused)) == 0
                                : !found.unused.text,
-      "file %s, given %s: %s", cases[c].file, given, why);
+      cases[c].file, given, why);
     /* Masses and densities are known even if volumes are given. */
     assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
       strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
@@ -117,7 +115,6 @@ static void test_volumes(void** state)
  * they are. */
 static void test_elements(void** state)
 {
-  (void)state;
   const int8_t i8[COUNT] = { 1, 2, 3, 4 };
   const uint8_t u8[COUNT] = { 1, 2, 3, 4 };
   const int16_t i16[COUNT] = { 1, 2, 3, 4 };
@@ -146,14 +143,14 @@ static void test_elements(void** state)
     assert_int_equal(find(&request, arrays, count, &found), MCOR_OK);
     const mcor_array* length = &found.input.smoothing_length;
     const bool stays = i < 2;
-    CORE_CHECK(stays == (length->data == arrays[i].data), "array %s is copied", arrays[i].name);
+    CORE_CHECK(stays == (length->data == arrays[i].data), arrays[i].name);
     assert_int_equal(length->type, i == 0 || i == 10 ? MCOR_FLOAT32 : MCOR_FLOAT64);
     assert_string_equal(length->name, arrays[i].name);
     for (int p = 0; p < COUNT; ++p)
     {
       const double value = length->type == MCOR_FLOAT32 ? (double)((const float*)length->data)[p]
                                                         : ((const double*)length->data)[p];
-      CORE_CHECK(value == p + 1, "%s[%d] is %g", arrays[i].name, p, value);
+      CORE_CHECK(value == p + 1, arrays[i].name, p, value);
     }
     mcor_free_found(&found);
   }
@@ -162,7 +159,6 @@ static void test_elements(void** state)
 /* Fluid is found by the codes of DualSPHysics, by 0 and 1, and by hand; then particles are left out. */
 static void test_fluid(void** state)
 {
-  (void)state;
   const uint8_t codes[COUNT] = { 0, 1, 3, 3 }, wall[COUNT] = { 1, 0, 0, 0 };
   const double other[COUNT] = { 5, 6, 6, 6 };
   const mcor_named arrays[] = { of("Type", MCOR_ELEMENT_UINT8, 1, codes),
@@ -225,7 +221,6 @@ static void test_fluid(void** state)
  * needs. */
 static void test_scalar_and_attributes(void** state)
 {
-  (void)state;
   const int32_t id[COUNT] = { 3, 1, 2, 0 };
   const float vx[COUNT] = { 1, 4, 7, 10 }, vy[COUNT] = { 2, 5, 8, 11 }, vz[COUNT] = { 3, 6, 9, 12 };
   const mcor_named arrays[] = { real("h", h), of("Idp", MCOR_ELEMENT_INT32, 1, id),
@@ -295,7 +290,6 @@ static void test_scalar_and_attributes(void** state)
 /* Each sentence about what is missing, or not usable. */
 static void test_errors(void** state)
 {
-  (void)state;
   const double dp[COUNT] = { 0.5, 0.5, 0.5, 0.5 };
   const mcor_named arrays[] = { real("Rhop", density), real("Idp", speed), real("spacing", dp),
     of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32), of("text", MCOR_ELEMENT_OTHER, 1, NULL),
@@ -325,16 +319,15 @@ static void test_errors(void** state)
     { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR, "T", "There is no point array 'T' for the scalar. " },
     { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR_DOT, "Rhop",
       "The dot product needs two arrays with the same number of components; 'Velocity' has 3, "
-      "'Rhop' has 1." }
-  };
+      "'Rhop' has 1." } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     mcor_request request = request_of(cases[c].wants);
     request.names[cases[c].role] = cases[c].name;
     mcor_found found;
     assert_int_equal(find(&request, arrays, 6, &found), MCOR_INVALID_ARGUMENT);
-    CORE_CHECK(strncmp(found.error.text, cases[c].begins, strlen(cases[c].begins)) == 0, "%s",
-      found.error.text);
+    CORE_CHECK(
+      strncmp(found.error.text, cases[c].begins, strlen(cases[c].begins)) == 0, found.error.text);
     mcor_free_found(&found);
   }
   mcor_request request = request_of(MCOR_WANT_SCALAR);
@@ -362,18 +355,11 @@ static void test_errors(void** state)
 
 static void test_walls(void** state)
 {
-  (void)state;
   assert_true(mcor_tells_of_walls("Boundary_particles") && mcor_tells_of_walls("TANK") &&
     mcor_tells_of_walls("rb_particle_data_1"));
   assert_false(mcor_tells_of_walls("water") || mcor_tells_of_walls("") ||
     mcor_tells_of_walls(NULL) || mcor_tells_of_walls("wal"));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_volumes),
-    cmocka_unit_test(test_elements), cmocka_unit_test(test_fluid),
-    cmocka_unit_test(test_scalar_and_attributes), cmocka_unit_test(test_errors),
-    cmocka_unit_test(test_walls) };
-  return cmocka_run_group_tests_name("find", tests, NULL, NULL);
-}
+CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_fluid, test_scalar_and_attributes,
+  test_errors, test_walls)

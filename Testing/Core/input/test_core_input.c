@@ -44,12 +44,11 @@ static void expect(
   memset(&surface, 0x5a, sizeof surface);
   const mcor_status got = mcor_extract(context, &call->input, &call->options, &surface);
   const char* error = mcor_last_error(context);
-  CORE_CHECK(got == status, "status \"%s\", not \"%s\": %s", mcor_status_name(got),
-    mcor_status_name(status), error);
+  CORE_CHECK(got == status, mcor_status_name(got), mcor_status_name(status), error);
   const mcor_surface empty = { 0 };
-  CORE_CHECK(memcmp(&surface, &empty, sizeof empty) == 0, "the surface is not empty");
-  CORE_CHECK(core_told(context, words), "not %s: %s", words, error);
-  CORE_CHECK(error[strlen(error) - 1] == '.', "no sentence: %s", error);
+  assert_true(memcmp(&surface, &empty, sizeof empty) == 0);
+  CORE_CHECK(core_told(context, words), words, error);
+  CORE_CHECK(error[strlen(error) - 1] == '.', error);
 }
 
 /* Checks that a good call works after the failures. */
@@ -58,7 +57,7 @@ static void expect_good(mcor_context* context)
   CORE_OWNED(free_call) bad_call call = make_call();
   call.options.iso_values = call.iso;
   CORE_SURFACE surface = core_extract(context, &call.input, &call.options);
-  CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  assert_true(surface.triangle_count > 0);
   assert_string_equal(mcor_last_error(context), "");
 }
 
@@ -282,8 +281,8 @@ static void test_empty_results(void** state)
     call.options.iso_count = kind != 1;
     call.input.count = kind == 0 ? 0 : kind == 4 ? 1 : call.input.count;
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
-    CORE_CHECK(surface.point_count == 0 && surface.triangle_count == 0, "kind %d: %lld triangles",
-      kind, (long long)surface.triangle_count);
+    CORE_CHECK(
+      surface.point_count == 0 && surface.triangle_count == 0, kind, surface.triangle_count);
     mcor_free_surface(&surface);
   }
   expect_good(*state);
@@ -314,10 +313,10 @@ static void test_endless_range(void** state)
       continue;
     }
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
-    CORE_CHECK(surface.triangle_count > 0, "no surface with %g", cases[k].most);
+    CORE_CHECK(surface.triangle_count > 0, cases[k].most);
     for (int64_t i = 0; i < 3 * surface.point_count; ++i)
     {
-      CORE_CHECK(isfinite(surface.normals[i]), "a normal with %g is not finite", cases[k].most);
+      CORE_CHECK(isfinite(surface.normals[i]), cases[k].most);
     }
   }
   expect_good(*state);
@@ -339,7 +338,7 @@ static void test_bad_attributes(void** state)
     call.vector[3 * 21 + 2] = call.vector[3 * 40] = bad[k];
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     const size_t n = (size_t)surface.point_count;
-    CORE_CHECK(n > 20 && good.point_count == (int64_t)n, "%zu points", n);
+    CORE_CHECK(n > 20 && good.point_count == (int64_t)n, n);
     const int64_t expected[] = { -1, 21, 0, -1 };
     for (int a = 0; a < 4; ++a)
     {
@@ -374,7 +373,7 @@ static void test_values_of_solids(void** state)
     call.input.attribute_count = 1;
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     expected = k == 0 ? core_hash(&surface) : expected;
-    CORE_CHECK(surface.point_count > 20 && core_hash(&surface) == expected, "value %g", values[k]);
+    CORE_CHECK(surface.point_count > 20 && core_hash(&surface) == expected, values[k]);
     assert_int_equal(surface.attribute_not_finite[0], -1);
   }
 }
@@ -408,10 +407,9 @@ static void test_magnitudes(void** state)
     make_vectors(&call, units[k]);
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     points = k == 0 ? surface.point_count : points;
-    CORE_CHECK(points > 20 && surface.point_count == points, "unit %g: %lld points, not %lld",
-      units[k], (long long)surface.point_count, (long long)points);
+    CORE_CHECK(points > 20 && surface.point_count == points, units[k], surface.point_count, points);
     const double most = surface.statistics.scalar_max / units[k];
-    CORE_CHECK(most > 10 && most < 20, "unit %g: magnitudes up to %g", units[k], most);
+    CORE_CHECK(most > 10 && most < 20, units[k], most);
   }
 }
 
@@ -434,11 +432,11 @@ static void test_bad_products(void** state)
   call.vector[3] = call.vector[4] = other[3] = 1e200;
   other[4] = -1e200;
   CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
-  CORE_CHECK(surface.point_count > 20 && surface.statistics.scalar_min == 0, "%lld points, from %g",
-    (long long)surface.point_count, surface.statistics.scalar_min);
+  CORE_CHECK(surface.point_count > 20 && surface.statistics.scalar_min == 0, surface.point_count,
+    surface.statistics.scalar_min);
   for (int64_t i = 0; i < 3 * surface.point_count; ++i)
   {
-    CORE_CHECK(isfinite(surface.points[i]) && isfinite(surface.normals[i]), "not finite");
+    assert_true(isfinite(surface.points[i]) && isfinite(surface.normals[i]));
   }
   expect_good(*state);
 }
@@ -477,12 +475,11 @@ static void test_units_of_length(void** state)
       continue;
     }
     mcor_surface surface = core_extract(*state, &call.input, &call.options);
-    CORE_CHECK(surface.point_count > 20, "%lld points", (long long)surface.point_count);
+    CORE_CHECK(surface.point_count > 20, surface.point_count);
     for (int64_t i = 0; k > 0 && i < 3 * surface.point_count; ++i)
     {
-      CORE_CHECK(
-        surface.points[i] == first.points[i] * units[k], "unit %g: another point", units[k]);
-      CORE_CHECK(surface.normals[i] == first.normals[i], "unit %g: another normal", units[k]);
+      CORE_CHECK(surface.points[i] == first.points[i] * units[k], units[k]);
+      CORE_CHECK(surface.normals[i] == first.normals[i], units[k]);
     }
     k == 0 ? (void)(first = surface) : mcor_free_surface(&surface);
   }
@@ -504,8 +501,7 @@ static void test_far_options(void** state)
     call.options.field = k / 6 % 2 ? MCOR_SUM : MCOR_SHEPARD;
     call.options.iso_values = call.iso;
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
-    CORE_CHECK(
-      surface.triangle_count == 0, "case %d: %lld triangles", k, (long long)surface.triangle_count);
+    CORE_CHECK(surface.triangle_count == 0, k, surface.triangle_count);
   }
   expect_good(*state);
 }
@@ -539,17 +535,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
-    cmocka_unit_test(test_options), cmocka_unit_test(test_pairs),
-    cmocka_unit_test(test_missing_arrays),
-    cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
-    cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
-    cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),
-    cmocka_unit_test(test_endless_range), cmocka_unit_test(test_values_of_solids),
-    cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
-    cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
-    cmocka_unit_test(test_far_options), cmocka_unit_test(test_outliers) };
-  return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_enumerations, test_options, test_pairs,
+  test_missing_arrays, test_components, test_bad_elements, test_particles, test_lattice_limits,
+  test_null_arguments, test_empty_results, test_endless_range, test_values_of_solids,
+  test_bad_attributes, test_magnitudes, test_bad_products, test_computed_volumes,
+  test_units_of_length, test_far_options, test_outliers)

@@ -12,7 +12,6 @@
 
 static void test_names(void** state)
 {
-  (void)state;
   assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
   assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
   assert_true(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "h") >
@@ -53,7 +52,6 @@ static void test_names(void** state)
 /* The first array in the core's order gives the period; an array that is no period gives none. */
 static void test_period_of_field_data(void** state)
 {
-  (void)state;
   const double bounds[6] = { -1, 1, 0, 0, 0, 0 }, cube = 2, edges[3] = { 2, 0, 4 };
   const double box[6] = { -1, 3, -2, 2, 5, 6 }, kinds[3] = { 1, 0, 2 }, empty[6] = { 0 };
   const double wrong[6] = { 1, -1, 0, 0, 0, 0 }, extent[6] = { -1, 0.5, 0, 1, 7, 8 };
@@ -90,7 +88,6 @@ static void test_period_of_field_data(void** state)
 
 static void test_fluid_values(void** state)
 {
-  (void)state;
   const struct
   {
     const char* name;
@@ -107,14 +104,12 @@ static void test_fluid_values(void** state)
     double fluid = -7;
     const int clear = mcor_find_fluid_value(cases[i].name, cases[i].low, cases[i].high, &fluid);
     CORE_CHECK(clear == cases[i].clear && fluid == (clear ? cases[i].fluid : -7),
-      "%s from %g to %g: %d, %g", cases[i].name ? cases[i].name : "none", cases[i].low,
-      cases[i].high, clear, fluid);
+      cases[i].name ? cases[i].name : "none", cases[i].low, cases[i].high, clear, fluid);
   }
 }
 
 static void test_view_ranks(void** state)
 {
-  (void)state;
   const int velocity = mcor_view_priority("vel", 3, 1, 1),
             vector = mcor_view_priority("Force", 3, 1, 1),
             scalar = mcor_view_priority("Pressure", 1, 1, 1),
@@ -134,7 +129,6 @@ static void test_view_ranks(void** state)
  * left out. */
 static void test_iso_values(void** state)
 {
-  (void)state;
   enum
   {
     count = 200001
@@ -151,8 +145,8 @@ static void test_iso_values(void** state)
       seed = seed * 1664525u + 1013904223u;
       const double r = seed / 4294967296.0;
       const double values[] = { r, floor(10 * r), r < 0.6 ? 3 : r, pow(10, 6 * r - 3),
-        i == 17 ? -1e300 : 1e-300 * r, i == 5 ? -1 : pow(10, 6 * r - 3),
-        r < 0.6 ? 1e-9 * r : 2 * r, r < 0.97 ? 0 : r };
+        i == 17 ? -1e300 : 1e-300 * r, i == 5 ? -1 : pow(10, 6 * r - 3), r < 0.6 ? 1e-9 * r : 2 * r,
+        r < 0.97 ? 0 : r };
       value[i] = i % 1000 == 3 ? NAN : i % 1000 == 4 ? INFINITY : values[kind];
       solid[i] = i % 7 == 0;
       if (isfinite(value[i]) && !solid[i])
@@ -173,8 +167,7 @@ static void test_iso_values(void** state)
       : kind == 2 || kind == 6        ? middle
       : kind == 7                     ? 0.5 * sorted[0] + 0.5 * sorted[fluid - 1]
                                       : sorted[(fluid - 1) / 2];
-    CORE_CHECK(fabs(iso - expected) <= (kind == 3 ? 1e-12 : 0), "kind %d: %.17g, not %.17g", kind,
-      iso, expected);
+    CORE_CHECK(fabs(iso - expected) <= (kind == 3 ? 1e-12 : 0), kind, iso, expected);
   }
   memset(solid, 1, count);
   const mcor_input none = {
@@ -196,7 +189,6 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
  * exact size, for sanitizers. */
 static void test_iso_value_of_wrong_scalars(void** state)
 {
-  (void)state;
   CORE_FREED double* three = oracle_allocate(2 * 3, sizeof *three);
   for (int i = 0; i < 6; ++i)
   {
@@ -220,7 +212,7 @@ static void test_iso_value_of_wrong_scalars(void** state)
     double range[2] = { 1, 2 }, iso = 3;
     CORE_CHECK(!mcor_find_iso_value(&wrong[i], NULL, range, &iso) &&
         !mcor_find_iso_value(&wrong[i], &ranks, range, &iso),
-      "input %d has the iso value %g", (int)i, iso);
+      i, iso);
     assert_true(range[0] == 1 && range[1] == 2 && iso == 3 && heard == 1);
   }
   double range[2], iso;
@@ -229,11 +221,5 @@ static void test_iso_value_of_wrong_scalars(void** state)
   assert_true(range[0] == 2 && range[1] == 5 && iso >= 2 && iso <= 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_names),
-    cmocka_unit_test(test_period_of_field_data), cmocka_unit_test(test_fluid_values),
-    cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values),
-    cmocka_unit_test(test_iso_value_of_wrong_scalars) };
-  return cmocka_run_group_tests_name("name", tests, NULL, NULL);
-}
+CORE_MAIN(NULL, NULL, test_names, test_period_of_field_data, test_fluid_values, test_view_ranks,
+  test_iso_values, test_iso_value_of_wrong_scalars)

@@ -85,9 +85,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   for (int64_t i = 0; i < count; ++i)
   {
     const double sum = sum_of_all(&set, &options, dimension, NULL, i, lengths[i]);
-    CORE_CHECK(fabs(sum / pow(1.3, dimension) - 1) < 1e-5,
-      "%s, %d dimensions, particle %d: h %g, sum %g", mcor_sph_kernel_name(kernel), dimension,
-      (int)i, lengths[i], sum);
+    CORE_CHECK(fabs(sum / pow(1.3, dimension) - 1) < 1e-5, mcor_sph_kernel_name(kernel), dimension,
+      i, lengths[i], sum);
     mass[i] = 1 + (double)(i % 7);
     least = fmin(least, lengths[i]);
     most = fmax(most, lengths[i]);
@@ -100,8 +99,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     const double expected =
       sum_of_all(&set, &options, dimension, mass, i, lengths[i]) / pow(lengths[i], dimension);
-    CORE_CHECK(fabs(densities[i] / expected - 1) < 1e-12, "particle %d: density %.15g, not %.15g",
-      (int)i, densities[i], expected);
+    CORE_CHECK(fabs(densities[i] / expected - 1) < 1e-12, i, densities[i], expected);
   }
   /* The particles in another order give the same bits. */
   CORE_FREED int64_t* order = core_make_order(count, 5);
@@ -153,7 +151,6 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
 
 static void test_sums(void** state)
 {
-  (void)state;
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
   {
     if (k != MCOR_M_PRIME_4)
@@ -209,15 +206,13 @@ static void test_plummer(void** state)
       ++used;
     }
     assert_true(used > 1000);
-    CORE_CHECK(fabs(sum / (double)used / radii[k] - 1) < 0.03, "radius %g, not %g",
-      sum / (double)used, radii[k]);
+    CORE_CHECK(fabs(sum / (double)used / radii[k] - 1) < 0.03, sum / (double)used, radii[k]);
   }
 }
 
 /* A particle may lie any number of periods away without a change. */
 static void test_far_beyond_period(void** state)
 {
-  (void)state;
   mcor_message why;
   double at[3 * 64], lengths[2][64];
   uint64_t seed = 9;
@@ -242,7 +237,6 @@ static void test_far_beyond_period(void** state)
 /* A particle far away from all others, too far for a place on their space-filling curve, changes nothing. */
 static void test_far_away(void** state)
 {
-  (void)state;
   enum
   {
     N = 300
@@ -268,8 +262,8 @@ static void test_far_away(void** state)
     }
     for (int i = 0; i < N - 1; ++i)
     {
-      CORE_CHECK(fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, "%g: h %g, not %g", places[k][2],
-        lengths[1][i], lengths[0][i]);
+      CORE_CHECK(
+        fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, places[k][2], lengths[1][i], lengths[0][i]);
     }
   }
 }
@@ -277,7 +271,6 @@ static void test_far_away(void** state)
 /* A body far beyond a corner of all others has the same values as it has alone, in any order of the input. */
 static void test_far_body(void** state)
 {
-  (void)state;
   enum
   {
     BODY = 100,
@@ -301,8 +294,8 @@ static void test_far_body(void** state)
   }
   for (int i = 0; i < N; ++i)
   {
-    CORE_CHECK(i >= BODY || fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, "h %g, not %g",
-      lengths[1][i], lengths[0][i]);
+    CORE_CHECK(
+      i >= BODY || fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, lengths[1][i], lengths[0][i]);
     assert_true(lengths[2][N - 1 - i] == lengths[1][i]);
   }
 }
@@ -310,13 +303,12 @@ static void test_far_body(void** state)
 static void expect_refusal(
   mcor_status status, mcor_status expected, mcor_message* why, const char* words)
 {
-  CORE_CHECK(status == expected && core_tells(why, words), "%d: %s", (int)status, why->text);
+  CORE_CHECK(status == expected && core_tells(why, words), status, why->text);
   mcor_free_message(why);
 }
 
 static void test_weird(void** state)
 {
-  (void)state;
   double at[6] = { 1, 2, 3, 1, 2, 3 }, out[2] = { -1, -1 };
   mcor_message why;
   mcor_options options = core_options(NULL);
@@ -326,7 +318,8 @@ static void test_weird(void** state)
   at[0] = 2;
   assert_int_equal(
     mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
-  assert_true(out[0] == 1 && out[1] == 1); /* two particles are too few, so the domain's extent is used */
+  /* Two particles are too few, so the domain's extent is used. */
+  assert_true(out[0] == 1 && out[1] == 1);
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, input.count, out, &why),
     MCOR_INVALID_ARGUMENT, &why, "ETA_ILLEGAL|0.6;|0.683");
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, NAN, input.count, out, &why),
@@ -352,10 +345,5 @@ static void test_weird(void** state)
   assert_true(lengths[99] > 0 && lengths[99] < 1e-6);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_plummer),
-    cmocka_unit_test(test_far_beyond_period), cmocka_unit_test(test_far_away),
-    cmocka_unit_test(test_far_body), cmocka_unit_test(test_weird) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_sums, test_plummer, test_far_beyond_period,
+  test_far_away, test_far_body, test_weird)

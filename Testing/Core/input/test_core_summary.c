@@ -55,7 +55,6 @@ static void test_estimate(void** state)
   CORE_MESSAGE message = mcor_describe_estimate(2e9);
   assert_int_equal(message.code, MCOR_SAYS_RUN_HUGE);
   assert_non_null(strstr(message.text, " 2e+09 "));
-  (void)state;
 }
 
 static void expect(char* text, const char* words)
@@ -93,12 +92,6 @@ static void test_words(void** state)
   expect(mcor_describe_measures(&found), "two dimensions: length 4, area 2");
   found.area = 0;
   expect(mcor_describe_measures(&found), "two dimensions: length 4; open, so that it has no area");
-  (void)state;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_estimate),
-    cmocka_unit_test(test_words) };
-  return cmocka_run_group_tests_name("summary", tests, NULL, NULL);
-}
+CORE_MAIN(NULL, NULL, test_estimate, test_words)

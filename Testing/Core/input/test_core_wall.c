@@ -67,9 +67,9 @@ static void test_without_solids(void** state)
         const mcor_options options = make_options(&at, &iso);
         CORE_SURFACE surface = core_extract(*state, &input, &options);
         hash[share] = core_hash(&surface);
-        CORE_CHECK(surface.triangle_count > 0, "field %d: no surface", field);
+        CORE_CHECK(surface.triangle_count > 0, field);
       }
-      CORE_CHECK(hash[0] == hash[1], "field %d, ignored %d: the surface changes", field, ignored);
+      CORE_CHECK(hash[0] == hash[1], field, ignored);
     }
   }
 }
@@ -156,9 +156,8 @@ static void test_share(void** state)
     const double expected = find_share(&set, (oracle_kernel)kernel, periodic ? 10 : 0);
     mcor_globals globals;
     CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
-    CORE_CHECK(fabs(globals.measured.wall_share - expected) < 1e-6,
-      "kernel %d%s: share %.9g, not %.9g", kernel, periodic ? ", periodic" : "",
-      globals.measured.wall_share, expected);
+    CORE_CHECK(fabs(globals.measured.wall_share - expected) < 1e-6, kernel,
+      periodic ? ", periodic" : "", globals.measured.wall_share, expected);
     mcor_free_globals(&globals);
   }
 }
@@ -191,8 +190,8 @@ static void test_measured(void** state)
     assert_true(surface[i].statistics.wall_share == (i == 0 ? 0.5 : globals.measured.wall_share));
     mcor_free_surface(&surface[i]);
   }
-  CORE_CHECK(hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0],
-    "the surface of share %g is another one", globals.measured.wall_share);
+  CORE_CHECK(
+    hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0], globals.measured.wall_share);
   mcor_free_globals(&globals);
 }
 
@@ -227,7 +226,7 @@ static void test_auto(void** state)
       assert_true(surface.triangle_count > 0);
       hash[i] = core_hash(&surface);
     }
-    CORE_CHECK(hash[0] == hash[1] && hash[0] == hash[2], "field %d: another surface", field);
+    CORE_CHECK(hash[0] == hash[1] && hash[0] == hash[2], field);
     mcor_free_globals(&globals);
   }
 }
@@ -253,10 +252,5 @@ static void test_measured_elsewhere(void** state)
   mcor_free_globals(&globals);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_without_solids),
-    cmocka_unit_test(test_share), cmocka_unit_test(test_measured),
-    cmocka_unit_test(test_measured_elsewhere), cmocka_unit_test(test_auto) };
-  return cmocka_run_group_tests_name("wall", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_without_solids, test_share, test_measured,
+  test_measured_elsewhere, test_auto)

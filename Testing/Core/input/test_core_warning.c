@@ -39,10 +39,9 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
       mcor_describe_warning((mcor_warning)w, &call->input, &call->options, &surface);
     const char* text = message.text;
     count += text != NULL;
-    CORE_CHECK((text != NULL) == (words && w == (int)expected), "%s: warning %d: %s", name, w,
-      text ? text : "not given");
-    CORE_CHECK(!text || message.code == code, "%s: %s", name, mcor_says_name(message.code));
-    CORE_CHECK(!text || core_tells(&message, words), "%s: not %s: %s", name, words, text);
+    CORE_CHECK((text != NULL) == (words && w == (int)expected), name, w, text ? text : "not given");
+    CORE_CHECK(!text || message.code == code, name, mcor_says_name(message.code));
+    CORE_CHECK(!text || core_tells(&message, words), name, words, text);
   }
   particle_set_free(&call->set);
   return count;
@@ -101,10 +100,11 @@ static void test_slots(void** state)
     CORE_FREED char* text_in_c = mcor_fill_slots(mcor_says_text((mcor_says)code), NULL, NULL);
     CORE_FREED char* label =
       mcor_fill_slots(mcor_says_text((mcor_says)code), mcor_label_word, NULL);
-    CORE_CHECK(strncmp(label, "{%s}", 4) == 0 || (!strpbrk(text_in_c, "{}") && !strpbrk(label, "{}")), "no word: %s", label);
+    CORE_CHECK(
+      strncmp(label, "{%s}", 4) == 0 || (!strpbrk(text_in_c, "{}") && !strpbrk(label, "{}")),
+      label);
   }
   assert_null(mcor_says_text(MCOR_SAYS_COUNT));
-  (void)state;
 }
 
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
@@ -265,9 +265,8 @@ static void check_told_residual(mcor_context* context, const particle_set* set, 
   {
     worst = fmax(worst, fabs(value[v] - iso));
   }
-  CORE_CHECK(surface.point_count > 1000 && worst <= told + 2e-6 && told <= 4 * worst,
-    "field %d, %lld points: residual %g, told %g", field, (long long)surface.point_count, worst,
-    told);
+  CORE_CHECK(surface.point_count > 1000 && worst <= told + 2e-6 && told <= 4 * worst, field,
+    surface.point_count, worst, told);
 }
 
 static void test_told_residual(void** state)
@@ -298,7 +297,7 @@ static void test_tolerance(void** state)
       (i ? 2e-5 : 2e-6) * (surface.statistics.scalar_max - surface.statistics.scalar_min);
     CORE_MESSAGE message =
       mcor_describe_warning(MCOR_WARN_TOLERANCE, &call.input, &call.options, &surface);
-    CORE_CHECK((message.text != NULL) == (i == 1), "%s", mcor_says_name(message.code));
+    CORE_CHECK((message.text != NULL) == (i == 1), mcor_says_name(message.code));
   }
   particle_set_free(&call.set);
 }
@@ -342,7 +341,6 @@ static void test_single_points(void** state)
   CORE_MESSAGE message = mcor_describe_single_points(1e6, 6.24);
   assert_int_equal(message.code, MCOR_SAYS_POINTS_SINGLE);
   assert_non_null(strstr(message.text, "1e+06 to steps of 0.062, and cubes are 6.2:"));
-  (void)state;
 }
 
 static void test_unused_type(void** state)
@@ -378,17 +376,8 @@ static void test_unused_type(void** state)
   message = mcor_describe_unused_type(name, far, many, MCOR_PARTICLE_TYPES);
   assert_non_null(strstr(message.text, "9223372036854775807 x -1.23456e-300. If it"));
   mcor_free_message(&message);
-  (void)state;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_slots),
-    cmocka_unit_test(test_neighbours), cmocka_unit_test(test_plane),
-    cmocka_unit_test(test_tilted_plane), cmocka_unit_test(test_iso_value),
-    cmocka_unit_test(test_trimmed), cmocka_unit_test(test_tolerance),
-    cmocka_unit_test(test_precision), cmocka_unit_test(test_told_residual),
-    cmocka_unit_test(test_without_input), cmocka_unit_test(test_single_points),
-    cmocka_unit_test(test_unused_type) };
-  return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_slots, test_neighbours, test_plane, test_tilted_plane,
+  test_iso_value, test_trimmed, test_tolerance, test_precision, test_told_residual,
+  test_without_input, test_single_points, test_unused_type)

@@ -61,7 +61,7 @@ static void rough_surfaces(void** state)
   options.vertex_threshold = 0.62;
   core_check_cuts(*state, "noise, computed volumes", &input, &options);
   options.topology = MCOR_TOPOLOGY_FIELD;
-  core_check_cuts(*state, "topology by the field", &input, &options);
+  core_check_cuts(*state, "topology by field", &input, &options);
   options.preview = 1;
   options.sph_kernel = MCOR_M_PRIME_4;
   core_check_cuts(*state, "M'4, preview", &input, &options);
@@ -90,7 +90,8 @@ static void given_levels(void** state)
   CORE_SET set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the particles' numbers would be those of another input */
+  /* The particles' numbers would be those of another input. */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_true(globals.split_count > 10);
@@ -124,7 +125,7 @@ static void given_levels(void** state)
   options.globals = &globals;
   options.level_limit = MCOR_CUBE_LEVELS - 1;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-  CORE_CHECK(core_told(*state, "GLOBALS_OF_UNIFORM_CUBES"), "%s", mcor_last_error(*state));
+  CORE_CHECK(core_told(*state, "GLOBALS_OF_UNIFORM_CUBES"), mcor_last_error(*state));
   mcor_free_globals(&globals);
 }
 
@@ -138,14 +139,10 @@ static void cuts_through_large_cubes(void** state)
   CORE_SET set = core_make_graded(150, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the nearest particle needs all particles around */
+  /* The nearest particle needs all particles around. */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(smooth_surfaces),
-    cmocka_unit_test(rough_surfaces), cmocka_unit_test(given_levels),
-    cmocka_unit_test(cuts_through_large_cubes) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, smooth_surfaces, rough_surfaces, given_levels,
+  cuts_through_large_cubes)

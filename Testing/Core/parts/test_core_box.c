@@ -91,7 +91,7 @@ static void other_fields(void** state)
   core_ask_for_all(&options);
   options.sph_kernel = MCOR_M_PRIME_4;
   options.field = MCOR_SUM;
-  core_check_cuts(*state, "sum with the tensor kernel", &input, &options);
+  core_check_cuts(*state, "sum, tensor kernel", &input, &options);
 }
 
 /* Returns an input with masses alone, so that volumes are computed, and with solids. In a region of it all values of x
@@ -124,7 +124,8 @@ static void given_globals(void** state)
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
   core_ask_for_all(&options);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* the particles' numbers would be those of another input */
+  /* The particles' numbers would be those of another input. */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_int_equal(globals.component_count, 5);
@@ -218,9 +219,8 @@ static void kept_particles(void** state)
     CORE_CONTEXT other = NULL;
     CORE_OK(other, mcor_create_context(NULL, &other));
     CORE_SURFACE expected = core_extract(other, &fresh, &options);
-    CORE_CHECK(surface.triangle_count > 10 && core_hash(&surface) == core_hash(&expected),
-      "call %d: %lld triangles, expected %lld", call, (long long)surface.triangle_count,
-      (long long)expected.triangle_count);
+    CORE_CHECK(surface.triangle_count > 10 && core_hash(&surface) == core_hash(&expected), call,
+      surface.triangle_count, expected.triangle_count);
   }
 }
 
@@ -238,7 +238,7 @@ static void bad_boxes(void** state)
     mcor_surface surface = { 0 };
     memcpy(options.box, bad[i], sizeof bad[i]);
     assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-    CORE_CHECK(strstr(mcor_last_error(*state), words[i]), "%s", mcor_last_error(*state));
+    CORE_CHECK(strstr(mcor_last_error(*state), words[i]), mcor_last_error(*state));
     assert_int_equal(surface.point_count, 0);
   }
 }
@@ -333,12 +333,12 @@ static void check_caps(mcor_context* context, const double around[6])
   set.has_solids = 1;
   input = core_input(&set);
   options.wall_share = 0.4;
-  core_check_cuts(context, "caps on four sides, eigenvalue, walls", &input, &options);
+  core_check_cuts(context, "caps, eigenvalue, walls", &input, &options);
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &half;
   options.iso_count = 1;
   options.wall_share = 0;
-  core_check_cuts(context, "caps of the free surface", &input, &options);
+  core_check_cuts(context, "caps, free surface", &input, &options);
 }
 
 static void caps(void** state)
@@ -349,12 +349,5 @@ static void caps(void** state)
   check_caps(*state, unequal);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(trimmed_surfaces),
-    cmocka_unit_test(rough_surfaces), cmocka_unit_test(other_fields),
-    cmocka_unit_test(kept_particles), cmocka_unit_test(caps), cmocka_unit_test(given_globals),
-    cmocka_unit_test(impossible_globals), cmocka_unit_test(small_boxes),
-    cmocka_unit_test(bad_boxes) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, trimmed_surfaces, rough_surfaces, other_fields,
+  kept_particles, caps, given_globals, impossible_globals, small_boxes, bad_boxes)

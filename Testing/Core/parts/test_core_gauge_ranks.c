@@ -212,7 +212,7 @@ static void check_ranks(mcor_context* context, gauge_job* job, int kind)
   CORE_CHECK(job->sections
       ? fluxes->readings[0].area > 20 && fluxes->readings[3].outside
       : gauges->crossing_count > 80 && gauges->readings[2].outside && !gauges->readings[0].outside,
-    "%lld crossings", (long long)gauges->crossing_count);
+    gauges->crossing_count);
   for (int count = 1; count <= CORE_MOST_RANKS; count += job->sections ? 1 + count / 3 : 1)
   {
     core_world world;
@@ -221,8 +221,7 @@ static void check_ranks(mcor_context* context, gauge_job* job, int kind)
     {
       const int same =
         job->sections ? same_fluxes(&job->fluxes[r], fluxes) : same_gauges(&job->gauges[r], gauges);
-      CORE_CHECK(job->status[r] == MCOR_OK && same, "case %d: rank %d of %d differs: %s", kind, r,
-        count, job->error[r]);
+      CORE_CHECK(job->status[r] == MCOR_OK && same, kind, r, count, job->error[r]);
       mcor_free_fluxes(&job->fluxes[r]);
       mcor_free_gauges(&job->gauges[r]);
     }
@@ -295,9 +294,4 @@ static void test_small_cubes(void** state)
   mcor_free_globals(&job.globals);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_same_bits),
-    cmocka_unit_test(test_same_fluxes), cmocka_unit_test(test_small_cubes) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_same_bits, test_same_fluxes, test_small_cubes)

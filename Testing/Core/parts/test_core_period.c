@@ -33,14 +33,11 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
 {
   CORE_CHECK(s->triangle_count == expected->triangle_count &&
       s->point_count == expected->point_count && s->triangle_count > 300,
-    "%s: %lld triangles of %lld points, expected %lld of %lld", name, (long long)s->triangle_count,
-    (long long)s->point_count, (long long)expected->triangle_count,
-    (long long)expected->point_count);
+    name, s->triangle_count, s->point_count, expected->triangle_count, expected->point_count);
   for (int64_t i = 0; i < s->point_count; ++i)
   {
     const int64_t other = find_point(expected, s->points + 3 * i);
-    CORE_CHECK(other >= 0, "%s: no point at %g %g %g", name, s->points[3 * i], s->points[3 * i + 1],
-      s->points[3 * i + 2]);
+    CORE_CHECK(other >= 0, name, s->points[3 * i], s->points[3 * i + 1], s->points[3 * i + 2]);
     for (int a = 0; a < 3; ++a)
     {
       assert_true(fabs(s->normals[3 * i + a] - expected->normals[3 * other + a]) < 1e-3);
@@ -53,9 +50,8 @@ static void check_sides(const char* name, const mcor_surface* s, const mcor_opti
 {
   CORE_REPORT report = core_check_mesh(s);
   const oracle_seam seam = oracle_check_seam(options, s->statistics.cube_edges, s, &report);
-  CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0,
-    "%s: %lld edges of borders are one, %lld are open, %lld torn, %lld points differ", name,
-    (long long)seam.joined, (long long)seam.open, (long long)seam.torn, (long long)seam.different);
+  CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0, name,
+    seam.joined, seam.open, seam.torn, seam.different);
 }
 
 static void check_images(mcor_context* context, const char* name, const particle_set* set,
@@ -235,7 +231,7 @@ static void lengths(void** state)
     assert_int_equal(status, cases[i].status);
     if (cases[i].words)
     {
-      CORE_CHECK(core_told(*state, cases[i].words), "%s", mcor_last_error(*state));
+      CORE_CHECK(core_told(*state, cases[i].words), mcor_last_error(*state));
       continue;
     }
     const double* edge = cases[i].edge;
@@ -276,15 +272,13 @@ static void adaptive_unequal(void** state)
     assert_true(surface.statistics.highest_level >= 1);
     const int64_t* cells = surface.statistics.cells_of_level;
     const int levels = (cells[0] > 20) + (cells[1] > 20) + (cells[2] > 20);
-    CORE_CHECK(levels >= (i == 1 ? 1 : 2), "%lld, %lld and %lld cells of levels 0, 1 and 2",
-      (long long)cells[0], (long long)cells[1], (long long)cells[2]);
-    CORE_CHECK(
-      surface.statistics.residual_max < 1e-5, "residual %g", surface.statistics.residual_max);
+    CORE_CHECK(levels >= (i == 1 ? 1 : 2), cells[0], cells[1], cells[2]);
+    CORE_CHECK(surface.statistics.residual_max < 1e-5, surface.statistics.residual_max);
     check_sides("adaptive, unequal", &surface, &options);
     options.level_limit = 0;
     CORE_SURFACE uniform = core_extract(*state, &input, &options);
     const double area = surface.statistics.area, expected = uniform.statistics.area;
-    CORE_CHECK(fabs(area / expected - 1) < 0.02, "area %g, expected %g", area, expected);
+    CORE_CHECK(fabs(area / expected - 1) < 0.02, area, expected);
   }
 }
 
@@ -300,8 +294,7 @@ static void rounded_length(void** state)
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 0.1;
   CORE_SURFACE surface = core_extract(*state, &input, &options);
-  CORE_CHECK(
-    fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
+  CORE_CHECK(fabs(surface.statistics.cube_size - 0.1) < 1e-9, surface.statistics.cube_size);
 }
 
 /* Sides have very many nodes. Caps take memory and time only where particles reach a side. A call that would take all
@@ -337,8 +330,7 @@ static void large_sides(void** state)
     set.position[3 * j] = j % 2 ? 0.5 : set.position[3 * j];
   }
   surface = core_extract(*state, &input, &options);
-  CORE_CHECK(surface.statistics.cap_triangles > 1000, "%lld triangles of caps",
-    (long long)surface.statistics.cap_triangles);
+  CORE_CHECK(surface.statistics.cap_triangles > 1000, surface.statistics.cap_triangles);
   CORE_REPORT report;
   mesh_check(
     surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
@@ -366,11 +358,5 @@ static void test_box_across(void** state)
   assert_true(options.periodic[0] == -6 && options.periodic[1] == 6);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
-    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
-    cmocka_unit_test(shifts), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
-    cmocka_unit_test(large_sides), cmocka_unit_test(test_box_across) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, images_count, adaptive_cubes, adaptive_unequal, shifts,
+  lengths, rounded_length, large_sides, test_box_across)

@@ -28,8 +28,7 @@ static void check_equal(const double* values, const double* expected, int count,
 {
   for (int i = 0; i < count; ++i)
   {
-    CORE_CHECK(fabs(values[i] - expected[i]) <= limit, "number %d is %.17g, expected %.17g", i,
-      values[i], expected[i]);
+    CORE_CHECK(fabs(values[i] - expected[i]) <= limit, i, values[i], expected[i]);
   }
 }
 
@@ -64,8 +63,8 @@ static void check_points(
     CORE_CHECK(samples.weight_sum[i] > 0.3 &&
         fabs(samples.weight_sum[i] - expected.weight_sum[i]) < 1e-5 &&
         fabs(samples.values[0][i] - expected.values[0][i]) < 1e-5,
-      "point %d: %g of weight %g, expected %g of %g", i, samples.values[0][i],
-      samples.weight_sum[i], expected.values[0][i], expected.weight_sum[i]);
+      i, samples.values[0][i], samples.weight_sum[i], expected.values[0][i],
+      expected.weight_sum[i]);
     for (int a = 0; a < 3; ++a)
     {
       assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
@@ -128,7 +127,7 @@ static void check_halves(mcor_context* context, const mcor_input* input,
         check_equal(found.gradients[0] + 3 * i, whole->gradients[0] + 3 * i, 3, 0);
       }
     }
-    CORE_CHECK(sides > 10, "half %d: %d on the side", h, sides);
+    CORE_CHECK(sides > 10, h, sides);
     mcor_free_derivatives(&found);
   }
   mcor_free_globals(&globals);
@@ -164,7 +163,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];
-    CORE_CHECK(fabs(is - was) < 1e-4, "gradient %lld is %g, expected %g", (long long)i, is, was);
+    CORE_CHECK(fabs(is - was) < 1e-4, i, is, was);
     set.position[i] += around[2 * (i % 3) + 1] * (double)(i % 5 - 2);
   }
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
@@ -182,8 +181,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
     for (int64_t i = 0; i < 3 * set.count; ++i)
     {
       const double is = moved.gradients[0][i], was = found.gradients[0][i];
-      CORE_CHECK(fabs(is - was) < 1e-4, "shift %d: gradient %lld is %g, expected %g", shift,
-        (long long)i, is, was);
+      CORE_CHECK(fabs(is - was) < 1e-4, shift, i, is, was);
     }
     mcor_free_derivatives(&moved);
   }
@@ -198,9 +196,4 @@ static void derivatives_see_images(void** state)
   check_derivatives(state, 1, MCOR_QUADRATIC);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(points_see_images),
-    cmocka_unit_test(derivatives_see_images) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, points_see_images, derivatives_see_images)

@@ -169,8 +169,8 @@ static void check_globals(mcor_context* context, const particle_set* set, const 
       core_run_ranks(count, measure_part, &job, &world);
       for (int r = 0; r < count; ++r)
       {
-        CORE_CHECK(job.status[r] == MCOR_OK && same_globals(&job.globals[r], &expected),
-          "%s, %s: rank %d of %d differs: %s", what->name, split_names[s], r, count, job.error[r]);
+        CORE_CHECK(job.status[r] == MCOR_OK && same_globals(&job.globals[r], &expected), what->name,
+          split_names[s], r, count, job.error[r]);
         assert_int_equal(world.calls[r], world.calls[0]);
         mcor_free_globals(&job.globals[r]);
       }
@@ -218,7 +218,8 @@ static void not_finite_attributes(void** state)
   CORE_SET set = make_set();
   for (int64_t i = 0; i < set.count; ++i)
   {
-    set.scalar[i] = i == 1 ? 1 : 2; /* with the uneven split each rank has a single value, but not all the same */
+    /* With the uneven split each rank has a single value, but not all the same. */
+    set.scalar[i] = i == 1 ? 1 : 2;
   }
   check_globals(*state, &set, &what);
   set.scalar[1234] = INFINITY;
@@ -228,7 +229,6 @@ static void not_finite_attributes(void** state)
 /* One rank's fault is an error on all ranks, and no rank waits. */
 static void faults(void** state)
 {
-  (void)state;
   const measure_case what = { "fault", 0, 0, MCOR_SHEPARD };
   CORE_SET set = make_set();
   for (int failing = 0; failing < 3; ++failing)
@@ -239,8 +239,7 @@ static void faults(void** state)
     for (int r = 0; r < 3; ++r)
     {
       assert_int_equal(job.status[r], r == failing ? MCOR_INVALID_DATA : MCOR_CANCELLED);
-      CORE_CHECK(
-        strstr(job.error[r], r == failing ? "particle 2" : "Another rank"), "%s", job.error[r]);
+      CORE_CHECK(strstr(job.error[r], r == failing ? "particle 2" : "Another rank"), job.error[r]);
       assert_null(job.globals[r].components);
     }
   }
@@ -324,7 +323,7 @@ static void check_parts(mcor_context* context, const particle_set* set, const mc
     assert_int_equal(world.calls[r], world.calls[0]);
     mcor_free_surface(&job.surface[r]);
   }
-  CORE_CHECK(whole.count > least, "%d ranks: only %lld triangles or lines", ranks, (long long)whole.count);
+  CORE_CHECK(whole.count > least, ranks, whole.count);
   core_expect_same("ranks", &all, &whole);
   assert_int_equal(sum.cells_used, surface.statistics.cells_used);
   free(whole.bytes);
@@ -377,8 +376,8 @@ static void lines_of_parts(void** state)
     const mcor_input input = core_input(&set);
     mcor_surface surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 0 : 2);
-    CORE_CHECK(i < 2 || surface.statistics.cells_of_level[1] > 10, "%lld squares of level 1",
-      (long long)surface.statistics.cells_of_level[1]);
+    CORE_CHECK(
+      i < 2 || surface.statistics.cells_of_level[1] > 10, surface.statistics.cells_of_level[1]);
     mcor_free_surface(&surface);
     check_parts(*state, &set, &options, 2, two, 80, 100);
     check_parts(*state, &set, &options, 3, three, 80, 100);

@@ -102,7 +102,7 @@ void plane_check_lines(const plane_field* f, const mcor_surface* surface, int cl
   const double largest = ldexp(cube, surface->statistics.highest_level), range = plane_range(f);
   CORE_CHECK(
     surface->statistics.dimension == 2 && surface->triangle_count == 0 && surface->line_count > 0,
-    "dimension %d", surface->statistics.dimension);
+    surface->statistics.dimension);
   CORE_FREED int* used = oracle_allocate(surface->point_count + 1, sizeof *used);
   double wrong = 0, all = 0;
   int open = 0;
@@ -110,7 +110,7 @@ void plane_check_lines(const plane_field* f, const mcor_surface* surface, int cl
   {
     const int64_t first = surface->line_offsets[l], last = surface->line_offsets[l + 1] - 1;
     const int is_closed = surface->line_points[first] == surface->line_points[last];
-    CORE_CHECK(last > first && (is_closed || !closed), "line %lld is open", (long long)l);
+    CORE_CHECK(last > first && (is_closed || !closed), l);
     open += !is_closed;
     for (int64_t i = first; i < last + !is_closed; ++i)
     {
@@ -131,9 +131,8 @@ void plane_check_lines(const plane_field* f, const mcor_surface* surface, int cl
       wrong += left <= right ? length : 0;
     }
   }
-  CORE_CHECK(wrong < 0.03 * all, "%g of %g have the greater side on their right", wrong, all);
-  CORE_CHECK(fabs(surface->statistics.length - all) < 1e-9 * all, "length %g, not %g",
-    surface->statistics.length, all);
+  CORE_CHECK(wrong < 0.03 * all, wrong, all);
+  CORE_CHECK(fabs(surface->statistics.length - all) < 1e-9 * all, surface->statistics.length, all);
   assert_int_equal(surface->statistics.is_closed, open == 0);
   for (int64_t p = 0; p < surface->point_count; ++p)
   {
@@ -142,12 +141,12 @@ void plane_check_lines(const plane_field* f, const mcor_surface* surface, int cl
     const double v = surface->points[3 * p + (f->axis + 2) % 3];
     const plane_sample s = plane_evaluate(f, u, v);
     const double length = hypot(s.gradient[0], s.gradient[1]);
-    CORE_CHECK(used[p] == 1, "point %lld is used %d times", (long long)p, used[p]);
-    CORE_CHECK(n[f->axis] == 0, "normal %lld points out of the plane", (long long)p);
+    CORE_CHECK(used[p] == 1, p, used[p]);
+    CORE_CHECK(n[f->axis] == 0, p);
     CORE_CHECK(length < 1e-2 * range ||
         -(n[(f->axis + 1) % 3] * s.gradient[0] + n[(f->axis + 2) % 3] * s.gradient[1]) >
           (1 - 1e-5) * length,
-      "normal %lld", (long long)p);
+      p);
   }
 }
 

@@ -22,7 +22,8 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  int valid, close; /* valid: a square that has the edge is valid; close: rounding may decide that */
+  /* Valid: a square that has the edge is valid; close: rounding may decide that. */
+  int valid, close;
   int found;
   int64_t next; /* the edge where the line that begins here ends, or -1 */
 } plane_edge;
@@ -213,7 +214,7 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
   const double x[2] = { u / s->cube, v / s->cube };
   const double off[2] = { fabs(x[0] - floor(x[0] + 0.5)), fabs(x[1] - floor(x[1] + 0.5)) };
   const int axis = off[0] > off[1] ? 0 : 1;
-  CORE_CHECK(off[!axis] < 1e-9, "point %g %g is on no line of the lattice", u, v);
+  CORE_CHECK(off[!axis] < 1e-9, u, v);
   for (int l = 0; l <= s->lattice.top; ++l)
   {
     int64_t at[3] = { 0, 0, 0 };
@@ -246,12 +247,10 @@ static void plane_compare_lines(
     }
   }
   const int by_field = s->field->options->topology == MCOR_TOPOLOGY_FIELD;
-  CORE_CHECK(lines == same || by_field, "%lld of %lld lines are those of the squares",
-    (long long)same, (long long)lines);
+  CORE_CHECK(lines == same || by_field, same, lines);
   CORE_CHECK(!by_field || s->lattice.top > 0 || s->doubtful > 0 || s->field->region ||
       surface->statistics.ambiguous_faces == s->ambiguous,
-    "%lld squares are ambiguous, not %lld", (long long)s->ambiguous,
-    (long long)surface->statistics.ambiguous_faces);
+    s->ambiguous, surface->statistics.ambiguous_faces);
 }
 
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface)
@@ -268,18 +267,15 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
     const double v = surface->points[3 * p + (field->axis + 2) % 3];
     const plane_sample at = plane_evaluate(field, u, v);
     const int cut = surface->boundary_flag[p] & 3;
-    CORE_CHECK(cut == 2 || fabs(at.value - iso) < 1e-5 * range, "point %lld is off by %g",
-      (long long)p, at.value - iso);
-    CORE_CHECK(cut != 1 || at.fluid < 0.06 || fabs(at.margin) < 1e-4, "cut %lld has margin %g",
-      (long long)p, at.margin);
-    CORE_CHECK(cut || at.margin > -1e-4, "point %lld is outside, by %g", (long long)p, at.margin);
+    CORE_CHECK(cut == 2 || fabs(at.value - iso) < 1e-5 * range, p, at.value - iso);
+    CORE_CHECK(cut != 1 || at.fluid < 0.06 || fabs(at.margin) < 1e-4, p, at.margin);
+    CORE_CHECK(cut || at.margin > -1e-4, p, at.margin);
     of[p] = cut ? -1 : plane_edge_of(&s, u, v);
     if (!cut)
     {
       plane_edge* e = of[p] >= 0 ? s.edges + of[p] : NULL;
-      CORE_CHECK(e && (e->valid || e->close), "point %lld: a vertex on an edge that is not crossed",
-        (long long)p);
-      CORE_CHECK(!e->found, "edge %lld has two vertices", (long long)of[p]);
+      CORE_CHECK(e && (e->valid || e->close), p);
+      CORE_CHECK(!e->found, of[p]);
       e->found = 1;
     }
   }
@@ -292,8 +288,7 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
       found += e->found;
     }
   }
-  CORE_CHECK(found == crossed, "%lld edges are crossed, %lld have vertices", (long long)crossed,
-    (long long)found);
+  CORE_CHECK(found == crossed, crossed, found);
   plane_compare_lines(&s, of, surface);
   oracle_free_lattice(&s.lattice);
   free(s.nodes);

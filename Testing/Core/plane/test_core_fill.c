@@ -15,7 +15,8 @@
 typedef struct fill_report
 {
   double area,
-    enclosed; /* area of the triangles; area that the lines of the lowest iso value enclose, 0 unless all are closed */
+    /* Area of the triangles; area that the lines of the lowest iso value enclose, 0 unless all are closed. */
+    enclosed;
   double inverted; /* area of triangles that run round in the wrong direction */
   int64_t loose;   /* edges on the border that are not lines */
   double loose_length;
@@ -56,8 +57,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   {
     const fill_edge* e = edges + i;
     const int way = e->from < e->to;
-    CORE_CHECK(!(e->of_line ? line != NULL : sides[way] != NULL), "edge %d %d is there twice",
-      e->from, e->to);
+    CORE_CHECK(!(e->of_line ? line != NULL : sides[way] != NULL), e->from, e->to);
     line = e->of_line ? e : line;
     sides[way] = e->of_line ? sides[way] : e;
   }
@@ -69,20 +69,19 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
     {
       times += f->options->iso_values[i] == line->value;
     }
-    CORE_CHECK(times > 1, "the line %d %d of %g has no bands", line->from, line->to, line->value);
+    CORE_CHECK(times > 1, line->from, line->to, line->value);
     return;
   }
   if (line)
   {
     const fill_edge *left = sides[line->from < line->to], *right = sides[line->from > line->to];
-    CORE_CHECK(left && left->value == line->value, "the line %d %d of %g has no band on its left",
-      line->from, line->to, line->value);
+    CORE_CHECK(left && left->value == line->value, line->from, line->to, line->value);
     CORE_CHECK(line->value == least ? right == NULL : right && right->value < line->value,
-      "the line %d %d of %g has the wrong band on its right", line->from, line->to, line->value);
+      line->from, line->to, line->value);
     return;
   }
-  CORE_CHECK(!sides[0] || !sides[1] || sides[0]->value == sides[1]->value,
-    "bands %g and %g meet where there is no line", sides[0]->value, sides[1]->value);
+  CORE_CHECK(
+    !sides[0] || !sides[1] || sides[0]->value == sides[1]->value, sides[0]->value, sides[1]->value);
   if (!sides[0] || !sides[1])
   {
     const double *a = s->points + 3 * (int64_t)edges->from, *b = s->points + 3 * (int64_t)edges->to;
@@ -97,7 +96,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };
-  CORE_CHECK(s->band_value && s->iso_value && s->triangle_count > 0, "nothing is filled");
+  assert_true(s->band_value && s->iso_value && s->triangle_count > 0);
   double least = INFINITY;
   for (int i = 0; i < field->options->iso_count; ++i)
   {
@@ -150,8 +149,8 @@ static fill_report fill_check(const plane_field* field, const mcor_surface* s)
     }
   }
   report.enclosed = closed ? report.enclosed : 0;
-  CORE_CHECK(fabs(s->statistics.area - report.area) < 1e-9 * report.area, "area %g, not %g",
-    s->statistics.area, report.area);
+  CORE_CHECK(
+    fabs(s->statistics.area - report.area) < 1e-9 * report.area, s->statistics.area, report.area);
   return report;
 }
 
@@ -165,13 +164,10 @@ static void fill_check_points(const plane_field* f, const mcor_surface* s)
     const double u = s->points[3 * p + (f->axis + 1) % 3], v = s->points[3 * p + (f->axis + 2) % 3];
     const plane_sample at = plane_evaluate(f, u, v);
     const double scale = 1 + fabs(at.value), value = s->iso_value[p] + s->residual[p];
-    CORE_CHECK(s->points[3 * p + f->axis] == f->set->position[f->axis],
-      "point %lld is off the plane", (long long)p);
-    CORE_CHECK(fabs(at.value - value) < 3e-5 * scale, "point %lld: %g, not %g", (long long)p, value,
-      at.value);
-    CORE_CHECK(
-      fabs(at.weight - s->weight_sum[p]) < 1e-4, "weight %g, not %g", s->weight_sum[p], at.weight);
-    CORE_CHECK(s->normals[3 * p + f->axis] == 1, "normal of point %lld", (long long)p);
+    CORE_CHECK(s->points[3 * p + f->axis] == f->set->position[f->axis], p);
+    CORE_CHECK(fabs(at.value - value) < 3e-5 * scale, p, value, at.value);
+    CORE_CHECK(fabs(at.weight - s->weight_sum[p]) < 1e-4, s->weight_sum[p], at.weight);
+    CORE_CHECK(s->normals[3 * p + f->axis] == 1, p);
     if (s->boundary_flag[p] == 8)
     {
       ++nodes;
@@ -181,16 +177,16 @@ static void fill_check_points(const plane_field* f, const mcor_surface* s)
         next = o->iso_values[i] > s->iso_value[p] ? fmin(next, o->iso_values[i]) : next;
       }
       CORE_CHECK(at.value > s->iso_value[p] - 3e-5 * scale && at.value < next + 3e-5 * scale,
-        "%g is not from %g to %g", at.value, s->iso_value[p], next);
+        at.value, s->iso_value[p], next);
       CORE_CHECK(o->field == MCOR_WEIGHT_SUM || o->boundary_detection ||
           at.weight > o->vertex_threshold - 1e-4,
-        "a node with weight %g", at.weight);
+        at.weight);
     }
     CORE_CHECK(s->boundary_flag[p] != 1 || o->wall_share != 0 || o->boundary_detection ||
         fabs(at.weight - o->vertex_threshold) < 1e-4,
-      "a cut with weight %g", at.weight);
+      at.weight);
   }
-  CORE_CHECK(nodes > 0, "no nodes");
+  assert_true(nodes > 0);
 }
 
 /* Returns the area by sampling n x n points. */
@@ -240,7 +236,7 @@ static fill_report extract(mcor_context* context, const particle_set* set,
 
 static void check_close(double a, double b, double tolerance, const char* what)
 {
-  CORE_CHECK(fabs(a - b) <= tolerance * fabs(b), "%s: %g, not %g", what, a, b);
+  CORE_CHECK(fabs(a - b) <= tolerance * fabs(b), what, a, b);
 }
 
 /* The region that the lines enclose is filled, and its border is these lines alone. */
@@ -264,7 +260,7 @@ static void test_free_surface(void** state)
       assert_int_equal(report.loose, 0);
       check_close(report.area, report.enclosed, 1e-9, "enclosed");
       check_close(report.area, fill_sample_area(&field, iso, 100), 2e-2, "sampled");
-      CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
+      CORE_CHECK(report.inverted == 0, report.inverted);
       options.preview ? (void)0 : fill_check_points(&field, &surface);
     }
   }
@@ -280,7 +276,7 @@ static void test_bands(void** state)
   const plane_field field = { &set, &options, 1, NULL };
   const fill_report all = extract(*state, &set, &options, 1, &surface);
   fill_check_points(&field, &surface);
-  CORE_CHECK(all.inverted == 0, "inverted %g", all.inverted);
+  CORE_CHECK(all.inverted == 0, all.inverted);
   double bands[3] = { 0 };
   for (int64_t t = 0; t < surface.triangle_count; ++t)
   {
@@ -292,8 +288,7 @@ static void test_bands(void** state)
     const double u[2] = { (p[0][2] + p[1][2] + p[2][2]) / 3, (p[0][0] + p[1][0] + p[2][0]) / 3 };
     const double value = plane_evaluate(&field, u[0], u[1]).value, band = surface.band_value[t];
     const double next = band == -60 ? -20 : band == -20 ? 0 : band == 0 ? 3 : band == 3 ? 5.5 : 1e9;
-    CORE_CHECK(
-      value > band - 1 && value < next + 1, "%g in the band from %g to %g", value, band, next);
+    CORE_CHECK(value > band - 1 && value < next + 1, value, band, next);
     const double area = 0.5 *
       fabs((p[1][2] - p[0][2]) * (p[2][0] - p[0][0]) - (p[2][2] - p[0][2]) * (p[1][0] - p[0][0]));
     bands[band >= 3 ? 2 : band >= 0 ? 1 : 0] += area;
@@ -344,16 +339,15 @@ static void test_trimming(void** state)
       cuts += surface.boundary_flag[p] == 1;
       CORE_CHECK(!surface.boundary_eigenvalue || surface.boundary_flag[p] != 1 ||
           fabs(surface.boundary_eigenvalue[p] - 0.75) < 1e-4,
-        "a cut at %g", surface.boundary_eigenvalue[p]);
+        surface.boundary_eigenvalue[p]);
     }
-    CORE_CHECK(cuts > 40 && report.loose > 40, "%lld cuts, %lld edges", (long long)cuts,
-      (long long)report.loose);
-    CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
+    CORE_CHECK(cuts > 40 && report.loose > 40, cuts, report.loose);
+    CORE_CHECK(report.inverted == 0, report.inverted);
     if (mode == 0 || mode == 2)
     {
       check_close(report.area, fill_sample_area(&field, isos[0], 150), 2e-2, "sampled");
     }
-    CORE_CHECK(mode < 4 || report.area < 16 * 12.5, "%g reaches into the wall", report.area);
+    CORE_CHECK(mode < 4 || report.area < 16 * 12.5, report.area);
   }
 }
 
@@ -395,7 +389,7 @@ static void test_random(void** state)
     inverted += report.inverted;
   }
   /* Noise may cross two values more than once on one edge. */
-  CORE_CHECK(inverted < 1e-4 * area, "%g of %g is inverted", inverted, area);
+  CORE_CHECK(inverted < 1e-4 * area, inverted, area);
 }
 
 /* Boxes side by side make the whole: the same triangles and lines, with all that their points carry. */
@@ -426,7 +420,7 @@ static void test_period(void** state)
   mcor_free_surface(&surface);
   options.periodic[0] = options.periodic[1] = 0;
   const fill_report strip = extract(*state, &set, &options, 1, &surface);
-  CORE_CHECK(fabs(strip.area - 144) < 8, "a strip of %g", strip.area);
+  CORE_CHECK(fabs(strip.area - 144) < 8, strip.area);
 }
 
 /* The bits do not depend on seeds, order of particles, kept data or the plane. */
@@ -448,7 +442,7 @@ static void test_bits(void** state)
   }
   for (int i = 1; i < 5; ++i)
   {
-    CORE_CHECK(hash[i] == hash[0], "other bits: %d", i);
+    CORE_CHECK(hash[i] == hash[0], i);
   }
 }
 
@@ -483,13 +477,12 @@ static void test_attributes(void** state)
   CORE_OK(context, mcor_probe(context, &input, &options, &points, surface.point_count, &samples));
   for (int64_t p = 0; p < surface.point_count; ++p)
   {
-    CORE_CHECK(surface.nearest_particle[p] >= 0 && surface.nearest_particle[p] < set.count,
-      "point %lld", (long long)p);
+    CORE_CHECK(surface.nearest_particle[p] >= 0 && surface.nearest_particle[p] < set.count, p);
     for (int i = 0; i < 3 * ARRAYS; ++i)
     {
       const double at = surface.attributes[i / 3][3 * p + i % 3];
-      CORE_CHECK(fabs(at - samples.values[i / 3][3 * p + i % 3]) < 1e-4, "point %lld: %g, not %g",
-        (long long)p, at, samples.values[i / 3][3 * p + i % 3]);
+      CORE_CHECK(fabs(at - samples.values[i / 3][3 * p + i % 3]) < 1e-4, p, at,
+        samples.values[i / 3][3 * p + i % 3]);
     }
   }
 }
@@ -543,11 +536,5 @@ static void test_what_is_not_filled(void** state)
   assert_true(surface.band_value == NULL && surface.triangles == NULL && surface.iso_value == NULL);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_free_surface),
-    cmocka_unit_test(test_bands), cmocka_unit_test(test_trimming), cmocka_unit_test(test_random),
-    cmocka_unit_test(test_boxes), cmocka_unit_test(test_period), cmocka_unit_test(test_bits),
-    cmocka_unit_test(test_attributes), cmocka_unit_test(test_what_is_not_filled) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_free_surface, test_bands, test_trimming, test_random,
+  test_boxes, test_period, test_bits, test_attributes, test_what_is_not_filled)

@@ -14,7 +14,6 @@
 /* Each kernel, normalised as the library does, integrates to 1: midpoint rule over the square of its support. */
 static void test_kernels_integrate_to_1(void** state)
 {
-  (void)state;
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
   {
     const int n = 400;
@@ -26,8 +25,7 @@ static void test_kernels_integrate_to_1(void** state)
       sum += mcor_kernel_of((mcor_sph_kernel)k)->plane_factor * h *
         oracle_kernel_value((oracle_kernel)k, h, d, NULL) * step * step;
     }
-    CORE_CHECK(fabs(sum - 1) < 1e-5, "kernel %s: integral %.7f",
-      mcor_sph_kernel_name((mcor_sph_kernel)k), sum);
+    CORE_CHECK(fabs(sum - 1) < 1e-5, mcor_sph_kernel_name((mcor_sph_kernel)k), sum);
   }
 }
 
@@ -58,7 +56,7 @@ static void test_weight_is_1_inside(void** state)
                           : fabs(w - 1) < (computed              ? 8e-2
                                               : k == 1 || k == 2 ? 3e-2
                                                                  : 1e-2),
-          "%s, %d: weight %g", mcor_sph_kernel_name((mcor_sph_kernel)k), computed, w);
+          mcor_sph_kernel_name((mcor_sph_kernel)k), computed, w);
       }
       assert_int_equal(samples.statistics.dimension, 2);
     }
@@ -93,8 +91,7 @@ static void expect_error(
 {
   mcor_surface surface;
   const mcor_status status = mcor_extract(context, input, options, &surface);
-  CORE_CHECK(
-    status != MCOR_OK && core_told(context, words), "%s: %s", words, mcor_last_error(context));
+  CORE_CHECK(status != MCOR_OK && core_told(context, words), words, mcor_last_error(context));
 }
 
 static void test_what_is_no_plane(void** state)
@@ -223,8 +220,7 @@ static void test_derivatives_and_gauges(void** state)
       CORE_CHECK(derivatives.corrected[i] && fabs(j[3 * u + u] - 2) < 1e-3 &&
           fabs(j[3 * u + v] + 3) < 1e-3 && fabs(j[3 * v + u] - 0.5) < 1e-3 &&
           fabs(j[3 * v + v] - 1) < 1e-3 && j[3 * u + axis] == 0 && j[3 * axis + u] == 0,
-        "particle %lld: %g %g %g %g", (long long)i, j[3 * u + u], j[3 * u + v], j[3 * v + u],
-        j[3 * v + v]);
+        i, j[3 * u + u], j[3 * u + v], j[3 * v + u], j[3 * v + v]);
     }
     mcor_free_derivatives(&derivatives);
     mcor_gauge_line line = { .name = "across" }, dry = line;
@@ -241,7 +237,7 @@ static void test_derivatives_and_gauges(void** state)
     const double at = gauges.readings[0].place[(axis + 1) % 3];
     CORE_CHECK(gauges.readings[0].state == MCOR_GAUGE_WET && gauges.readings[0].place[axis] == 5 &&
         fabs(plane_evaluate(&field, at, 0).fluid - 0.5) < 1e-4,
-      "reading %g", at);
+      at);
     mcor_free_gauges(&gauges);
     line.to[axis] = 6;
     CORE_FAILS(context, MCOR_INVALID_ARGUMENT,
@@ -316,12 +312,6 @@ static void test_bits(void** state)
   assert_int_equal(hash[0], hash[2]);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
-    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_what_is_no_plane),
-    cmocka_unit_test(test_minus_zero), cmocka_unit_test(test_sentences_of_sides),
-    cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
-    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_kernels_integrate_to_1, test_weight_is_1_inside,
+  test_what_is_no_plane, test_minus_zero, test_sentences_of_sides, test_walls_in_another_plane,
+  test_derivatives_and_gauges, test_pairs_and_reuse, test_bits)

@@ -70,7 +70,7 @@ static void caps_lines(const caps_case* c, const mcor_surface* s, double length[
       if (side >= 0)
       {
         const double part = caps_length(c, s, side, p, q);
-        CORE_CHECK(part > 0, "a cap of side %d goes back by %g", side, -part);
+        CORE_CHECK(part > 0, side, -part);
         length[side] += part;
       }
     }
@@ -113,12 +113,11 @@ static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
   caps_lines(c, &capped, length);
   for (int i = 0; i < 4; ++i)
   {
-    CORE_CHECK(fabs(length[i] - expected[i]) < 2e-4, "side %d: caps of %g, not %g", i, length[i],
-      expected[i]);
+    CORE_CHECK(fabs(length[i] - expected[i]) < 2e-4, i, length[i], expected[i]);
     all += length[i];
   }
   CORE_CHECK(fabs(capped.statistics.length - open.statistics.length - all) < 1e-4,
-    "length %g, without caps %g, caps %g", capped.statistics.length, open.statistics.length, all);
+    capped.statistics.length, open.statistics.length, all);
   assert_true(capped.point_count >= open.point_count);
   assert_memory_equal(
     capped.points, open.points, (size_t)open.point_count * 3 * sizeof *open.points);
@@ -133,16 +132,16 @@ static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
         ? fmax(out, (i % 2 ? 1 : -1) * n[(c->axis + 1 + i / 2) % 3])
         : out;
     }
-    CORE_CHECK(out > 0.7, "point %lld: its normal points out by %g", (long long)p, out);
-    CORE_CHECK(capped.boundary_flag[p] == 8 || (is_trimmed && capped.boundary_flag[p] == 1),
-      "point %lld has flag %d", (long long)p, capped.boundary_flag[p]);
+    CORE_CHECK(out > 0.7, p, out);
+    CORE_CHECK(capped.boundary_flag[p] == 8 || (is_trimmed && capped.boundary_flag[p] == 1), p,
+      capped.boundary_flag[p]);
   }
   if (!is_trimmed)
   {
     assert_true(capped.statistics.is_closed);
     CORE_CHECK(
       fabs(capped.statistics.area - filled.statistics.area) < 1e-6 * filled.statistics.area,
-      "area %.9g, not %.9g", capped.statistics.area, filled.statistics.area);
+      capped.statistics.area, filled.statistics.area);
   }
   return all;
 }
@@ -193,7 +192,7 @@ static void test_sides(void** state)
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
   }
-  CORE_CHECK(all > 36 * 5, "caps of %g", all);
+  CORE_CHECK(all > 36 * 5, all);
 }
 
 /* Caps end where trimming ends the fluid: by weight, by eigenvalue, at walls. */
@@ -220,7 +219,7 @@ static void test_trimmed_sides(void** state)
     c.options.box[2 * axis] = -3;
     c.options.box[2 * axis + 1] = 3;
     const double all = caps_check(*state, &c, 1);
-    CORE_CHECK(all > 18 && all < 32, "mode %d: caps of %g", mode, all);
+    CORE_CHECK(all > 18 && all < 32, mode, all);
   }
 }
 
@@ -247,7 +246,7 @@ static void test_values_and_order(void** state)
   options.iso_count = 2;
   mcor_surface both = core_extract(*state, &input, &options);
   sum = both.statistics.area;
-  CORE_CHECK(fabs(sum - area[0] - area[1]) < 1e-9 * sum, "%g, not %g", sum, area[0] + area[1]);
+  CORE_CHECK(fabs(sum - area[0] - area[1]) < 1e-9 * sum, sum, area[0] + area[1]);
   mcor_free_surface(&both);
   CORE_FREED int64_t* order = core_make_order(set.count, 6);
   CORE_SET other = core_permute(&set, order);
@@ -281,10 +280,5 @@ static void test_what_is_not_capped(void** state)
   assert_int_equal(surface.line_count, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_sides),
-    cmocka_unit_test(test_trimmed_sides), cmocka_unit_test(test_values_and_order),
-    cmocka_unit_test(test_what_is_not_capped) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_sides, test_trimmed_sides, test_values_and_order,
+  test_what_is_not_capped)

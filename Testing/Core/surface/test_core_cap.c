@@ -51,7 +51,7 @@ static void cap_check_volume(const mcor_surface* closed, const particle_set* set
   const double whole = (planes[1] - planes[0]) * (planes[3] - planes[2]) * (planes[5] - planes[4]);
   const double expected = whole * part, error = whole * sqrt(part * (1 - part) / SAMPLES);
   CORE_CHECK(fabs(closed->statistics.volume - expected) < 4 * error + 1e-9 * whole,
-    "volume %g instead of %g +- %g", closed->statistics.volume, expected, error);
+    closed->statistics.volume, expected, error);
 }
 
 /* ---- Caps at sides ---- */
@@ -83,12 +83,11 @@ static void check_points(const particle_set* all, const mcor_options* options,
         fabs(x[i / 2] - planes[i]) < 1e-6 ? (i % 2 ? 1 : -1) * closed->normals[3 * p + i / 2] : 0;
     }
     oracle_evaluate(&field, NULL, x, &sample);
-    CORE_CHECK(out > 0.7, "point %lld at %g %g %g: its normal points out by %g", (long long)p, x[0],
-      x[1], x[2], out);
+    CORE_CHECK(out > 0.7, p, x[0], x[1], x[2], out);
     assert_true(closed->boundary_flag[p] == 8 || closed->boundary_flag[p] == 2);
     CORE_CHECK(fabs(closed->weight_sum[p] - sample.weight) < 1e-5 * (1 + sample.weight) &&
         (options->field == MCOR_WEIGHT_SUM || fabs(closed->attributes[0][p] - sample.value) < 1e-5),
-      "point %lld: weight %g, not %g", (long long)p, closed->weight_sum[p], sample.weight);
+      p, closed->weight_sum[p], sample.weight);
   }
 }
 
@@ -116,9 +115,8 @@ static void check_opposite_caps(const mcor_surface* open, const mcor_surface* s)
   }
   for (int a = 0; a < 3; ++a)
   {
-    CORE_CHECK(count[a][0] == count[a][1] && fabs(area[a][0] - area[a][1]) <= 1e-9 * area[a][0],
-      "axis %d: %lld triangles face one way, %lld the other; areas %g and %g", a,
-      (long long)count[a][0], (long long)count[a][1], area[a][0], area[a][1]);
+    CORE_CHECK(count[a][0] == count[a][1] && fabs(area[a][0] - area[a][1]) <= 1e-9 * area[a][0], a,
+      count[a][0], count[a][1], area[a][0], area[a][1]);
   }
 }
 
@@ -160,11 +158,11 @@ static void check_caps(
     const mesh_edge* side = report.side + i;
     CORE_CHECK(mesh_count_sides(&report, side->a, side->b) == 2 ||
         (ends_at(&closed, side->a) && ends_at(&closed, side->b)),
-      "the edge from point %d to %d is open", side->a, side->b);
+      side->a, side->b);
   }
   CORE_CHECK(
     !is_closed || (closed.statistics.is_closed == (report.edges > 0) && report.boundary_edges == 0),
-    "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
+    report.boundary_edges, report.edges);
   if (is_closed)
   {
     for (int i = 0; i < 6; ++i) /* there is nothing beyond a side */
@@ -257,8 +255,4 @@ static void test_boxes(void** state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_periods), cmocka_unit_test(test_boxes) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_periods, test_boxes)

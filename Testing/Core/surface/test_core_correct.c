@@ -63,8 +63,7 @@ static void test_every_particle_counts(void** state)
       worst = fmax(worst, fabs(sample.value - iso) / range);
     }
     oracle_free_field(&field);
-    CORE_CHECK(surface.point_count > 20 && worst < 1e-10, "run %d: residual %.3g at one of %lld",
-      (int)run, worst, (long long)surface.point_count);
+    CORE_CHECK(surface.point_count > 20 && worst < 1e-10, run, worst, surface.point_count);
   }
 }
 
@@ -94,7 +93,7 @@ static void test_reported_numbers(void** state)
       d2 += pow(corrected.points[3 * i + a] - preview.points[3 * i + a], 2);
     }
     CORE_CHECK(fabs(sqrt(d2) - (double)corrected.correction_length[i]) < 1e-6,
-      "length %g, moved %g", (double)corrected.correction_length[i], sqrt(d2));
+      corrected.correction_length[i], sqrt(d2));
     sum += sqrt(d2);
     most = fmax(most, sqrt(d2));
     const double* g = corrected.gradients + 3 * i;
@@ -104,22 +103,20 @@ static void test_reported_numbers(void** state)
   }
   CORE_CHECK(fabs(sum / (double)corrected.point_count - s->correction_mean) < 1e-6 &&
       fabs(most - s->correction_max) < 1e-6,
-    "mean %g, max %g; statistics %g, %g", sum / (double)corrected.point_count, most,
-    s->correction_mean, s->correction_max);
+    sum / (double)corrected.point_count, most, s->correction_mean, s->correction_max);
   worst += 2 * FLT_EPSILON * fmax(iso - s->scalar_min, s->scalar_max - iso);
-  CORE_CHECK(fabs(worst - s->residual_max) <= 1e-6 * worst, "residual %g, statistics %g", worst,
-    s->residual_max);
+  CORE_CHECK(fabs(worst - s->residual_max) <= 1e-6 * worst, worst, s->residual_max);
   oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   for (int64_t i = 0; i < corrected.point_count; ++i)
   {
     oracle_sample sample;
     oracle_evaluate(&field, NULL, corrected.points + 3 * i, &sample);
-    CORE_CHECK(fabs(sample.value - iso) <= s->residual_max, "residual %g, statistics %g",
-      fabs(sample.value - iso), s->residual_max);
+    CORE_CHECK(
+      fabs(sample.value - iso) <= s->residual_max, fabs(sample.value - iso), s->residual_max);
   }
   oracle_free_field(&field);
   assert_int_equal(preview.statistics.vertices_corrected, 0);
-  CORE_CHECK(preview.statistics.correction_max == 0, "a preview corrects nothing");
+  assert_true(preview.statistics.correction_max == 0);
 }
 
 /* More steps never make the worst residual larger, and the limit is never exceeded. */
@@ -138,15 +135,13 @@ static void test_iteration_limit(void** state)
     options.iteration_limit = limits[i];
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     const mcor_statistics* s = &surface.statistics;
-    CORE_CHECK(s->iterations_max <= limits[i] && s->iterations_max < 60, "%d iterations of %d",
-      s->iterations_max, limits[i]);
     CORE_CHECK(
-      i > 0 || s->vertices_above_tolerance > 0, "limit %d: all within tolerance", limits[i]);
-    CORE_CHECK(s->residual_max <= last * 1.0001, "limit %d: residual %g after %g", limits[i],
-      s->residual_max, last);
+      s->iterations_max <= limits[i] && s->iterations_max < 60, s->iterations_max, limits[i]);
+    CORE_CHECK(i > 0 || s->vertices_above_tolerance > 0, limits[i]);
+    CORE_CHECK(s->residual_max <= last * 1.0001, limits[i], s->residual_max, last);
     last = s->residual_max;
   }
-  CORE_CHECK(last < 1e-5, "residual %g in the end", last);
+  CORE_CHECK(last < 1e-5, last);
 }
 
 /* A looser tolerance is also met, and costs fewer evaluations. */
@@ -164,11 +159,10 @@ static void test_tolerance(void** state)
     const mcor_statistics* s = &surface.statistics;
     assert_int_equal(s->vertices_above_tolerance, 0);
     CORE_CHECK(s->residual_max <= options.tolerance * (s->scalar_max - s->scalar_min),
-      "tolerance %g: residual %g", options.tolerance, s->residual_max);
+      options.tolerance, s->residual_max);
     evaluations[i] = s->newton_evaluations;
   }
-  CORE_CHECK(evaluations[1] < evaluations[0], "%lld and %lld evaluations",
-    (long long)evaluations[0], (long long)evaluations[1]);
+  CORE_CHECK(evaluations[1] < evaluations[0], evaluations[0], evaluations[1]);
 }
 
 static double core_waves(const double x[3])
@@ -203,17 +197,15 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   {
     oracle_sample s;
     oracle_evaluate(&field, NULL, surface.points + 3 * v, &s);
-    CORE_CHECK(s.weight > 0.05 - 1e-4, "vertex %lld: fluid %g", (long long)v, s.weight);
-    CORE_CHECK(surface.boundary_flag[v] == 2 || fabs(s.value - iso) < 3e-5,
-      "vertex %lld, fluid %g: %g", (long long)v, s.weight, s.value);
+    CORE_CHECK(s.weight > 0.05 - 1e-4, v, s.weight);
+    CORE_CHECK(surface.boundary_flag[v] == 2 || fabs(s.value - iso) < 3e-5, v, s.weight, s.value);
     lacking += surface.boundary_flag[v] == 1 && s.weight < 0.05 + 1e-4;
     for (int a = 0; a < 3; ++a)
     {
-      CORE_CHECK(fabs(surface.attributes[0][3 * v + a]) < 100, "vertex %lld: attribute %g",
-        (long long)v, surface.attributes[0][3 * v + a]);
+      CORE_CHECK(fabs(surface.attributes[0][3 * v + a]) < 100, v, surface.attributes[0][3 * v + a]);
     }
   }
-  CORE_CHECK(lacking > 10, "%lld cuts where the fluid ends", (long long)lacking);
+  CORE_CHECK(lacking > 10, lacking);
   assert_int_equal(surface.statistics.vertices_above_tolerance, 0);
   assert_true(surface.statistics.trim_vertices_linear * 20 < surface.statistics.trim_vertices);
   CORE_REPORT report = core_check_pinched_mesh(&surface);
@@ -229,10 +221,5 @@ static void test_poles(void** state)
   check_poles(*state, 100, 2.2, MCOR_CUBE_LEVELS - 1);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_particle_counts),
-    cmocka_unit_test(test_reported_numbers), cmocka_unit_test(test_iteration_limit),
-    cmocka_unit_test(test_poles), cmocka_unit_test(test_tolerance) };
-  return cmocka_run_group_tests_name("correct", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_every_particle_counts, test_reported_numbers,
+  test_iteration_limit, test_poles, test_tolerance)

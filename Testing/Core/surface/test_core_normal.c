@@ -41,9 +41,8 @@ static void check_triangle_normals(const mcor_surface* surface)
     for (int a = 0; a < 3; ++a)
     {
       const double wanted = sums[3 * i + a] / length_of(sums + 3 * i);
-      CORE_CHECK(fabs((double)surface->normals[3 * i + a] - wanted) < 1e-6,
-        "normal of point %lld: %.9g along axis %d, not %.9g", (long long)i,
-        (double)surface->normals[3 * i + a], a, wanted);
+      CORE_CHECK(fabs((double)surface->normals[3 * i + a] - wanted) < 1e-6, i,
+        surface->normals[3 * i + a], a, wanted);
     }
   }
 }
@@ -60,7 +59,7 @@ static void test_triangle_normals(void** state)
     options.preview = kind == 0;
     options.triangle_normals = kind == 1;
     CORE_SURFACE surface = core_extract(*state, &input, &options);
-    CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+    CORE_CHECK(surface.point_count > 100, surface.point_count);
     check_triangle_normals(&surface);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
@@ -70,16 +69,14 @@ static void test_triangle_normals(void** state)
         n[a] = (double)surface.normals[3 * i + a];
         outwards += n[a] * surface.points[3 * i + a] / length_of(surface.points + 3 * i);
       }
-      CORE_CHECK(fabs(length_of(n) - 1) < 1e-5 && outwards > 0.7, "normal %g %g %g, outwards %g",
-        n[0], n[1], n[2], outwards);
+      CORE_CHECK(fabs(length_of(n) - 1) < 1e-5 && outwards > 0.7, n[0], n[1], n[2], outwards);
     }
   }
   options.outputs &= ~(unsigned)MCOR_OUT_NORMALS;
   CORE_SURFACE surface = core_extract(*state, &input, &options);
-  CORE_CHECK(!surface.normals && !surface.gradients && !surface.weight_sum &&
-      !surface.boundary_eigenvalue && !surface.correction_length && !surface.residual &&
-      !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle,
-    "arrays that nobody asked for");
+  assert_true(!surface.normals && !surface.gradients && !surface.weight_sum &&
+    !surface.boundary_eigenvalue && !surface.correction_length && !surface.residual &&
+    !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle);
 }
 
 /* Attributes: a constant, a linear function, a vector, more components than one round takes, and a single-precision
@@ -129,14 +126,14 @@ static void check_attributes(mcor_context* context, int solids)
       const double value = c == -2 ? surface.attributes[0][i]
         : c == -1                  ? surface.attributes[2][i]
                                    : surface.attributes[1][9 * i + c];
-      CORE_CHECK(fabs(value - sample.value) < 1e-6 * (10 + fabs(sample.value)),
-        "component %d: %.9g, not %.9g", c, value, sample.value);
-      CORE_CHECK(c != -2 || value == 1234.5, "a constant becomes %.9g", value);
+      CORE_CHECK(
+        fabs(value - sample.value) < 1e-6 * (10 + fabs(sample.value)), c, value, sample.value);
+      CORE_CHECK(c != -2 || value == 1234.5, value);
       CORE_CHECK(c != -1 || fabs(value - core_slope(surface.points + 3 * i)) < 0.6,
-        "a linear function is off by %g", value - core_slope(surface.points + 3 * i));
+        value - core_slope(surface.points + 3 * i));
     }
   }
-  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+  CORE_CHECK(surface.point_count > 100, surface.point_count);
   particle_set_free(&set);
 }
 
@@ -168,8 +165,8 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
   {
     const int64_t got = surface.nearest_particle[i];
     double best = INFINITY, at_got = INFINITY;
-    CORE_CHECK(got >= 0 && got < set.count, "particle %lld", (long long)got);
-    CORE_CHECK(!solids || !set.solid[got], "particle %lld is solid", (long long)got);
+    CORE_CHECK(got >= 0 && got < set.count, got);
+    CORE_CHECK(!solids || !set.solid[got], got);
     for (int64_t j = 0; j < set.count; ++j)
     {
       double d[3];
@@ -182,9 +179,8 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
     }
     wrong += at_got > best + 1e-5;
   }
-  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
-  CORE_CHECK(wrong == 0, "h ratio %g, solids %d: %lld of %lld are not the nearest", h_ratio, solids,
-    (long long)wrong, (long long)surface.point_count);
+  CORE_CHECK(surface.point_count > 100, surface.point_count);
+  CORE_CHECK(wrong == 0, h_ratio, solids, wrong, surface.point_count);
 }
 
 static void test_nearest(void** state)
@@ -197,7 +193,6 @@ static void test_nearest(void** state)
 /* The greatest terms are found, whichever slices they are in. */
 static void test_greatest_terms(void** state)
 {
-  (void)state;
   enum
   {
     N = 4 * MCOR_HEAVY_GRAIN
@@ -220,16 +215,11 @@ static void test_greatest_terms(void** state)
     none = large < 0 ? found : none;
     CORE_CHECK(large < 0 ||
         (found.area_most > 50 * none.area_most && found.volume_most > 50 * none.volume_most),
-      "%g %g", found.area_most, found.volume_most);
+      found.area_most, found.volume_most);
     mcor_measure_sums(&surface, NULL, &found);
-    CORE_CHECK(fabs(found.area - 0.5 * N - (large < 0 ? 0 : 49.5)) < 0.1, "area %g", found.area);
+    CORE_CHECK(fabs(found.area - 0.5 * N - (large < 0 ? 0 : 49.5)) < 0.1, found.area);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_triangle_normals),
-    cmocka_unit_test(test_attributes), cmocka_unit_test(test_nearest),
-    cmocka_unit_test(test_greatest_terms) };
-  return cmocka_run_group_tests_name("normal", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_triangle_normals, test_attributes, test_nearest,
+  test_greatest_terms)

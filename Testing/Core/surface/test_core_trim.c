@@ -26,11 +26,9 @@ static void test_thresholds(void** state)
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     CORE_REPORT report = core_check_mesh(&surface);
     core_check_flags(&surface);
-    CORE_CHECK(
-      report.area < last, "threshold %g: area %g after %g", thresholds[i], report.area, last);
-    CORE_CHECK(i > 0 || surface.triangle_count == surface.statistics.triangles_before_trimming,
-      "a threshold of 0 trims");
-    CORE_CHECK((report.area > 0) == (i < 4), "threshold %g: area %g", thresholds[i], report.area);
+    CORE_CHECK(report.area < last, thresholds[i], report.area, last);
+    assert_true(i > 0 || surface.triangle_count == surface.statistics.triangles_before_trimming);
+    CORE_CHECK((report.area > 0) == (i < 4), thresholds[i], report.area);
     last = report.area;
   }
   options.node_threshold = 2;
@@ -61,9 +59,4 @@ static void test_vertex_limit(void** state)
   mcor_release_memory(context);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_thresholds),
-    cmocka_unit_test(test_vertex_limit) };
-  return cmocka_run_group_tests_name("trim", tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, test_thresholds, test_vertex_limit)

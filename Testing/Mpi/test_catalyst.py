@@ -42,7 +42,7 @@ def main():
             assert len(os.listdir(os.path.join(ranks, name[:-5]))) == int(RANKS)
             problem = difference(union, one)
             assert not problem, (name, problem)
-        assert len(sizes) == len(names), "the particles do not move"
+        assert len(sizes) == len(names)  # The particles move.
 
 
 main()

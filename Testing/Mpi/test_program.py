@@ -74,7 +74,7 @@ class Program(unittest.TestCase):
                                           array.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
-        """Checks that processes with pieces of the particles write, to one file, what one process writes: points, triangles and arrays."""
+        """Processes with pieces of the particles write, to one file, what one process writes: points, triangles and arrays."""
         done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
@@ -104,7 +104,8 @@ class Program(unittest.TestCase):
                 write(particles, self.path("in.vtp"))
                 pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
             done = self.check_surfaces(self.path("in.vtp"), pieces, *how, "--smoothing-length", "neighbours")
-            self.assertEqual([len(re.findall(says("PARTICLE_FAR"), run.stderr)) for run in done], [how[-1] == "--quiet"] * 2)
+            counts = [len(re.findall(says("PARTICLE_FAR"), run.stderr)) for run in done]
+            self.assertEqual(counts, [how[-1] == "--quiet"] * 2)
 
     def test_pieces_of_meshes(self):
         """Among pieces with vertices, a piece of polygons has no particles, whichever process reads it."""
@@ -554,7 +555,7 @@ class Program(unittest.TestCase):
                 with open(self.path(name), "w", encoding="utf-8") as stream:
                     stream.write("old")
             done = self.run_failing(*how)
-            self.check_fails(done, "out_1.vtp could not be written: Input/output error")
+            self.check_fails(done, "out_1.vtp could not be written")
             self.assertEqual(sorted(os.listdir(self.folder.name)), sorted(names) if old else [])
             for name in names if old else []:
                 with open(self.path(name), encoding="utf-8") as stream:

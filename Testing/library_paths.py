@@ -31,7 +31,7 @@ def main():
             if not all(element.startswith(("/", "$ORIGIN")) for element in elements.split(":")):
                 wrong.append(f"{path}: [{elements}]")
         count += 1
-    assert count, "no program and no library was found"
+    assert count  # A program or a library was found.
     print(f"{count} programs and libraries", *wrong, sep="\n")
     return bool(wrong)
 

@@ -38,6 +38,10 @@ def read_table(path):
         return list(csv.DictReader(stream))
 
 
+def column(rows, name):
+    return [row[name] for row in rows]
+
+
 class CommandLineTest(unittest.TestCase):
     """Runs the program in a directory of its own, with a small good input beside it."""
 
@@ -70,7 +74,7 @@ class CommandLineTest(unittest.TestCase):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
     def run_good(self, *arguments, says="^$", **options):
-        """Runs the program, which must succeed. Its stderr must match `says`, which by default means that it is empty."""
+        """Runs the program, which must succeed. By default stderr must be empty; otherwise it matches `says`."""
         result = self.run_program(*arguments, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stderr, says)
@@ -87,7 +91,7 @@ class CommandLineTest(unittest.TestCase):
         return json.loads(statistics.read_text())
 
     def refuse(self, result, status, sentence):
-        """Checks that a run failed with one line on stderr that matches, and wrote no output file of any kind."""
+        """A failed run has one line on stderr, which matches, and no output file of any kind."""
         self.one_sentence(result, status, sentence)
         left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
         self.assertEqual(left, [])

@@ -67,7 +67,7 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output, and a sentence says what the mode needs. A surface without a scalar is the free surface."""
+        """A mode as the first word changes no output, or is refused with what it needs. A surface without a scalar is the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
         self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))
@@ -118,6 +118,18 @@ class Usage(CommandLineTest):
     def test_list_devices(self):
         self.assertRegex(self.run_good("--list-devices").stdout, r"^0: built in: this CPU")
 
+    def test_values_of_the_wrong_form(self):
+        """A number or a word that an option cannot take is refused by a sentence that names the option."""
+        text = self.run_good("--help", "all", env={**os.environ, "COLUMNS": "300"}).stdout
+        tried = 0
+        for option, form in re.findall(r"(?m)^  (--[\w-]+) (\S+) ", text):
+            numbers = re.fullmatch(r"[A-Z]{1,2}(\[.*|\|BEGIN.*)?|MIB", form)
+            for value in ("x", "1x", "", "nan", "1e999", "0x1p3", "+-1") if numbers else ("nonesuch",) if re.fullmatch("[-a-z_|0-9]+", form) else ():
+                with self.subTest(option, value=value):
+                    tried += 1
+                    self.refuse(self.run_program(self.input, self.output, f"{option}={value}"), 2, f"{option} (needs (?!--)|must be)")
+        self.assertGreater(tried, 100)
+
     def test_wrong_usage(self):
         good = [self.input, self.output]
         for arguments, sentence in [
@@ -144,20 +156,11 @@ class Usage(CommandLineTest):
             ([*good, "--free-surface", "--kernel"], "--kernel needs NAME"),
             ([*good, "--free-surface", "--iso="], "--iso needs V"),
             ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
-            ([*good, *ISO, "--kernel", "gauss"], "--kernel must be one of cubic, .*, not 'gauss'"),
-            ([*good, *ISO, "--field", "mean"], "--field must be one of shepard, sum, not 'mean'"),
-            ([*good, *ISO, "--seeds", "all"], "--seeds must be one of pairs, complete, not 'all'"),
-            ([*good, *ISO, "--topology", "x"], "--topology must be one of table, field, not 'x'"),
-            ([*good, *ISO, "--boundary", "x"], "--boundary must be one of weight_sum, eigenvalue, not 'x'"),
-            ([*good, *ISO, "--solids", "x"], "--solids must be one of auto, weight, ignore, wall, not 'x'"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
-            ([*good, *ISO, "--precision", "half"], "--precision must be one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
-            ([*good, "--scalar", "Radius", "--iso", "nan"], "--iso needs a finite number"),
             ([*good, *ISO, "--component", "-2"], "--component needs a whole number from 0"),
             ([*good, *ISO, "--component", "2147483648"], "whole number up to 2147483647, not '21"),
-            ([*good, *ISO, "--component", "1x"], "--component needs a whole number"),
             ([*good, *ISO, "--component", " 1"], "--component needs a whole number"),
             ([*good, "-iso", "1"], "unknown option -iso; did you mean --iso[?]"),
             ([*good, *ISO, "-q"], r"unknown option -q \("),
@@ -169,16 +172,9 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
             ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, or .* not '--quiet'"),
-            ([*good, *ISO, "--h-scale", "1e999"], "--h-scale needs a finite number, not '1e999'"),
-            ([*good, *ISO, "--h-scale", "1.0junk"], "--h-scale needs a finite number"),
-            ([*good, *ISO, "--h-scale", "0x1p3"], "--h-scale needs a finite number"),
-            ([*good, *ISO, "--h-scale=+-1"], "--h-scale needs a finite number"),
-            ([*good, *ISO, "--repeat", "0"], "--repeat needs a whole number from 1, not '0'"),
             ([*good, *ISO, "--memory-limit", "0"], "--memory-limit needs a whole number from 1"),
             ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
-            ([*good, *ISO, "--cube-factor", "-1"], "--cube-factor must be greater than 0"),
             ([*good, *ISO, "--node-threshold", "-1"], "--node-threshold must be 0 or greater"),
-            ([*good, *ISO, "--vertex-threshold", "x"], "--vertex-threshold needs a finite number"),
             ([*good, *ISO, "--smoothing-length", "-2"], "--smoothing-length must be greater than 0"),
             ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
             ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
@@ -195,7 +191,6 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
             ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
             ([*good, *ISO, "--up", "z"], "--up needs --screenshot; add it, or leave out --up"),
-            ([*good, *ISO, "--screenshot", "a.png", "--up", "up"], "--up must be one of x, y, z, -x, -y, -z, not 'up'"),
             ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
             ([*good, *ISO, "--color-by", "Radius"], "--color-by needs --screenshot or .ply"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
@@ -223,11 +218,10 @@ class BadData(CommandLineTest):
     def test_sentences(self):
         """Sentences of the filters (tested in test_input.py) name the program's options."""
         self.refuse_all(1, [
-            (["--scalar", "Temperature", "--iso", "1"], "no point array 'Temperature' for the scalar.*Radius"),
-            (["--derive", "Nonsense", *ISO], "no point array 'Nonsense'.*Radius"),
-            ([*ISO, "--attributes", "Kind,Colour"], "no point array 'Colour' to interpolate"),
+            (["--scalar", "Temperature", "--iso", "1"], says("NO_SUCH_ARRAY", "'Temperature'", "Radius")),
+            (["--derive", "Nonsense", *ISO], says("NO_SUCH_ARRAY", "'Nonsense'", "Radius")), ([*ISO, "--attributes", "Kind,Colour"], "'Colour'"),
             ([*ISO, "--cube-size", "1e-5"], says("BLOCKS_TOO_MANY", "--cube-size")),
-            ([*ISO, "--device", "nonesuch"], "(?i)device.*nonesuch"), ([*ISO, "--device", "99"], "(?i)device.*99")])
+            ([*ISO, "--device", "nonesuch"], says("NO_SUCH_DEVICE", "nonesuch")), ([*ISO, "--device", "99"], says("NO_SUCH_DEVICE", "99"))])
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         self.refuse_with(says("NO_SMOOTHING_LENGTH", "--smoothing-length estimate finds", "--smoothing-length names"))
@@ -307,7 +301,7 @@ class BadData(CommandLineTest):
 
 
 class Options(CommandLineTest):
-    """Tests that every option does what it says, as far as statistics and output show it."""
+    """Tests what options do, as far as statistics and output show it."""
 
     def test_summary(self):
         result = self.extract_good(*ISO)
@@ -319,7 +313,7 @@ class Options(CommandLineTest):
         trimmed = self.extract("--scalar", "Radius", "--iso", "0.55", "--verbose")
         self.assertRegex(trimmed.stdout,
                          r"(?m)^surface     .* triangles \(\d+ before trimming, which cuts some in two\); area [\d.]+$")
-        self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
+        self.assertRegex(result.stdout, r"(?m)^cells       \d+ .* with surface$")
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
     def test_quiet(self):
@@ -343,7 +337,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
 
     def test_chosen_iso_value(self):
-        """Without --iso the program chooses a value near the median and says which. A film keeps this value in all its steps."""
+        """Without --iso the program chooses a value near the median. A film keeps this value in all its steps."""
         sentence = r"(?m)^iso value   (\S+), chosen for Radius, whose range is (\S+) \.\. (\S+) \("
         statistics = self.directory / "statistics.json"
         result = self.extract_good("--scalar", "Radius", "--stats", statistics)
@@ -386,7 +380,7 @@ class Options(CommandLineTest):
         self.refuse(self.run_program("--list-arrays", "none.vtp"), 1, "none.vtp")
 
     def test_first_compilation(self):
-        """When a driver has no kept programs, one sentence says that compiling takes time."""
+        """When a driver has no kept programs, the user hears that compiling takes time."""
         if "Portable" not in self.run_program("--list-devices").stdout:
             self.skipTest("there is no PoCL")
         environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}
@@ -497,11 +491,11 @@ class Options(CommandLineTest):
             self.refuse(self.run_program(self.input, output, "--probe", "points.vtp"), status, sentence)
 
     def test_empty_surface(self):
-        self.extract_good("--scalar", "Radius", "--iso", "99", says="^marching-correctors: warning: the surface is empty.*99")
+        self.extract_good("--scalar", "Radius", "--iso", "99", says="^marching-correctors: warning: .*99")
         self.assertTrue(self.output.exists())
 
     def test_no_fluid(self):
-        self.succeed(*ISO, "--fluid", "Kind=7", told="warning: the surface is empty.*Kind = 7")
+        self.succeed(*ISO, "--fluid", "Kind=7", told="warning: .*Kind = 7")
 
     def test_free_surface(self):
         low = self.succeed("--free-surface", "--iso", "0.3")
@@ -510,8 +504,7 @@ class Options(CommandLineTest):
         self.assertEqual(half["parameters"]["field"], "weight_sum")
         self.assertGreater(low["statistics"]["cells_used"], half["statistics"]["cells_used"])
         self.assertNotIn("scalar_range", half["statistics"])
-        self.assertRegex(self.extract("--free-surface", "--iso", "50").stderr,
-                         "the surface is empty: no part of the field reaches the iso value 50$")
+        self.assertRegex(self.extract("--free-surface", "--iso", "50").stderr, "iso value 50$")
 
     def test_components(self):
         vector = ["--scalar", "Velocity", "--iso", "0.21"]
@@ -526,16 +519,12 @@ class Options(CommandLineTest):
         """Warnings appear on stderr and in the statistics."""
         statistics = self.directory / "statistics.json"
         self.assertEqual(self.succeed(*ISO)["warnings"], [])
-        for arguments, words in [
+        for arguments, words in [  # core_warning tests all warnings.
             (["--smoothing-length", "0.26"], says("NEIGHBOURS_UNUSUAL", "0.26", "--support-radius")),
-            (["--support-radius"], says("NEIGHBOURS_UNUSUAL", "0.065")),
-            (["--scalar", "Radius", "--iso", "0.3,99"], says("ISO_OUTSIDE", "99", "Radius, 0.0")),
             (["--vertex-threshold", "5"], says("ALL_TRIMMED", "5", "--field sum, --node-threshold 0 and --vertex-threshold 0[.]")),
-            (["--density", "1e6"], "node threshold 0.1"),
         ]:
             with self.subTest(arguments):
-                contour = [] if "--iso" in arguments else ISO
-                result = self.extract_good(*contour, *arguments, "--stats", statistics,
+                result = self.extract_good(*ISO, *arguments, "--stats", statistics,
                                            says=f"^marching-correctors: warning: .*{words}")
                 self.assertEqual(result.stderr.count("warning:"), 1)
                 warnings = json.loads(statistics.read_text())["warnings"]
@@ -543,8 +532,7 @@ class Options(CommandLineTest):
                 self.assertIn(warnings[0], result.stderr)
         self.arrays["ParticleType"] = self.arrays.pop("Kind")
         files.write_vtp(self.input, self.points, self.arrays)
-        result = self.extract(*ISO)
-        self.assertRegex(result.stderr, "'ParticleType' is not used.*700 x 0, 300 x 1")
+        self.assertRegex(self.extract(*ISO).stderr, says("TYPE_UNUSED", "'ParticleType'", "700 x 0, 300 x 1"))
         self.succeed(*ISO, "--fluid", "ParticleType=0")
 
     def test_solvers_names(self):
@@ -553,56 +541,38 @@ class Options(CommandLineTest):
         dual = {"Idp": list(range(count)), "Rhop": arrays["Density"], "Vel": arrays["Velocity"],
                 "Type": [3] * count, "Mass": arrays["Mass"], "Radius": arrays["Radius"]}
         files.write_vtp(self.input, self.points, dual)
-        self.assertIn("DualSPHysics does not store it: it is coefh", self.extract(*ISO).stderr)
+        self.assertRegex(self.extract(*ISO).stderr, says("NO_SMOOTHING_LENGTH", "--coefh"))
         found = self.succeed(*ISO, "--dp", "0.1", "--coefh", "1.2")
         self.assertEqual(found["arrays"]["density_array"], "Rhop")
         length = found["statistics"]["smoothing_length_range"][0]
         self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
 
     def test_settings(self):
-        """Each row has options, the parameters that they give, and whether the surface differs from the one without them."""
+        """Each row has options, the parameters that they give, and other options with the same surface, if there are any. test_modes.py tries each option."""
         half, walls = 5 * files.SPACING, ["--fluid", "Kind=0", "--solids"]
-        self.arrays.update({"7": self.arrays["SmoothingLength"], "Space": [0.001] * len(self.points)})
+        self.arrays["7"] = self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         listed = re.search(r"--kernel NAME +(.*)", self.run_program("--help", "all", env={**os.environ, "COLUMNS": "999"}).stdout).group(1)
         kernels = listed.replace(" (default)", "").split(", ")
         self.assertEqual(kernels[:5], ["cubic", "quadratic", "mprime4", "quintic", "wendland"])
         numbers, arrays, of_fluid = "parameters", "arrays", "fluid"
-        weight = {"array": "Kind", "value": 0, "solids": "weight"}
         surfaces = {}
         for arguments, group, expected, same_as in [
             ([], numbers, {"kernel": "cubic", "vertex_threshold": 0.5, "precision": "single"}, None),
             *(((["--kernel", name]), numbers, {"kernel": name}, "" if name == "cubic" else None) for name in kernels),
-            (["--h-scale", "0.75"], numbers, {"h_scale_factor": 0.75}, None),
-            (["--cube-factor", "1"], numbers, {"cube_size_factor": 1}, None),
-            (["--cube-size", "0.05"], numbers, {"cube_size": 0.05}, None),
-            (["--field", "sum"], numbers, {"field": "sum"}, None),
-            (["--seeds", "pairs"], numbers, {"seed_mode": "pairs"}, ""),
-            (["--topology", "field"], numbers, {"topology": "field"}, ""),
-            (["--preview"], numbers, {"preview": 1}, None),
-            (["--node-threshold", "0.2"], numbers, {"node_threshold": 0.2}, ""),
-            (["--vertex-threshold", "1"], numbers, {"vertex_threshold": 1}, None),
             (["--boundary", "eigenvalue"], numbers, {"boundary_detection": "eigenvalue", "vertex_threshold": 0.3}, ""),
             (["--boundary=eigenvalue", "--vertex-threshold=0.75"], numbers, {"vertex_threshold": 0.75}, ""),
-            (["--precision", "double"], numbers, {"precision": "double"}, None),
-            (["--output-precision", "single"], numbers, {"precision": "single"}, None),
             (["--box=-1,0.1,-inf,inf,-1,1"], numbers, {"box": [-1, 0.1, None, None, -1, 1]}, None),
             ([f"--periodic={-half!r},{half!r},{-half!r},{half!r},0,0"], numbers,
              {"periodic_bounds": [-half, half, -half, half, 0, 0]}, None),
             (["--periodic", f"{2 * half!r},{2 * half!r},0"], numbers,
              {"periodic_bounds": [-half, half, -half, half, 0, 0]}, f"--periodic={-half!r},{half!r},{-half!r},{half!r},0,0"),
-            (["--box=-1,0.1,-1,1,-1,1", "--capping"], numbers, {"capping": 1}, None),
             (["--smoothing-length", "0.13"], arrays, {"smoothing_length_array": ""}, ""),
             # If both are possible, 7 is the name of an array, not a number.
             (["--smoothing-length", "7"], arrays, {"smoothing_length_array": "7"}, ""),
-            (["--smoothing-length", "estimate"], arrays, {"smoothing_length_array": ""}, None),
             (["--smoothing-length", "0.26", "--support-radius"], numbers, {"smoothing_length_is_support_radius": 1}, ""),
             (["--mass", "1", "--density", "1000"], numbers, {"mass": 1, "density": 1000}, ""),
             (["--mass", "Mass", "--density", "Density"], arrays, {"mass_array": "Mass", "density_array": "Density"}, ""),
-            (["--volume", "Space"], arrays, {"volume_array": "Space"}, ""),
-            ([*walls, "weight"], of_fluid, weight, None),
-            ([*walls, "ignore"], of_fluid, {**weight, "solids": "ignore"}, None),
-            ([*walls, "wall", "--wall-share", "0.5"], of_fluid, {**weight, "solids": "wall", "wall_share": 0.5}, None),
             ([*walls, "wall", "--wall-share=measured"], of_fluid, {"solids": "wall"}, None),
             ([*walls, "wall"], of_fluid, {"solids": "wall"}, " ".join([*walls, "wall", "--wall-share=measured"])),
             (["--iso", "0.3,0.2"], numbers, {"iso_values": [0.3, 0.2]}, None),
@@ -618,9 +588,8 @@ class Options(CommandLineTest):
         self.assertEqual(found["statistics"]["triangles"], sum(
             self.succeed(*ISO[:2], "--iso", value)["statistics"]["triangles"] for value in ("0.3", "0.2")))
         self.assertIn("volume: 1 / 1000\n", self.extract(*ISO, "--mass=1", "--density=1000").stdout)
-        for arguments, words in ((["--box", "50,51,0,1,0,1"], "no part of the field in the box reaches"),
-                                 (["--box=-1,0.1,-1,1,-1,1", "--vertex-threshold", "9"], r"all \d+ triangles in the box were trimmed")):
-            self.extract_good(*ISO, *arguments, says="the surface is empty: " + words)
+        for arguments, words in ((["--box", "50,51,0,1,0,1"], "in the box"), (["--box=-1,0.1,-1,1,-1,1", "--vertex-threshold", "9"], r"\d+ triangles in the box")):
+            self.extract_good(*ISO, *arguments, says="surface is empty: .*" + words)
         self.output.unlink()
         self.refuse(self.extract("--free-surface", "--periodic", "1e-3,0,0"), 1, "period along x")
 
@@ -644,16 +613,15 @@ class Options(CommandLineTest):
         self.succeed(*free, "--periodic", f"{length!r},{length!r},0")
         expected = self.output.read_bytes()
         box = (-length / 2, length / 2, -length / 2, length / 2, 0.0, 1.5 * length)
-        self.assertNotIn("may be a period", self.extract(*free).stderr)
+        self.assertNotIn("--periodic auto", self.extract(*free).stderr)
         for arrays, bounds, same in (({"BoxSize": [length, length, 0.0]}, None, True),
                                      ({"box": box, "boundaryType": [1, 0, 2]}, [*box[:2], 0, 0, 0, 0], False)):
             data = "".join(f'<DataArray type="Float64" Name="{name}" NumberOfTuples="{len(values)}" format="ascii">'
                            f'{" ".join(map(repr, values))}</DataArray>' for name, values in arrays.items())
             self.input.write_text(plain.replace("<PolyData>", f"<PolyData><FieldData>{data}</FieldData>"))
             hint = self.extract(*free)
-            self.assertRegex(hint.stderr, f"warning: the field data array {next(iter(arrays))} may be a period [(].*[)], "
-                             "but was not used; --periodic auto uses it")
-            self.assertNotIn("may be a period", self.extract(*free, "--periodic", "0,0,0").stderr)
+            self.assertRegex(hint.stderr, f"warning: .* {next(iter(arrays))} .*--periodic auto")
+            self.assertNotIn("--periodic auto", self.extract(*free, "--periodic", "0,0,0").stderr)
             found = self.succeed(*free, "--periodic", "auto")
             if bounds:
                 self.assertEqual(found["parameters"]["periodic_bounds"], bounds)
@@ -663,7 +631,7 @@ class Options(CommandLineTest):
             self.input.write_text(plain.replace(
                 "<PolyData>", f'<PolyData><FieldData><DataArray type="Float64" Name="{wrong}" NumberOfTuples="6" '
                 'format="ascii">0 1 0 1 0 1</DataArray></FieldData>'))
-            self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data of the particles give no period")
+            self.refuse(self.extract(*free, "--periodic", "auto"), 1, says("NO_PERIOD"))
 
     def test_output_is_a_function_of_the_input(self):
         """Two runs write the same bytes, and so does a run with --repeat."""
@@ -753,9 +721,7 @@ class Picture(CommandLineTest):
                 # This VTK renders without X, through EGL or in memory.
                 self.assertTrue((self.directory / "p.png").exists())
                 continue
-            self.assertEqual(result.returncode, 1)
-            self.assertEqual(result.stderr, "marching-correctors: p.png could not be written: "
-                             "rendering needs a display; try xvfb-run -a -s -noreset\n")
+            self.one_sentence(result, 1, "p.png could not be written: .*xvfb-run -a -s -noreset")
 
 
 if __name__ == "__main__":

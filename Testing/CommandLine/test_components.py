@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests --components of the program, a table of a surface's pieces: test_components.py PROGRAM PRELOAD."""
 import particle_files as files
-from command_line_test import CommandLineTest, main, read_table
+from command_line_test import CommandLineTest, column, main, read_table
 
 COLUMNS = ("component iso parent closed area volume x y z xmin xmax ymin ymax zmin zmax diameter particles mass "
            "vx vy vz").split()
@@ -80,7 +80,7 @@ class Components(CommandLineTest):
             rows.append(read_table(numbers))
         names = ["time", "iso", "triangles", "area", "volume", "pieces", "mast.last", "mast.depth", "mast.crossings"]
         self.assertEqual([list(table[0]) for table in rows], [names[:5] + names[6:], names, names])
-        self.assertEqual([row["time"] for row in rows[0]], ["0", "0.1", "0.25"])
+        self.assertEqual(column(rows[0], "time"), ["0", "0.1", "0.25"])
         for i, (plain, both, one) in enumerate(zip(*rows)):
             for name in plain:
                 self.assertEqual(plain[name], both[name])
@@ -143,7 +143,7 @@ class Components(CommandLineTest):
         for begin, count in ((1, 1), (0.13, 2), (-3.87, 2)):
             files.write_vtp(self.input, self.points, self.arrays)
             rows = self.pieces("--periodic", f"{begin},{begin + 2},0,0,0,0", "--capping")
-            self.assertEqual([row["closed"] for row in rows], ["1"] * count)
+            self.assertEqual(column(rows, "closed"), ["1"] * count)
             self.assertEqual(sum(int(row["particles"]) for row in rows), 992)
             self.assertTrue(all(int(row["particles"]) > 200 and float(row["mass"]) > 200 for row in rows), rows)
             for axis in "xyz":

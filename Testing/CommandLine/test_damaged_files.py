@@ -89,7 +89,7 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """These files crash the readers of VTK 9.1 and 9.3 unless they are checked first."""
+        """Without the program's own look at them first, these files crash the readers of VTK 9.1 and 9.3."""
         for name in ("inline.vtp", "appended.vtu"):
             with self.subTest(name):
                 data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')

@@ -105,6 +105,24 @@ def numbers_of(report):
     return report.get("statistics") or numbers_of(report.get("steps", []))
 
 
+def parameters_of(report):
+    """Returns {parameter: value}, of all groups."""
+    return {name: value for group in ("parameters", "arrays", "fluid") for name, value in (report.get(group) or {}).items()}
+
+
+def is_shown(option, value, report, base):
+    """Returns whether, of parameters named like the option, one has changed, to the option's value if that is a number or a word. Reports need not have
+    such a parameter."""
+    found, before = parameters_of(report), parameters_of(base)
+    changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
+    mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:4]) for part in name.split("_"))}
+    values = [each for name in changed & mine for each in (found[name] if isinstance(found.get(name), list) else [found.get(name)])]
+    if not mine or not re.fullmatch(r"[\w.]+", value):
+        return not mine or bool(values) or not changed
+    return not changed or any(str(each) == value or isinstance(each, (int, float)) and re.fullmatch(r"[\d.]+", value) and each == float(value)
+                              for each in values)
+
+
 class Modes(CommandLineTest):
     def setUp(self):
         super().setUp()
@@ -149,10 +167,11 @@ class Modes(CommandLineTest):
         result = self.run_program(*inputs, output, *words, cwd=folder)
         # The report's parameters differ in any case, so only its statistics are compared.
         written = {path.name: path.read_bytes() for path in folder.iterdir() if not path.is_symlink() and path.suffix != ".json"}
-        written.update((path.name, numbers_of(json.loads(path.read_text()))) for path in folder.glob("*.json"))
+        reports = {path.name: json.loads(path.read_text()) for path in folder.glob("*.json")}
+        written.update((name, numbers_of(report)) for name, report in reports.items() if name != "parameters.json")
         told = "\n".join(line.split(" ")[0] if re.match("seconds|device|memory|program", line) else re.sub(r"[\d.]+ s$", "", line)
                          for line in result.stdout.splitlines())
-        return result.returncode, result.stderr, (written, told)
+        return result.returncode, result.stderr, (written, told), reports.get("parameters.json", {})
 
     def acting(self):
         """Returns {mode: options}, as --help lists them."""
@@ -163,7 +182,8 @@ class Modes(CommandLineTest):
     def key(self, mode, trial, option=None):
         """Returns the key of the run with the option, or without it."""
         inputs, output, base = MODES[mode]
-        options = {**base, **{name: value for name, value in trial.context.items() if name in self.help[mode]}}
+        report = {"--stats": "parameters.json"} if mode == "surface" else {}
+        options = {**report, **base, **{name: value for name, value in trial.context.items() if name in self.help[mode]}}
         if option:
             options.update(trial.extra if option in self.help[mode] else {})
             options[option] = [*options.get(option, []), trial.value] if option in ("--gauge", "--flux") else trial.value
@@ -180,8 +200,8 @@ class Modes(CommandLineTest):
 
     def judge(self, option, mode, trial):
         """Returns (what the option does, what is wrong with it)."""
-        status, said, written = self.runs[self.key(mode, trial, option)]
-        base_status, base_said, base = self.runs[self.key(mode, trial)]
+        status, said, written, report = self.runs[self.key(mode, trial, option)]
+        base_status, base_said, base, base_report = self.runs[self.key(mode, trial)]
         if base_status != 0:
             return "?", f"fails without it: {base_said}"
         if option not in self.help[mode]:
@@ -190,6 +210,8 @@ class Modes(CommandLineTest):
                 sentence = r"^marching-correctors: .*\n$"
             good = status == 2 and re.match(sentence, said) and not written[0]
             return "refused", "" if good else f"is not in --help {mode}, but {status} {said}"
+        if status == 0 and not is_shown(option, trial.value, report, base_report):
+            return "acts", "but the report has another parameter than the option's"
         if status == 0 and ((option, mode) in HOLDS) == (written == base):
             return "holds" if written == base else "acts", ""
         if status == 1 and all(line.startswith("marching-correctors: ") for line in said.splitlines()):
@@ -197,12 +219,13 @@ class Modes(CommandLineTest):
         return "?", said or "does nothing"
 
     def test_the_guide_says_it(self):
-        """The table in parameters.md says the same as --help about which option acts where."""
+        """The table in parameters.md has each option where --help has it."""
         acting = self.acting()
         page = (pathlib.Path(__file__).parents[2] / "Documentation" / "Guide" / "parameters.md").read_text(encoding="utf-8")
         rows = re.findall(r"(?m)^\| (`--.*?) \|((?: [x ]? ?\|){8})$", page)
         said = {option: [cell.strip() for cell in cells.split("|")[:-1]] for names, cells in rows for option in re.findall("--[\\w-]+", names)}
-        self.assertEqual(said, {option: ["x" if option in acting[mode] else "" for mode in MODES] for option in TRIALS})
+        listed = {option: ["x" * (option in acting[mode]) for mode in MODES] for option in TRIALS}
+        self.assertEqual(said, listed)
 
     def test_every_option_in_every_mode(self):
         self.help = self.acting()

@@ -7,7 +7,7 @@ import re
 import struct
 
 import particle_files as files
-from command_line_test import ISO, CommandLineTest, main, read_table, says
+from command_line_test import ISO, CommandLineTest, column, main, read_table, says
 
 SIDE = 20
 
@@ -106,7 +106,7 @@ class Plane(CommandLineTest):
 
     def test_table_without_fluid(self):
         for output in ("none.csv", "none_%04d.csv"):
-            self.run_good(self.input, output, *ISO, "--fluid", "Radius=99", says="the surface is empty: No particle has Radius = 99")
+            self.run_good(self.input, output, *ISO, "--fluid", "Radius=99", says="empty: .* Radius = 99")
             self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
 
     def test_points_as_a_table(self):
@@ -114,7 +114,7 @@ class Plane(CommandLineTest):
         table = self.directory / "surface.csv"
         self.run_good(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
         rows = read_table(table)
-        self.assertEqual({row["Line"] for row in rows}, {"0", "1"})
+        self.assertEqual(set(column(rows, "Line")), {"0", "1"})
         for row in rows:
             self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["Radius"]), delta=0.02)
             self.assertEqual(float(row["Y"]), 0.25)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests projections of the program: test_project.py PROGRAM PRELOAD."""
 import math
+import re
 import struct
 import xml.etree.ElementTree
 
@@ -105,7 +106,7 @@ class Project(CommandLineTest):
         self.assertEqual([(one.get("file"), one.get("timestep")) for one in listed],
                          [("film_0000.vti", "0"), ("film_0002.vti", "2")])
         text = (self.directory / "film_0000.vti").read_bytes()
-        self.assertEqual(text.replace(b"\n<!-- a step of a film by marching-correctors -->", b""), expected)
+        self.assertEqual(re.sub(b"\n<!-- .* -->", b"", text), expected)
         self.run_good(self.input, "half.vtp", "column_%04d.vti", *options)
         self.assertEqual((self.directory / "column_0000.vti").read_bytes(), expected)
         self.project(*options, source="half.vtp")

@@ -27,11 +27,11 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Checks a failed run, even if an earlier run has left a surface."""
+        """Refuses a run, even if an earlier one has left a surface."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):
-        """Returns the volume, or area, of the free surface. What the program says must hold `words`, or nothing if there are none."""
+        """Returns the volume, or area, of the free surface. stderr must hold `words`, or be empty if there are none."""
         self.statistics = self.succeed(*FREE, *options, source=source, told=words)["statistics"]
         return self.statistics.get("volume", self.statistics.get("area"))
 
@@ -107,7 +107,7 @@ class RealFiles(CommandLineTest):
         # --time-step replaces the times in the files. If some files hold no time, a sentence says so.
         self.assertEqual([time for time, _, _ in self.levels(paths, *H, "--time-step", "0.5")], [0, 0.5, 1, 1.5, 2])
         self.write_tank(9, 14)
-        self.assertEqual([time for time, _, _ in self.levels(paths, *H, words="are missing in some")], [0, 1, 2, 3, 4])
+        self.assertEqual([time for time, _, _ in self.levels(paths, *H, words="missing in some")], [0, 1, 2, 3, 4])
 
     def test_times_in_xml(self):
         paths = []
@@ -363,7 +363,7 @@ class RealFiles(CommandLineTest):
         self.check_table("cloud.xyz", "\n".join(f"{x} {y} {z}" for x, y, z in points))
         header = ('Lattice="2 0 0 0 2 0 0 0 2" Properties=species:S:1:pos:R:3:vel:R:3:id:I:1 Time=0.5 pbc="T F F"')
         body = "\n".join(f"H {x} {y} {z} {x} 0 0 {i}" for i, (x, y, z) in enumerate(points))
-        file = self.check_table("extended.extxyz", f"216\n{header}\n{body}\n", words="may be a period .0,2,0,0,0,0.")
+        file = self.check_table("extended.extxyz", f"216\n{header}\n{body}\n", words="period .0,2,0,0,0,0.")
         self.extract_good("--scalar", "vel", "--component", "0", "--iso", "0.3", *H, "--quiet", "--periodic", "auto",
                           source=file)
         steps = "".join(f"{25 * n}\nTime={0.1 * n}\n" + "".join(f"A {x} {y} {z}\n" for x, y, z in block((5, 5, n)))
@@ -389,7 +389,7 @@ class RealFiles(CommandLineTest):
                           "film.xyz#3: .*film.xyz cannot be read: it ends before the second line of a step")
         self.assertEqual(len(read_table(self.directory / "levels.csv")), 3)
         self.refuse_texts("bad.xyz", [
-            ("2\n\nA 1 2 3\nA 1 2 4\n\nA 1 2 5\n", "line 6 is one more than the 2 particles that the step says it has"),
+            ("2\n\nA 1 2 3\nA 1 2 4\n\nA 1 2 5\n", "line 6 is one more than the 2 particles"),
             ("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
             ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"), ("999999999999\nc\nA 1 2 3\n", "ends before")])
 
@@ -403,7 +403,7 @@ class RealFiles(CommandLineTest):
                 text += f"{i + 1} 1 {x} {y} {z} {10 * i}\n"
             return text
 
-        self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
+        self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="period .-1,1,0,0,0,0.")
         self.check_table("scaled.dump", step(100, 5, "id type xs ys zs vx", True), volume=0.125, words="period")
         self.check_table("dump.txt", step(100, 5), volume=0.125, words="period")
         tilted = "BOX BOUNDS xy xz yz pp pp pp\n-1 2 0.5\n0 3 0.5\n0 4 1\n"  # The sides are (2, 0, 0), (0.5, 2, 0) and (0.5, 1, 4).

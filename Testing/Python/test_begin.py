@@ -92,7 +92,7 @@ class TestColours(unittest.TestCase):
 
 class TestForgotten(unittest.TestCase):
     def test_pieces(self):
-        """Without particles nothing is said about them; without a surface one sentence says so."""
+        """Without particles nothing is said about them; without a surface one sentence is."""
         surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
         pieces = vtkSPHComponents()
         _, told = run(pieces, surface)
@@ -101,7 +101,7 @@ class TestForgotten(unittest.TestCase):
         self.assertEqual((told, names[-1], table.GetNumberOfRows()), ([], "diameter", 1))
         _, told = run(vtkSPHComponents(), block())
         self.assertEqual(len(told), 1)
-        self.assertRegex(told[0], "Choose a surface, such as that of SPH Contour")
+        self.assertRegex(told[0], "SPH Contour")
 
     def test_probe(self):
         plane = vtkPlaneSource()

@@ -105,7 +105,7 @@ def value_of(proxy, name):
 
 
 def check_in_use(reader):
-    """Checks what the panel shows after Apply: with walls left out, for a component, and for a dot product."""
+    """The panel after Apply: with walls left out, for a component, and for a dot product."""
     extract = MarchingCorrectors(Input=reader)  # noqa: F821
     extract.FluidArray = "ParticleType"
     extract.ContourBy = ["POINTS", "Velocity"]
@@ -321,7 +321,7 @@ def check_slices(reader):
 
 
 def check_gauge(reader):
-    """A line runs upright through the particles, and is read over time as the guide says."""
+    """A line runs upright through the particles, and is read over time as in the guide."""
     gauge = SPHGauge(Particles=reader, Point1=[0.0, 0.0, 0.0], Point2=[0.0, 0.0, 1.0])  # noqa: F821
     assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # These are not the bounds of the particles.
     gauge.Point1 = [0.0, 0.0, -1.0]

@@ -111,7 +111,7 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """The panel, too, says that the first output is empty. When there is something to draw, it has the colours that a first output would have."""
+    """The panel, too, tells that the first output is empty. When there is something to draw, it has the colours that a first output would have."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),

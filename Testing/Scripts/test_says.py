@@ -44,7 +44,7 @@ class Says(unittest.TestCase):
         self.assertEqual(sorted(set(TEXTS) - used), [], "nobody says these")
 
     def test_each_slot_has_words(self):
-        """Checks slots in the texts, and in C's strings that become parts of texts."""
+        """Every interface has a word for each slot in the texts, and in C's strings that become parts of texts."""
         parts = {code: re.findall(r"\{[a-z_%][^{}]*\}", text) for code, text in TEXTS.items()}
         for file in SAID:
             if CORE in file.parents:
@@ -56,13 +56,13 @@ class Says(unittest.TestCase):
                 if name == "%s":  # This stands for any option of mcor_options.def.
                     continue
                 found += 1
-                self.assertIn(name, SLOTS, f"{where}: a slot that no interface can fill")
-                self.assertNotEqual(SLOTS.get(slot[1:-1]) or SLOTS[name], "", f"{where}: {slot} has no word in panels")
-                self.assertTrue(name in program or name in NOT_IN_PROGRAM, f"{where}: {slot} has no word in the program")
+                self.assertIn(name, SLOTS, where)
+                self.assertNotEqual(SLOTS.get(slot[1:-1]) or SLOTS[name], "", (where, slot))
+                self.assertTrue(name in program or name in NOT_IN_PROGRAM, (where, slot))
         self.assertGreater(found, 50)
 
     def test_print_all(self):
-        """Lists what each interface says; a sentence that differs between interfaces has a line for each."""
+        """Lists the sentences of each interface; one that differs between interfaces has a line for each."""
         program, lines = words_of_program(), []
         for code, text in TEXTS.items():
             said = {"C, Python": fill(text, lambda name, value: name + (value and "=" + value)),

@@ -57,7 +57,7 @@ class Arguments(unittest.TestCase):
 
     def test_missing_values_are_named(self):
         self.check_refused("-L needs a pattern", "Testing/run-tests.sh", "-L")
-        self.check_refused("--sdk is vtk or paraview", "Testing/run-tests.sh", "--sdk")
+        self.check_refused("--sdk is vtk or", "Testing/run-tests.sh", "--sdk")
         self.check_refused("not 'qt'", "Examples/quickstart.sh", "--sdk", "qt")
 
     def test_help(self):
@@ -113,7 +113,7 @@ class Steps(unittest.TestCase):
                                         "echo after", interrupt=True)
         self.assertEqual(status, 130)
         self.assertTrue(os.path.exists(done))
-        self.assertIn("it is finished first", output)
+        self.assertIn("finished first", output)
         self.assertNotIn("after", output)
 
     def test_kernels_of_another_build_are_taken(self):
@@ -156,9 +156,9 @@ class Configuration(unittest.TestCase):
         for name in ("CMakeLists.txt", "Examples/quickstart.sh", "Testing/run-tests.sh"):
             os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
             shutil.copy(os.path.join(SOURCE, name), os.path.join(folder, name))
-        self.check_stops(self.configure(source=folder), "cannot work in a folder with '('")
+        self.check_stops(self.configure(source=folder), "in a folder with '('")
         for script in ("Examples/quickstart.sh", "Testing/run-tests.sh"):
-            self.check_stops(run(os.path.join(folder, script)), "cannot work in a folder")
+            self.check_stops(run(os.path.join(folder, script)), "work in a folder")
 
     def test_unit_tests_do_not_vanish(self):
         result = self.configure("-DMCOR_BUILD_VTK=OFF", "-DMCOR_BUILD_EXAMPLES=OFF", "-DMCOR_WERROR=ON",
@@ -185,7 +185,7 @@ class Configuration(unittest.TestCase):
     def test_a_folder_of_another_sdk(self):
         result = self.configure("-DMCOR_SDK=Another 1.0", "-DMCOR_BUILD_TESTING=OFF",
                                 "-DPython3_EXECUTABLE=/usr/bin/python3")
-        self.check_stops(result, "This build folder was made for Another 1.0", "--fresh")
+        self.check_stops(result, "made for Another 1.0", "--fresh")
 
     def setUp(self):
         shutil.rmtree(SCRATCH, ignore_errors=True)

@@ -80,7 +80,7 @@ def main():
     run(*pip, "install", f"{wheel}[{EXTRAS}]", *OTHERS)
     package, = (folder / "venv" / "lib").glob("*/site-packages/marchingcorrectors")
     print(run(sys.executable, sources / "Testing" / "library_paths.py", package))
-    assert b"MCOR_DEVICE_FORM" not in (package / "_mcor.so").read_bytes(), "variables of tests act on users' runs"
+    assert b"MCOR_DEVICE_FORM" not in (package / "_mcor.so").read_bytes()  # Variables of tests do not act on users' runs.
     print(f"{wheel.name}: {size} bytes")
 
 

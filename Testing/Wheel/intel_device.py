@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that a surface on Intel's OpenCL driver is that of the built-in device. test_systems.py runs it under wine."""
+"""Compares a surface on Intel's OpenCL driver with the built-in device's. test_systems.py runs it under wine."""
 import warnings
 
 import numpy as np

@@ -56,7 +56,7 @@ class Hostile(Case):
                 return os.mkdir, (str(Path(tempfile.gettempdir()) / "canary"),)
 
         np.savez(self.at("run.npz"), particles=np.array([Canary()], object))
-        self.assert_refused("pickles, which can run code", self.at("run.npz"))
+        self.assert_refused("pickles", self.at("run.npz"))
         self.assertFalse((Path(tempfile.gettempdir()) / "canary").exists())
 
     def test_no_particles(self):
@@ -128,7 +128,7 @@ class Hostile(Case):
             twice.set_deflate(9)
             twice.set_deflate(9)
             h5py.h5d.create(file["PartType0"].id, b"Twice", h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((len(X),)), twice)
-        self.assert_refused("packed more than once", self.at("snap.hdf5"))
+        self.assert_refused("more than once", self.at("snap.hdf5"))
         write_vtk(self.at("body.vtp"))
         whole = self.at("body.vtp").read_bytes()
         self.at("body.vtp").write_bytes(whole.replace(b'NumberOfPoints="%d"' % len(X), b'NumberOfPoints="1000000000"'))

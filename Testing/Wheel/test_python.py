@@ -203,7 +203,7 @@ class Objects(unittest.TestCase):
         """A copy would release the same device twice."""
         with mc.Context() as context:
             for make in (copy.copy, copy.deepcopy, pickle.dumps):
-                with self.assertRaisesRegex(TypeError, "cannot be copied or pickled"):
+                with self.assertRaisesRegex(TypeError, "copied or pickled"):
                     make(context)
             self.assertEqual(sphere(context=context), sphere())
 
@@ -279,9 +279,9 @@ class Inputs(unittest.TestCase):
         found = mc.isosurface(rows[:, :3], rows[:, 3], 0.4, attributes={"distance": rows[:, 3], "kind": frame["kind"]}, **fluid)
         self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "kind": np.full(COUNT, "é")}))
         self.assertEqual(set(found.to_pyvista()["kind"]), {"é"})
-        with self.assertRaisesRegex(mc.InvalidArgument, r"positions is a table of 6 columns. .*table\[\['x', 'y', 'z'\]\]"):
+        with self.assertRaisesRegex(mc.InvalidArgument, r"a table of 6 columns. .*table\[\['x', 'y', 'z'\]\]"):
             mc.free_surface(frame, **fluid)
-        with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers, but object"):
+        with self.assertRaisesRegex(mc.InvalidArgument, "numbers, but object"):
             mc.isosurface(rows[:, :3], rows[:, 5], 0.4, **fluid)
 
     def test_dlpack(self):
@@ -306,7 +306,7 @@ class Inputs(unittest.TestCase):
 
         found = mc.isosurface(Tensor(POSITIONS), Tensor(DISTANCE), 0.4, smoothing_length=H, volume=V)
         self.assertEqual(found, sphere())
-        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is not an array in this computer's memory"):
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is not an array in"):
             mc.isosurface(POSITIONS, Elsewhere(DISTANCE), 0.4, smoothing_length=H)
 
     def test_units(self):
@@ -331,7 +331,7 @@ class Inputs(unittest.TestCase):
                           {"mass": 1.0 * gram, "density": 1.0}, {"tolerance": 1e-6 * metre}):
                 with self.assertRaises(mc.InvalidArgument, msg=str(wrong)):
                     mc.isosurface(POSITIONS * metre, DISTANCE * metre, **{"iso": 0.4 * metre, **words, **wrong})
-            with self.assertRaisesRegex(mc.InvalidArgument, "length has the unit .*, the array of positions has none"):
+            with self.assertRaisesRegex(mc.InvalidArgument, "length has the unit .* positions has none"):
                 sphere(smoothing_length=H * metre)
             with self.assertRaisesRegex(mc.InvalidArgument, "iso value"):
                 sphere(iso=0.4 * metre)
@@ -424,11 +424,11 @@ class Files(unittest.TestCase):
     def test_formats_without_arrays(self):
         empty = quietly(sphere, iso=99.0)
         for name in ("a.stl", "a.obj", "a.off"):
-            with self.assertRaisesRegex(mc.InvalidArgument, rf"{name} was not written, because the surface has no triangles"):
+            with self.assertRaisesRegex(mc.InvalidArgument, rf"{name} was not written"):
                 self.save(name, empty)
         for name in ("a.stl", "a.obj"):
             path, sentences = self.save(name)
-            self.assertRegex("".join(sentences), r"holds no arrays: WeightSum, id, speed, where are not in a\.")
+            self.assertRegex("".join(sentences), r"no arrays: WeightSum, id, speed, where")
             self.assertEqual(len(trimesh.load(path).faces), len(self.surface.triangles))
             self.assertEqual(self.save(name, sphere())[1], [])
         for name, sentence in (("a", "no ending"), ("a.dae", "a.dae was not written, because no format of that ending")):

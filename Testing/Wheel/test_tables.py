@@ -373,7 +373,7 @@ CASES = {
     "a lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0 0 0 4", "T F T") + "\n" + TWO, None),
     "a tilted lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 1 3 0 0 0 4", "T T T") + "\n" + TWO, None),
     "a short lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0", "T T T") + "\n" + TWO, "line 2 has 6 values as its lattice"),
-    "one row more": ("a.xyz", "1\n\n" + TWO, "line 4 is one more than the 1 particles that the step says it has"),
+    "one row more": ("a.xyz", "1\n\n" + TWO, "line 4 is one more than the 1 particles"),
     "no count": ("a.xyz", "1 2 3\n4 5 6\n", None),
 }
 PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is tilted", "vectors": "none, as its cell is tilted",
@@ -414,10 +414,10 @@ class Others(Case):
             np.save(self.at("p.npy"), np.asfortranarray(values["positions"]))
             self.assert_same(io.read(self.at("p.npy")).positions, values["positions"])
         np.savez(self.at("p.npz"), positions=np.ones((4, 2)), triangles=np.zeros((9, 3), int))
-        with self.assertWarnsRegex(mc.InputWarning, "no value for each of 4 particles have triangles"):
+        with self.assertWarnsRegex(mc.InputWarning, "for each of 4 particles"):
             self.assert_same(io.read(self.at("p.npz")).positions, [[1, 1, 0]] * 4)
         np.savez(self.at("p.npz"), where=np.ones((4, 3)))
-        self.assert_refused("no columns of positions, which are called x, y and z", self.at("p.npz"))
+        self.assert_refused("no columns of positions", self.at("p.npz"))
 
     def test_gro(self):
         for random in self.randoms():
@@ -468,7 +468,7 @@ class Others(Case):
             self.assert_refused("has no step 11", self.at("p.h5"), step=11)
         with h5py.File(self.at("p.h5"), "a") as file:
             del file["Step#0/z"]
-        self.assert_refused("of x, y and z of its positions Step#0 has x, y.", self.at("p.h5"))
+        self.assert_refused("Step#0 has x, y.", self.at("p.h5"))
 
     def test_series(self):
         write_series(self.at("p.vtk.series"), np.random.default_rng(1))

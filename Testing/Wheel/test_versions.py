@@ -38,7 +38,7 @@ def find(version):
 def main():
     wheel, = Path(sys.argv[1]).glob("dist/*.whl")
     others = {version: find(version) for version in versions() if version != "%d.%d" % sys.version_info[:2]}
-    assert others, "pyproject.toml names no versions"
+    assert others  # pyproject.toml names versions.
     tried, failed = [], []
     for version, python in others.items():
         if python is None:

@@ -67,7 +67,7 @@ class Test(unittest.TestCase):
         # The wheel's filter has no ranks, and these others only serve the C++ plugin's panels and C++.
         names -= {"GetNextBounds", "GetNextEstimate", "SetWord"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
-        self.assertEqual(lacking, [], "add them to the plugin's XML, or to MarchingCorrectorsFilter.py")
+        self.assertEqual(lacking, [])  # They belong into the plugin's XML, or into MarchingCorrectorsFilter.py.
         constants = {name: int(value) for name, value in re.findall(r"^    ([A-Z]\w+) = (-?\d+)\b", public, re.M)}
         self.assertGreater(len(constants), 25)
         self.assertEqual({name: getattr(vtkMarchingCorrectors, name, None) for name in constants}, constants)

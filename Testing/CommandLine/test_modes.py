@@ -111,16 +111,16 @@ def parameters_of(report):
 
 
 def is_shown(option, value, report, base):
-    """Returns whether, of parameters named like the option, one has changed, to the option's value if that is a number or a word. Reports need not have
-    such a parameter."""
+    """Returns whether, of parameters named like the option, one has changed, to the option's value if that is a number or a word. A number may also stand
+    for an array's name. Reports need not have such a parameter."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
-    mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:4]) for part in name.split("_"))}
+    mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}
     values = [each for name in changed & mine for each in (found[name] if isinstance(found.get(name), list) else [found.get(name)])]
-    if not mine or not re.fullmatch(r"[\w.]+", value):
+    number = re.fullmatch(r"[\d.]+", value)
+    if not mine or not changed or not number and not re.fullmatch("[a-z_]+", value):
         return not mine or bool(values) or not changed
-    return not changed or any(str(each) == value or isinstance(each, (int, float)) and re.fullmatch(r"[\d.]+", value) and each == float(value)
-                              for each in values)
+    return any(each == value or number and (isinstance(each, str) or each == float(value)) for each in values)
 
 
 class Modes(CommandLineTest):

@@ -75,24 +75,13 @@ class Results(unittest.TestCase):
         self.assertEqual(surface.triangle_keys.shape, (len(surface.triangles), 2))
         self.assertIsNone(sphere(normals=False).normals)
 
-    def test_options_count(self):
-        plain = sphere().statistics
-        self.assertAlmostEqual(sphere(cube_size=0.1).statistics["cube_size"], 0.1)
-        self.assertAlmostEqual(sphere(cube_size_factor=1).statistics["cube_size"], H)
-        self.assertNotEqual(sphere(sph_kernel="wendland").points.tobytes(), sphere().points.tobytes())
-        self.assertEqual(sphere(sph_kernel="wendland_c2").points.tobytes(),
-                         sphere(sph_kernel=4).points.tobytes())
-        self.assertEqual(sphere(preview=True).statistics["newton_evaluations"], 0)
-        self.assertLess(sphere(seeds="pairs").statistics["seed_cells"], plain["seed_cells"])
+    def test_box_and_several_values(self):
         halves = [sphere(box=(*x, *[-np.inf, np.inf] * 2)) for x in ((-np.inf, 0.65), (0.65, np.inf))]
         self.assertEqual(sum(len(half.triangles) for half in halves), len(sphere().triangles))
         self.assertLess(halves[0].points[:, 0].max(), 0.65 + H)
         with self.assertRaisesRegex(mc.InvalidArgument, "6 numbers"):
             sphere(box=(1, 2))
-        two = sphere(iso=[0.3, 0.4], iso_value=True)
-        self.assertEqual(sorted(set(two.iso_value)), [0.3, 0.4])
-        half = sphere(smoothing_length=2 * H, smoothing_length_is_support_radius=True)
-        self.assertEqual(half.points.tobytes(), sphere().points.tobytes())
+        self.assertEqual(sorted(set(sphere(iso=[0.3, 0.4], iso_value=True).iso_value)), [0.3, 0.4])
 
     def test_options_reach_the_core(self):
         for name, (numbers, _, _) in _structs.OPTIONS.items():
@@ -351,7 +340,7 @@ class Refused(unittest.TestCase):
         bad[5, 1], zeros[11] = np.nan, 0
         self.check(mc.InvalidData, ("5", {"positions": bad}), ("smoothing length.* 11 ", {"smoothing_length": zeros}))
         self.check(mc.OutOfCapacity, ("(?i)memory|cube", {"memory_limit": 1000}))
-        self.check(mc.DeviceError, ("no OpenCL device \"nonsuch\"", {"device": "nonsuch"}), ("", {"device": "\udc80"}))
+        self.check(mc.DeviceError, (says("NO_SUCH_DEVICE", "nonsuch"), {"device": "nonsuch"}), ("", {"device": "\udc80"}))
         self.assertGreater(len(sphere().triangles), 500)  # The library works as before.
 
     def test_what_leaves_particles_out(self):
@@ -381,23 +370,11 @@ class Neighbours(unittest.TestCase):
     """Tests smoothing lengths that are estimated for each particle."""
 
     def test_densities(self):
-        """If "Density" is asked for and missing, it is summed from masses. Particles that are left out play no part in it."""
+        """If "Density" is asked for and missing, it is summed from masses; core_neighbour_sums compares the sums. Particles that are left out play no part
+        in it."""
         x = np.random.default_rng(3).normal(size=(200, 3))
-        mass, apart = 1 + np.arange(200) % 3, np.linalg.norm(x[:, None] - x, axis=2)
         more = np.concatenate([x, [[np.nan, 0, 0], [50, 0, 0]]])
-        h = 0.5 + 0.1 * np.arange(200) % 3
-
-        def cubic(q):
-            return np.where(q < 1, 1 - 1.5 * q ** 2 + 0.75 * q ** 3, 0.25 * np.maximum(2 - q, 0) ** 3) / np.pi
-
-        expected = (mass * cubic(apart / h[:, None])).sum(axis=1) / h ** 3
-        words = dict(field="sum", node_threshold=0, vertex_threshold=0)
-        found = quietly(mc.isosurface, x, "Density", expected.mean(), mass=mass, smoothing_length=h, **words)
-        for name, value in (("scalar_min", expected.min()), ("scalar_max", expected.max())):
-            self.assertAlmostEqual(found.statistics[name] / value, 1, delta=1e-12)
-        same = quietly(mc.isosurface, x, expected, expected.mean(), mass=mass, density=expected, smoothing_length=h, **words)
-        np.testing.assert_allclose(found.points, same.points, atol=1e-6)
-        words.update(estimate_smoothing_length="neighbours", mass=1.0)
+        words = dict(field="sum", node_threshold=0, vertex_threshold=0, estimate_smoothing_length="neighbours", mass=1.0)
         first = quietly(mc.isosurface, x, "Density", 0.5, **words)
         again = quietly(mc.isosurface, more, "Density", 0.5, only=np.arange(202) < 200, **words)
         self.assertGreater(len(first.points), 100)
@@ -415,7 +392,7 @@ class Neighbours(unittest.TestCase):
         with self.assertRaisesRegex(mc.InvalidArgument, "The scalar is 'Speed'"):
             mc.isosurface(POSITIONS, "Speed", 1)
         for word, sentence in (("nearest", "it must be True, \"neighbours\""), ("neighbours=x", "not a number"),
-                               ("neighbours=0.5", "ETA is 0.5; it must be above 0.683")):
+                               ("neighbours=0.5", says("ETA_ILLEGAL", "0.5"))):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
                 mc.free_surface(POSITIONS, estimate_smoothing_length=word)
 

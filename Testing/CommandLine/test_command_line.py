@@ -99,7 +99,9 @@ class Usage(CommandLineTest):
             ([*free, "--component", "0"], "--component needs --scalar; add it, or leave out --component"),
             ([*free, "--field", "sum"], "--field needs --scalar"), ([*free, "--boundary", "eigenvalue"], "needs --scalar"),
             ([*free, "--node-threshold", "0"], "needs --scalar"), ([*free, "--vertex-threshold", "0"], "needs --scalar"),
-            ([*free, "--derive", "Velocity", "--no-attributes"], "leaves out what --derive makes"),
+            *(([*how, "--derive", "Velocity", *more], "what --derive makes is neither the --scalar nor among")
+              for how in (free, ISO) for more in (["--no-attributes"], ["--attributes", "Kind"])),
+            ([*free, "--seeds", "pairs"], "--seeds needs --scalar; add it"),
             ([*ISO, "--solids", "wall"], "--solids needs --fluid or --walls; add one, or leave out --solids"),
             ([*ISO, "--wall-share", "0.5"], "--wall-share needs --fluid or --walls"),
             ([*free, "--wall-share", "0.5", "--fluid", "Kind=0"], "add --solids wall, or leave out --wall-share"),
@@ -133,8 +135,8 @@ class Usage(CommandLineTest):
     def test_wrong_usage(self):
         good = [self.input, self.output]
         for arguments, sentence in [
-            ([], "needs INPUT and OUTPUT"),
-            ([self.input], "needs INPUT and OUTPUT"),
+            ([], "INPUT or OUTPUT is missing"),
+            ([self.input], "INPUT or OUTPUT is missing"),
             ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
             ([self.input, "film.usdc", *ISO], "marchingcorrectors surface INPUT... film.usdc .*convert FILM.pvd film.usdc"),
             ([self.input, "surface.png", *ISO],
@@ -143,7 +145,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--stats", self.input], "would overwrite the input"),
             ([*good, *ISO, "--stats", "../" + self.directory.name + "/surface.vtp"], "written twice"),
             ([*good, *ISO, "--stats", "a.png", "--screenshot", "a.png"], "written twice"),
-            ([*good], "needs --scalar NAME, or --free-surface"),
+            ([*good], "give --scalar NAME, or --free-surface"),
             (["--list-arrays"], "--list-arrays needs FILE"),
             (["--list-arrays", *good], "--list-arrays FILE stands alone"),
             ([self.input, "--list-arrays=" + str(self.input)], "--list-arrays FILE stands alone"),

@@ -106,6 +106,22 @@ bool IsOfSteps(const Job& j)
   return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
 }
 
+/// Whether one of the arrays that --derive makes comes to the output.
+bool UsesDerived(const Job& j)
+{
+  std::vector<std::string> asked = j.AttributeNames;
+  asked.push_back(j.Scalar);
+  const bool areAll = j.AttributeNames.empty() && !j.Has("--no-attributes");
+  return areAll ||
+    std::any_of(asked.begin(), asked.end(),
+      [](const std::string& name)
+      {
+        const auto made = { "Gradients", "Divergence", "Vorticity", "Q-criterion", "Lambda2",
+          "StrainRate" };
+        return std::find(made.begin(), made.end(), name) != made.end();
+      });
+}
+
 const std::vector<Rule> Rules = {
   { METER, IF(j.Surface->GetNumberOfContours() > 1),
     "gauges and fluxes have one level; leave out all but one --iso value" },
@@ -164,10 +180,10 @@ const std::vector<Rule> Rules = {
   { SURFACE, IF(!IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
     "the output is a {endings} file, or .pvd for a film, not '{output}'" },
   { CONTOUR, IF(!j.Has("--free-surface") && !j.Has("--scalar")),
-    "needs --scalar NAME, or --free-surface" },
-  { CONTOUR, IF(j.Has("--no-attributes") && j.Has("--derive") && !j.Has("--scalar")),
-    "--no-attributes leaves out what --derive makes, unless it is the --scalar; leave out one of "
-    "them" },
+    "nothing tells what to contour; give --scalar NAME, or --free-surface" },
+  { CONTOUR | POINTS, IF(j.Has("--derive") && !UsesDerived(j)),
+    "what --derive makes is neither the --scalar nor among the --attributes; ask for one of its "
+    "arrays, or leave out --derive" },
   { ALL,
     IF(j.Has("--support-radius") && (j.NeighborRatio > 0.0 || j.SmoothingLength == "estimate")),
     "--support-radius is for a smoothing length that is given, not for an estimate; leave out "
@@ -236,7 +252,7 @@ void Check(const Job& job)
 {
   if (job.Inputs.empty())
   {
-    throw UsageError("needs INPUT and OUTPUT");
+    throw UsageError("INPUT or OUTPUT is missing; give both");
   }
   for (const std::string& input : job.Inputs)
   {

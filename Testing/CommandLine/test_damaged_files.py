@@ -96,6 +96,12 @@ class DamagedFiles(CommandLineTest):
                 self.cannot_read(self.run_with(name, data), name, "NumberOfPoints is -1; it may be damaged")
         data = self.forms["binary.vtk"].replace(b"POINT_DATA 27", b"POINT_DATA 2700000")
         self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "point_data is 2700000, more than")
+        data = (b"# vtk DataFile Version 3.0\ntitle 1 2 words\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTIME 1 1 double\n0.5\n"
+                b"POINTS 2 float\n0 0 0 1 0 0\nVERTICES 2 4\n1 0 1 1\n")
+        self.run_with("small.vtk", data, lambda *_, source: self.run_good("--list-arrays", source))
+        for good, bad, why in ((b"1 double", b"1 dble", "its array 'time' has the type 'dble'"), (b"FieldData 1", b"FieldData 1x", "its FIELD"),
+                               (b"VERTICES 2 4", b"VERTICES 20 40", "vertices is 40, more"), (b"POINTS 2", b"POINTS 20", "points is 20, more")):
+            self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_huge_numbers(self):
         """No memory is allocated that a file of some kilobytes cannot need."""

@@ -60,21 +60,33 @@ struct Kind
 };
 using Formats = std::vector<FileFormat<Kind>>;
 
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step)
+using File = const std::string&;
+using Data = vtkSmartPointer<vtkDataObject>;
+
+Data ReadHdf(File file, std::size_t step)
 {
   return LoadExtra().ReadHdf(file, step);
 }
 
-std::vector<double> ListTimesOfHdf(const std::string& file)
+Data ReadSurface(File file, std::size_t)
+{
+  return LoadExtra().ReadSurface(file);
+}
+
+std::vector<double> ListTimesOfHdf(File file)
 {
   std::vector<double> times;
   ReadWithCare(file, [&file, &times] { times = LoadExtra().ListHdfTimes(file); });
   return times;
 }
 
-vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file, std::size_t)
+/// Refuses a step that is not the first one.
+void RefuseStep(File file, std::size_t step)
 {
-  return LoadExtra().ReadSurface(file);
+  if (step > 0)
+  {
+    FailToRead(file, "it has no step " + std::to_string(step));
+  }
 }
 
 /// Returns the time of the list itself or, if it has none, of its first piece; all pieces are of
@@ -131,8 +143,7 @@ const Kind* KindOf(const Formats& formats, const std::string& file)
   return format ? &format->Process : nullptr;
 }
 
-vtkSmartPointer<vtkDataObject> Read(
-  const std::string& file, const Formats& formats = ParticleFormats, std::size_t step = 0)
+Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step = 0)
 {
   CheckRegularFile(file);
   const Kind* kind = KindOf(formats, file);
@@ -140,11 +151,8 @@ vtkSmartPointer<vtkDataObject> Read(
   {
     throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
   }
-  if (step > 0 && kind->Read != ReadHdf && kind->Read != ReadText)
-  {
-    FailToRead(file, "it has no step " + std::to_string(step));
-  }
-  vtkSmartPointer<vtkDataObject> data;
+  RefuseStep(file, kind->Read == ReadHdf || kind->Read == ReadText ? 0 : step);
+  Data data;
   ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
   return data;
 }
@@ -292,10 +300,7 @@ std::vector<std::string> ListParts(const std::string& name)
   {
     return { name };
   }
-  if (step > 0)
-  {
-    FailToRead(file, "it has no step " + std::to_string(step));
-  }
+  RefuseStep(file, step);
   const std::vector<std::string> parts = kind->ListParts(file);
   for (const std::string& part : parts)
   {

@@ -185,12 +185,19 @@ void CheckLegacy(const std::string& file, View text)
   static const std::set<std::string> counted = { "points", "vertices", "lines", "polygons",
     "triangle_strips", "cells", "cell_types", "x_coordinates", "y_coordinates", "z_coordinates",
     "field", "lookup_table" };
+  static const std::set<std::string> cells = { "vertices", "lines", "polygons", "triangle_strips",
+    "cells" };
+  // VTK's reader crashes over other words in the place of these.
+  static const std::set<std::string> types = { "bit", "char", "signed_char", "unsigned_char", "short",
+    "unsigned_short", "int", "unsigned_int", "long", "unsigned_long", "vtkidtype", "vtktypeint64",
+    "vtktypeuint64", "float", "double", "string", "utf8_string", "variant" };
   static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
     "color_scalars", "texture_coordinates" };
   const double most = 8.0 * static_cast<double>(text.size());
   std::string section = "point_data"; // elements that have the attributes
   double elements = 0.0;              // values of each element
-  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1)
+  const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // any words
+  for (std::size_t begin = text.find('\n', title), end = 0; begin < text.size(); begin = end + 1)
   {
     end = std::min(text.find('\n', begin), text.size());
     const std::vector<std::string> words = DeclaringWords(text.substr(begin, end - begin));
@@ -200,6 +207,20 @@ void CheckLegacy(const std::string& file, View text)
     {
       const std::vector<double> number = Numbers(words[i]);
       numbers.insert(numbers.end(), number.begin(), number.end());
+    }
+    const double room = 0.5 * static_cast<double>(text.size() - end); // two bytes each, or more
+    if (numbers.size() == 2 && cells.count(first))
+    {
+      CheckSize(file, room, first, numbers[1]);
+    }
+    else if (first == "points" && !numbers.empty())
+    {
+      CheckSize(file, room, first, numbers[0], 3.0);
+    }
+    else if (first == "field" &&
+      (words.size() != 3 || words[2].find_first_not_of("0123456789") != std::string::npos))
+    {
+      FailToRead(file, "the line of its FIELD has no number of arrays; it may be damaged");
     }
     const bool isSection = first == "point_data" || first == "cell_data";
     const bool hasAttribute = attributes.count(first) > 0;
@@ -222,6 +243,11 @@ void CheckLegacy(const std::string& file, View text)
     }
     else if (words.size() == 4 && numbers.size() == 2 && Numbers(words[3]).empty())
     {
+      if (!types.count(words[3]))
+      {
+        FailToRead(file,
+          "its array '" + words[0] + "' has the type '" + words[3] + "', which is not known");
+      }
       CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
       CheckSize(file, most, first, numbers[1]);
     }

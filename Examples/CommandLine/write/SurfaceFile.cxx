@@ -28,6 +28,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -159,27 +160,17 @@ PlyType MakePlyType(const char* name)
 
 PlyType FindPlyType(vtkDataArray* array)
 {
-  switch (array->GetDataType())
-  {
-    case VTK_FLOAT:
-      return MakePlyType<float>("float");
-    case VTK_INT:
-      return MakePlyType<std::int32_t>("int");
-    case VTK_UNSIGNED_INT:
-      return MakePlyType<std::uint32_t>("uint");
-    case VTK_SHORT:
-      return MakePlyType<std::int16_t>("short");
-    case VTK_UNSIGNED_SHORT:
-      return MakePlyType<std::uint16_t>("ushort");
-    case VTK_CHAR:
-    case VTK_SIGNED_CHAR:
-      return MakePlyType<std::int8_t>("char");
-    case VTK_UNSIGNED_CHAR:
-    case VTK_BIT:
-      return MakePlyType<std::uint8_t>("uchar");
-    default:
-      return MakePlyType<double>("double");
-  }
+  static const std::map<int, PlyType> types = { { VTK_FLOAT, MakePlyType<float>("float") },
+    { VTK_INT, MakePlyType<std::int32_t>("int") },
+    { VTK_UNSIGNED_INT, MakePlyType<std::uint32_t>("uint") },
+    { VTK_SHORT, MakePlyType<std::int16_t>("short") },
+    { VTK_UNSIGNED_SHORT, MakePlyType<std::uint16_t>("ushort") },
+    { VTK_CHAR, MakePlyType<std::int8_t>("char") },
+    { VTK_SIGNED_CHAR, MakePlyType<std::int8_t>("char") },
+    { VTK_UNSIGNED_CHAR, MakePlyType<std::uint8_t>("uchar") },
+    { VTK_BIT, MakePlyType<std::uint8_t>("uchar") } };
+  const auto found = types.find(array->GetDataType());
+  return found == types.end() ? MakePlyType<double>("double") : found->second;
 }
 
 /// Writes .ply, with a property for each component of each array of numbers: of a vector NAME_x,

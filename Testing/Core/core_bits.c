@@ -11,11 +11,6 @@
 #include "core_keep.h"
 #include "mcor_internal.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct bits_case
 {
   const char* name;

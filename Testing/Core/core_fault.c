@@ -6,9 +6,6 @@
 #include <CL/cl_icd.h>
 
 #include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <threads.h>
 
 /* The number of the call that fails, from 0; -1: no call fails. */

@@ -2,11 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 bool core_tells(const mcor_message* message, const char* words)
 {
   char list[200];

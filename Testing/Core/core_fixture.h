@@ -4,7 +4,8 @@
 #define core_fixture_h
 
 /* Helpers of the core's unit tests. The oracle library provides its double-precision field and its mesh checker. Every
- * array given to the core is a heap block of exactly its size, so that a sanitizer sees any read beyond its end. */
+ * array given to the core is a heap block of exactly its size, so that a sanitizer sees any read beyond its end. The
+ * headers of C that most tests need come from here. */
 
 #include "mcor_internal.h"
 #include "mcor_program.h"
@@ -13,9 +14,12 @@
 #include "particle_sets.h"
 #include "print_values.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 /* cmocka needs the headers above to be included first. */
 #include <cmocka.h>

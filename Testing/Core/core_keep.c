@@ -3,10 +3,6 @@
 #include "core_keep.h"
 #include "core_parts.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 void core_keep(const char* name, const char* part, const void* data, size_t bytes)
 {
   const char* folder = getenv("CORE_KEEP");

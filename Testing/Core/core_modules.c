@@ -8,10 +8,6 @@
 #include "core_keep.h"
 #include "core_parts.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const double modules_weight = 0.4, modules_isos[2] = { 0.6, 1.1 };
 
 /* Makes particles of spacing 1, and some of spacing 4 beside them. */

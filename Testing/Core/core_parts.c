@@ -2,11 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_parts.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static size_t g_width; /* how many bytes qsort's function compares */
 
 static int compare_bytes(const void* a, const void* b)

@@ -2,9 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_period.h"
 
-#include <math.h>
-#include <string.h>
-
 #define PI 3.14159265358979323846
 
 /* Makes particles of spacing 1 in a box at the origin with sides of these lengths; the scalar repeats. */

@@ -6,10 +6,6 @@
 #include "core_parts.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   CORE_SURFACE surface = core_extract(context, input, options);

@@ -6,10 +6,6 @@
 
 #include "core_fixture.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* A call, and the values that its parameters may change to. */
 typedef struct reuse_call
 {

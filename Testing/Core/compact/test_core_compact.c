@@ -7,10 +7,6 @@
 #include "core_parts.h"
 #include "core_period.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Makes a block, a sheet, a thread and lone drops. */
 static particle_set make_splash(double jitter, uint64_t seed)
 {

@@ -7,9 +7,6 @@
 #include "core_fixture.h"
 #include "mcor_sph_kernel.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 /* Kernels that return for each box (first brick, and edge in cubes): low and high value, their
  * rounding, weight, its rounding, count, state; and which bricks are inside. */
 static const char source[] =

@@ -7,10 +7,6 @@
 #include "core_fixture.h"
 #include "mcor_adaptive_cell.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* A lattice with `ends` nodes along an axis; nodes on its border are below. A vertex is named by its edge's lower node
  * and axis. */
 typedef struct lattice

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* The surface around one huge value is found, and it ends where the particle's support does. */
 static void test_outlier(void** state)
 {

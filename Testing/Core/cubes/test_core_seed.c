@@ -6,10 +6,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define NO_BRICK 4
 
 /* The cells that the last call with pairs marked, one byte per cell of a box of the lattice. In bricks that are

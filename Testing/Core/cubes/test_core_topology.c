@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Makes particles around the origin, closer together than the cubes, with the scalar given by `value`. */
 static particle_set make_particles(
   double (*value)(const double x[3], const double end[3], double sign), const double end[3],

@@ -6,10 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_tree.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static void measure(mcor_context* context, const particle_set* set, int limit,
   mcor_options* options, mcor_input* input)
 {

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <stdlib.h>
-
-#include <string.h>
-
 static mcor_status extract_with(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, uint64_t* hash)
 {

@@ -6,9 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_parallel.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum
 {
   PROCESSES = 5

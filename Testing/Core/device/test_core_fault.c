@@ -6,9 +6,6 @@
 
 #include "core_fault.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* A call of the library in which every step is made to fail once. */
 typedef struct sweep
 {

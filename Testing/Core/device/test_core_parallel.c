@@ -7,10 +7,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-#include <math.h>
 #include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Counts how often a loop visits its elements and slices. */
 typedef struct visits

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define CURVATURES (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
 
 static mcor_surface curved(mcor_context* context, const particle_set* set, mcor_options* options)

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static mcor_derivatives derive(mcor_context* context, const particle_set* set, const double* values,
   int components, mcor_type precision, mcor_gradient form)
 {

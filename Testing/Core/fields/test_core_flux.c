@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define PI 3.14159265358979323846
 
 /* Makes a pool of spacing 1 with sides of 24, 16 and 12 along x, y and z, from 0 on; its top slopes. */

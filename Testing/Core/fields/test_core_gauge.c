@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define LEVEL 0.5
 #define ERROR_OF_WEIGHT 1e-4
 

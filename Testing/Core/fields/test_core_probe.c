@@ -6,10 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_input.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Returns `count` points in a cube of edge `size` around the origin; free them with free(). */
 static double* probe_points(int64_t count, double size, uint64_t seed)
 {

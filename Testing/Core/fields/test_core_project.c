@@ -8,9 +8,6 @@
 #include "mcor_plane.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define ALLOWED 1e-6 /* relative to the most that a particle adds to a pixel */
 #define PROFILE 8192

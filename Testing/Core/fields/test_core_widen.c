@@ -6,10 +6,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define WIDEST 2.0
 
 /* Makes a block of n x n x n, a sheet above it, a thread, and lone drops. */

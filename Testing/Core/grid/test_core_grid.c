@@ -7,8 +7,6 @@
 #include "mcor_input.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
 
 /* Roots of cubes are exact, other roots are within two units of rounding, and all have the same bits on every machine. */
 static void test_cube_root(void** state)

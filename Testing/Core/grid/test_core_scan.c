@@ -6,8 +6,6 @@
 #include "core_fixture.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 40000, 100003 };
 #define SIZE_COUNT (int)(sizeof sizes / sizeof sizes[0])

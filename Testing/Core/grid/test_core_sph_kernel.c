@@ -6,9 +6,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 /* Computes W h^3 and its gradient at offsets in both ways: as sums at nodes do, and as the correction does. */
 static const char source[] =
   "__kernel void test_kernel(const int count, const real inv_h, __global const real* offset,\n"

@@ -6,10 +6,8 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
-#include <string.h>
 
 enum
 {

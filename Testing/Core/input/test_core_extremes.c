@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Drops that are far apart are all found: keys of search cells must not overflow. */
 static void test_far_apart(void** state)
 {

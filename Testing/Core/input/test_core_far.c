@@ -7,10 +7,6 @@
 #include "core_fixture.h"
 #include "mcor_input.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define SIDE 10
 #define BLOCK (SIDE * SIDE * SIDE)
 

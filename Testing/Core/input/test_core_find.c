@@ -7,9 +7,6 @@
 #include "core_fixture.h"
 #include "mcor_find.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #define COUNT 4
 
 static const double x[3 * COUNT] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };

@@ -5,11 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* A good call, which a test spoils. */
 typedef struct bad_call
 {
@@ -74,47 +69,63 @@ static void expect_good(mcor_context* context)
 #define DATA(words, ...) BAD(*state, MCOR_INVALID_DATA, words, __VA_ARGS__)
 #define CAPACITY(words, ...) BAD(*state, MCOR_OUT_OF_CAPACITY, words, __VA_ARGS__)
 
-static void test_enumerations(void** state)
+static void test_types(void** state)
 {
-  ARGUMENT("OPTION_ILLEGAL|{sph_kernel}|99", call.options.sph_kernel = (mcor_sph_kernel)99);
-  ARGUMENT("OPTION_ILLEGAL|{sph_kernel}", call.options.sph_kernel = MCOR_SPH_KERNEL_COUNT);
-  ARGUMENT("OPTION_ILLEGAL|{sph_kernel}|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
-  ARGUMENT("OPTION_NOT_A_WORD|{field}|3", call.options.field = (mcor_field)3);
-  ARGUMENT("OPTION_NOT_A_WORD|{seeds}|2", call.options.seeds = (mcor_seed_mode)2);
-  ARGUMENT("OPTION_NOT_A_WORD|{topology}|2", call.options.topology = (mcor_topology)2);
-  ARGUMENT("OPTION_NOT_A_WORD|{boundary_detection}|2",
-    call.options.boundary_detection = (mcor_boundary_detection)2);
-  ARGUMENT("OPTION_NOT_A_WORD|{boundary_detection}|-1",
-    call.options.boundary_detection = (mcor_boundary_detection)-1);
-  ARGUMENT("OPTION_NOT_A_WORD|{precision}|2", call.options.precision = (mcor_type)2);
   ARGUMENT("ARRAY_TYPE|position", call.input.positions.type = (mcor_type)7);
   ARGUMENT("ARRAY_TYPE|scalar", call.input.scalar.type = (mcor_type)7);
   expect_good(*state);
 }
 
+/* Illegal values of options, and how many they are; only those that are not finite are for doubles alone. */
+#define ABOVE_0 { 0, -1, NAN, INFINITY }, 4
+#define AT_LEAST_0 { -1, NAN, INFINITY }, 3
+#define FROM(low, high) { (low)-1, (high) + 1 }, 2
+#define SHARE { -0.1, 1, NAN }, 3
+#define WORD { -1, 99 }, 2
+#define FLAG { 0 }, 0
+#define OPTION(member, usual, legal, words, scope, Property)                                       \
+  static void set_##member(mcor_options* options, double value)                                    \
+  {                                                                                                \
+    options->member = (__typeof__(options->member))value;                                          \
+  }
+#include "mcor_options.def"
+
+/* Each sentence names its option. */
 static void test_options(void** state)
 {
-  const double bad[] = { 0, -1, NAN, INFINITY };
-  for (int i = 0; i < 4; ++i)
+  static const struct
   {
-    ARGUMENT("OPTION_ILLEGAL|{h_scale}|above 0", call.options.h_scale = bad[i]);
-    ARGUMENT("OPTION_ILLEGAL|{cube_size_factor}|above 0", call.options.cube_size_factor = bad[i]);
-    ARGUMENT("OPTION_ILLEGAL|{tolerance}|above 0", call.options.tolerance = bad[i]);
-  }
-  for (int i = 1; i < 4; ++i)
+    const char* name;
+    void (*set)(mcor_options* options, double value);
+    bool is_double;
+    double bad[4];
+    int count;
+  } rows[] = {
+#define OPTION(member, usual, legal, words, scope, Property)                                       \
+  { #member, set_##member,                                                                         \
+    _Generic(((mcor_options*)NULL)->member, double                                                 \
+             : true, default                                                                       \
+             : false),                                                                             \
+    legal },
+#include "mcor_options.def"
+  };
+  for (size_t r = 0; r < sizeof rows / sizeof rows[0]; ++r)
   {
-    ARGUMENT("OPTION_ILLEGAL|{cube_size}", call.options.cube_size = bad[i]);
-    ARGUMENT("OPTION_ILLEGAL|{node_threshold}", call.options.node_threshold = bad[i]);
-    ARGUMENT("OPTION_ILLEGAL|{vertex_threshold}", call.options.vertex_threshold = bad[i]);
+    for (int i = 0; i < rows[r].count; ++i)
+    {
+      if (rows[r].is_double || isfinite(rows[r].bad[i]))
+      {
+        ARGUMENT(rows[r].name, rows[r].set(&call.options, rows[r].bad[i]));
+      }
+    }
   }
-  ARGUMENT("OPTION_ILLEGAL|{wall_share}|-0.1", call.options.wall_share = -0.1);
+  ARGUMENT("OPTION_ILLEGAL|{sph_kernel}|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
+  ARGUMENT("OPTION_NOT_A_WORD|{field}|3", call.options.field = (mcor_field)3);
+  ARGUMENT("OPTION_ILLEGAL|{h_scale}|above 0", call.options.h_scale = 0);
   ARGUMENT("OPTION_ILLEGAL|{wall_share}|below 1", call.options.wall_share = 1);
-  ARGUMENT("OPTION_ILLEGAL|{wall_share}", call.options.wall_share = NAN);
-  ARGUMENT("OPTION_ILLEGAL|{memory_limit}|-1", call.options.memory_limit = -1);
-  ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|-1|255", call.options.iteration_limit = -1);
-  ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|0|255", call.options.iteration_limit = 0);
+  ARGUMENT("OPTION_ILLEGAL|{node_threshold}|at least 0", call.options.node_threshold = -1);
+  ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|0|1 |255", call.options.iteration_limit = 0);
   ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|256|255", call.options.iteration_limit = 256);
-  ARGUMENT("OPTION_ILLEGAL|{level_limit}", call.options.level_limit = MCOR_CUBE_LEVELS);
   ARGUMENT("ISO_COUNT|-1", call.options.iso_count = -1);
   ARGUMENT("ISO_COUNT|is 1", call.options.iso_values = NULL);
   ARGUMENT("ATTRIBUTE_COUNT|-1", call.input.attribute_count = -1);
@@ -535,8 +546,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-CORE_MAIN(core_set_up, core_tear_down, test_enumerations, test_options, test_pairs,
-  test_missing_arrays, test_components, test_bad_elements, test_particles, test_lattice_limits,
-  test_null_arguments, test_empty_results, test_endless_range, test_values_of_solids,
-  test_bad_attributes, test_magnitudes, test_bad_products, test_computed_volumes,
-  test_units_of_length, test_far_options, test_outliers)
+CORE_MAIN(core_set_up, core_tear_down, test_types, test_options, test_pairs, test_missing_arrays,
+  test_components, test_bad_elements, test_particles, test_lattice_limits, test_null_arguments,
+  test_empty_results, test_endless_range, test_values_of_solids, test_bad_attributes,
+  test_magnitudes, test_bad_products, test_computed_volumes, test_units_of_length, test_far_options,
+  test_outliers)

@@ -6,10 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_input.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static void test_names(void** state)
 {
   assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);

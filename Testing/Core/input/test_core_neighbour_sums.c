@@ -6,10 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_plane.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Returns sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
 static double sum_of_all(const particle_set* set, const mcor_options* options, int dimension,
   const double* mass, int64_t i, double h)

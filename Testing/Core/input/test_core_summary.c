@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Four particles, the last of which is twice as large. */
 static const double place[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
 static const double length[4] = { 0.1, 0.1, 0.1, 0.2 };

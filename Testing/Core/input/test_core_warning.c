@@ -5,11 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct warning_call
 {
   particle_set set;

@@ -6,10 +6,6 @@
 
 #include "core_parts.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static mcor_options adaptive_options(const double* iso, mcor_field field)
 {
   mcor_options options = core_options(iso);

@@ -6,10 +6,6 @@
 
 #include "core_parts.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Makes a block whose smoothing lengths differ by a factor of 2, with solids. */
 static particle_set make_block(void)
 {

@@ -7,11 +7,6 @@
 #include "core_fixture.h"
 #include "core_ranks.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define LINES 90
 #define SECTIONS 4
 

@@ -7,10 +7,6 @@
 #include "core_period.h"
 #include "oracle_period.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define PI 3.14159265358979323846
 
 /* Returns the point of the surface that is within 1e-4 of x, or -1. */

@@ -5,9 +5,6 @@
 
 #include "core_period.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Returns an input with the set's scalar as an attribute, which is all that is evaluated. */
 static mcor_input attribute_input(const particle_set* set, mcor_array* attribute)
 {

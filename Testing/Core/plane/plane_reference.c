@@ -3,10 +3,6 @@
 
 #include "plane_reference.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 double plane_norm(mcor_sph_kernel kernel)
 {
   /* The factor that makes each kernel's integral over the plane 1, over 1 / pi: 10 / (7 pi) for the first.

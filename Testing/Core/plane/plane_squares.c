@@ -8,10 +8,6 @@
 
 #include "oracle_lattice.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct plane_node
 {
   int above, valid, close; /* close: rounding may decide the side */

@@ -6,10 +6,6 @@
 #include "core_parts.h"
 #include "plane_reference.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* ---- What holds for any filled region ---- */
 
 typedef struct fill_report

@@ -7,10 +7,6 @@
 #include "mcor_plane.h"
 #include "plane_reference.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Each kernel, normalised as the library does, integrates to 1: midpoint rule over the square of its support. */
 static void test_kernels_integrate_to_1(void** state)
 {

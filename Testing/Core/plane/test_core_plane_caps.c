@@ -5,10 +5,6 @@
 
 #include "plane_reference.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* A call, and the places of its caps on the plane's two axes; infinite where there is no cap. */
 typedef struct caps_case
 {

@@ -5,10 +5,6 @@
 
 #include "plane_reference.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Extracts the lines of these particles and compares them with the reference's, whose set is field->set. */
 static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)

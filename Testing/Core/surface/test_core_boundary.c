@@ -6,9 +6,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 static const char source[] =
   "__kernel void test_eigen(const int count, __global const real* in, __global real* out)\n"
   "{\n"

@@ -6,10 +6,6 @@
 #include "core_parts.h"
 #include "core_period.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Fails unless the surface with caps begins with the surface without. */
 static void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
 {

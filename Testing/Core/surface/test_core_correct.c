@@ -7,7 +7,6 @@
 #include "core_fixture.h"
 
 #include <float.h>
-#include <math.h>
 
 /* A field that is nearly constant on both sides of a jump: steep at the surface, flat beside it. */
 static double steep(const double x[3])

@@ -6,9 +6,6 @@
 #include "core_fixture.h"
 #include "mcor_parallel.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 static double length_of(const double x[3])
 {
   return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);

@@ -5,10 +5,6 @@
 
 #include "core_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* A threshold of 0 trims nothing, a high one everything; in between the surface shrinks. Points where it ends are
  * flagged. */
 static void test_thresholds(void** state)

@@ -222,6 +222,13 @@ mcor_surface core_extract(
   return surface;
 }
 
+uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  CORE_SURFACE surface = core_extract(context, input, options);
+  assert_true(surface.triangle_count > 0);
+  return core_hash(&surface);
+}
+
 static mesh_report check_mesh(const mcor_surface* surface, bool may_coincide)
 {
   mesh_report report;

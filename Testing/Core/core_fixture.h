@@ -125,6 +125,9 @@ mcor_status core_extract_widened(mcor_context* context, const mcor_input* input,
 mcor_surface core_extract(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
+/* Returns the hash of the surface that core_extract makes, which must have triangles. */
+uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options);
+
 /* Fails unless the surface is an oriented manifold without degenerate triangles. */
 mesh_report core_check_mesh(const mcor_surface* surface);
 /* Does the same, but an edge around which only two opposite cells are valid may have two vertices in one place. */

@@ -5,14 +5,6 @@
 
 #include "core_fixture.h"
 
-static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  CORE_SURFACE surface = core_extract(context, input, options);
-  const uint64_t hash = core_hash(&surface);
-  assert_true(surface.triangle_count > 0);
-  return hash;
-}
-
 typedef struct cancel_at
 {
   int calls, stop_at; /* stop_at < 0: never */
@@ -128,7 +120,7 @@ static void test_all_phases_ask(void** state)
     options.level_limit = levels;
     options.progress_user = calls;
     mcor_release_memory(context);
-    hash_of(context, &input, &options);
+    core_hash_of(context, &input, &options);
     for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
     {
       CORE_CHECK(calls[p] >= expected[p], mcor_phase_name((mcor_phase)p), calls[p]);
@@ -153,13 +145,13 @@ static void test_long_launches_are_cut(void** state)
   cancel_at whole = { .stop_at = -1 }, cut = whole;
   context->cl.units = 1 << 30;
   options.progress_user = &whole;
-  const uint64_t expected = hash_of(context, &input, &options); /* builds */
+  const uint64_t expected = core_hash_of(context, &input, &options); /* builds */
   whole = (cancel_at){ .stop_at = -1 };
   context->report_interval = 0;
-  hash_of(context, &input, &options);
+  core_hash_of(context, &input, &options);
   context->cl.units = 1;
   options.progress_user = &cut;
-  assert_true(hash_of(context, &input, &options) == expected);
+  assert_true(core_hash_of(context, &input, &options) == expected);
   context->cl.units = units;
   if (context->cl.is_cpu)
   {

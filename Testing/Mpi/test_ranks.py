@@ -8,17 +8,20 @@
 import math
 import os
 import sys
+from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 from particle_pieces import arrays_of, read, take
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkParallelMPI import vtkMPIController
 from vtkmodules.vtkParallelMPI4Py import vtkMPI4PyCommunicator
 
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "Python"))
+from vtk_test import add, particles_of, take_step  # noqa: E402
 
 COMM = MPI.COMM_WORLD
 RANK, COUNT = COMM.Get_rank(), COMM.Get_size()
@@ -63,23 +66,8 @@ def take_part(whole, way, rank=RANK, count=COUNT):
     part = take(whole, np.flatnonzero(copied))
     if way.startswith("copies"):
         marks = np.where(own[copied], 0, vtkDataSetAttributes.DUPLICATEPOINT).astype(np.uint8)
-        add(part, vtkDataSetAttributes.GhostArrayName(), marks)
+        add(part, **{vtkDataSetAttributes.GhostArrayName(): marks})
     return part
-
-
-def add(data, name, values):
-    array = numpy_to_vtk(np.ascontiguousarray(values), deep=1)
-    array.SetName(name)
-    data.GetPointData().AddArray(array)
-
-
-def points_of(places, **arrays):
-    data = vtkPolyData()
-    data.SetPoints(vtkPoints())
-    data.GetPoints().SetData(numpy_to_vtk(np.ascontiguousarray(places), deep=1))
-    for name, values in arrays.items():
-        add(data, name, values)
-    return data
 
 
 def values_of(data):
@@ -157,7 +145,7 @@ def make_two_sizes():
         shift = 0.2 * np.sin(1.3 * x + 2.1 * y + 0.7 * z)
         points.append(np.stack([first + size * (x + 0.5 + shift), size * (y + 0.5 - shift), size * (z + 0.5)], axis=1))
         lengths.append(np.full(len(x), 1.2 * size))
-    return points_of(np.concatenate(points), h=np.concatenate(lengths))
+    return particles_of(np.concatenate(points), h=np.concatenate(lengths))
 
 
 def make_particles(file):
@@ -171,8 +159,7 @@ def make_particles(file):
         x = vtk_to_numpy(particles.GetPoints().GetData())
         x[:, 2] = 0.5
         h = 0.04 * 2.0 ** (x[:, 0].astype(float) + 1)
-        add(particles, "h", h)
-        add(particles, "area", 0.2 * h * h)
+        add(particles, h=h, area=0.2 * h * h)
     return particles
 
 
@@ -186,11 +173,6 @@ def take_beside_mesh(particles, way):
     return own
 
 
-def set_all(made, settings):
-    for name, value in settings.items():
-        getattr(made, "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
-
-
 def extract(settings, particles, controller):
     """Returns the surface, and what the filter tells: ranges and cells, of the run and of the next one; statistics."""
     made, settings = vtkMarchingCorrectors(), dict(settings)
@@ -199,7 +181,7 @@ def extract(settings, particles, controller):
         made.SetInputArrayToProcess(0, 0, 0, 0, settings.pop("Scalar"))
         for i, value in enumerate(settings.pop("Values")):
             made.SetValue(i, value)
-    set_all(made, settings)
+    take_step(settings, made)
     made.SetInputData(particles)
     made.Update()
     run = made.GetRunStatistics()
@@ -305,13 +287,13 @@ def make_points(particles, name, constant):
     if constant is not None:
         at[:, constant] += np.where(k % 7 == 3, 0.01 * (k % 5), 0)
     at[k % 501 == 7, 1] = math.nan
-    return points_of(at, **{INDEX: k})
+    return particles_of(at, **{INDEX: k})
 
 
 def sample(kind, settings, particles, points, controller):
     made = kind()
     made.SetController(controller)
-    set_all(made, settings)
+    take_step(settings, made)
     made.SetInputDataObject(points if kind is vtkSPHProbe else particles)
     if kind is vtkSPHProbe:
         made.SetSourceData(particles)
@@ -322,7 +304,7 @@ def sample(kind, settings, particles, points, controller):
 def check_sample(number, name, file, constant, kind, settings, some):
     """Returns what differs, on any rank."""
     particles = read(os.path.join(FOLDER, file + ".vtp"))
-    add(particles, INDEX, np.arange(particles.GetNumberOfPoints()))
+    add(particles, **{INDEX: np.arange(particles.GetNumberOfPoints())})
     if constant is not None:
         vtk_to_numpy(particles.GetPoints().GetData())[:, constant] = 0.7
     points, problems = make_points(particles, name, constant), []

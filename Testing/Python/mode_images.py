@@ -5,17 +5,17 @@
 mode_images.py [MODE...]           each way in which the filters draw, by the Python package
 pvpython mode_images.py            one picture that ParaView makes with the plugin
 """
-import math
 import os
 import sys
 
+import numpy
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkImagingCore import vtkImageDifference
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
                                          vtkWindowToImageFilter)
 
@@ -32,32 +32,17 @@ SPEEDS = [0.5, 1.0, 1.5, 2.0, 2.5]
 RADII = [0.6, -1.0, 0.3, 0.9]  # The least value is below all of the scalar's values.
 
 
-def write_square():
-    """Makes a square in the plane y = 0.5."""
-    square, points = vtkPolyData(), vtkPoints()
-    points.SetDataTypeToDouble()
-    arrays = {name: vtkDoubleArray() for name in ("SmoothingLength", "Volume", "Radius")}
-    for k in range(-10, 11):
-        for i in range(-10, 11):
-            points.InsertNextPoint(i * 0.1, 0.5, k * 0.1)
-            for name, value in ("SmoothingLength", 0.13), ("Volume", 0.01), ("Radius", math.hypot(i * 0.1, k * 0.1)):
-                arrays[name].InsertNextValue(value)
-    square.SetPoints(points)
-    for name, array in arrays.items():
-        array.SetName(name)
-        square.GetPointData().AddArray(array)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(os.path.join(OUTPUT, "square.vtp"))
-    writer.SetInputData(square)
-    writer.SetDataModeToBinary()
-    writer.Write()
-    return writer.GetFileName()
+def make_square():
+    """Makes a square of particles in the plane y = 0.5."""
+    from vtk_test import lattice, particles_of
+    x = lattice(21, 1, 21, around_origin=True) + [0, 0.5, 0]
+    return particles_of(x, SmoothingLength=numpy.full(441, 0.13), Volume=numpy.full(441, 0.01), Radius=numpy.hypot(x[:, 0], x[:, 2]))
 
 
 def extract(mode):
     from marchingcorrectors import vtkMarchingCorrectors
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(write_square() if mode == "Filled" else DATA)
+    reader.SetFileName(DATA)
     if mode == "Slice":
         from marchingcorrectors import vtkSPHProbe
         plane, made = vtkPlaneSource(), vtkSPHProbe()
@@ -68,7 +53,7 @@ def extract(mode):
         made.SetInputConnection(1, reader.GetOutputPort())
     else:
         made = vtkMarchingCorrectors()
-        made.SetInputConnection(reader.GetOutputPort())
+        made.SetInputDataObject(make_square()) if mode == "Filled" else made.SetInputConnection(reader.GetOutputPort())
         made.SetInputArrayToProcess(0, 0, 0, 0, "Radius" if mode == "Filled" else "Velocity")
         for i, value in enumerate(RADII if mode == "Filled" else SPEEDS if mode == "Speed" else [0.7]):
             made.SetValue(i, value)

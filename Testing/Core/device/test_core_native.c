@@ -217,8 +217,7 @@ static uint64_t extract(mcor_context* context)
   const mcor_options options = core_options(&iso);
   CORE_SURFACE surface = core_extract(context, &input, &options);
   assert_true(surface.triangle_count > 100);
-  const uint64_t hash = core_hash(&surface);
-  return hash;
+  return core_hash(&surface);
 }
 
 static mcor_context* make_native(void)

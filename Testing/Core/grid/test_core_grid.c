@@ -57,8 +57,7 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL;
   CORE_SURFACE surface = core_extract(context, &input, &options);
   CORE_CHECK(surface.triangle_count > 50, surface.triangle_count);
-  const uint64_t hash = core_hash(&surface);
-  return hash;
+  return core_hash(&surface);
 }
 
 /* Makes `count` particles in few cells, `coincident` of them at one place, and checks that two orders give the same

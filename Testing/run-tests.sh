@@ -7,8 +7,8 @@
 #
 # --sdk chooses on a machine that has neither; plain VTK is the default. DIR: build-tests. The
 # patterns choose tests as ctest's do, by label (-L, -LE) or name (-R, -E); any other argument of
-# ctest goes behind --. Without any of them, tests labelled slow are left out; "-L slow" runs those.
-# --pocl: the core's, the oracle's and VTK's tests run on PoCL, which checks the built-in device, before the others.
+# ctest goes behind --. Without arguments for ctest, tests labelled slow are left out; "-L slow" runs the slow ones.
+# --pocl: the core's, the oracle's and VTK's tests run on PoCL first, which checks the built-in device; then all others run.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 . .ci/packages.sh
@@ -44,7 +44,7 @@ mapfile -t rest < <(without "${left_out[@]}")
 
 test_names() { ctest --test-dir "$build" -N "$@" | sed -n 's/^ *Test *#[0-9]*: //p' | sort; }
 
-# Lists what this run does not try: tests that the arguments leave out, and those that lack a program here.
+# Lists what this run does not try: tests that the arguments leave out, and tests that lack a program here.
 say_what_is_left_out() {
   local names
   mapfile -t names < <(comm -23 <(test_names) <(test_names "$@"))

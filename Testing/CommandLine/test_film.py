@@ -139,7 +139,7 @@ class Film(CommandLineTest):
         self.assertEqual({row["Density"] for row in found if row["valid"] == "0"}, {""})
         for row in found:
             if row["name"] == "side":
-                self.assertAlmostEqual(float(row["Velocity:0"]), -0.2, delta=0.02)  # The velocity is that of a rotation of 2 / s around z.
+                self.assertAlmostEqual(float(row["Velocity:0"]), -0.2, delta=0.02)  # The drop turns around z with 2 / s.
                 self.assertAlmostEqual(float(row["Velocity:2"]), -float(row["time"]), delta=0.01)
         alone = rows(paths[1], table)
         for one, row in zip(alone, found[6:9]):

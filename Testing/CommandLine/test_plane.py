@@ -86,7 +86,7 @@ class Plane(CommandLineTest):
         self.assertEqual((half["points"], half["length"]), (thick["points"], thick["length"]))
 
     def test_columns_of_a_table(self):
-        """Tables keep arrays whose names are those of other columns or look like formulas, and integers too large for a double."""
+        """Tables keep arrays whose names other columns have or which look like formulas, and integers too large for a double."""
         big = 2 ** 60 + 1
         arrays = {**self.arrays, **{name: [7.5] * len(self.points) for name in ("X", "Line", "Velocity:0", "=1+1")}}
         files.write_vtp(self.input, self.points, arrays, files.xml_array("Id", [big] * len(self.points), "Int64") +
@@ -122,7 +122,7 @@ class Plane(CommandLineTest):
         for line in "0", "1":
             of_line = [row for row in rows if row["Line"] == line]
             self.assertEqual(of_line[0], of_line[-1])
-        # The table's numbers are, to the last bit, those of the .vtp file.
+        # The table and the .vtp file have the same numbers, to the last bit.
         self.extract("--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
         self.run_program(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
         rows = read_table(table)

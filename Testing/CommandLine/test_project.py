@@ -113,7 +113,7 @@ class Project(CommandLineTest):
         self.assertEqual((self.directory / "column_0001.vti").read_bytes(), self.image.read_bytes())
 
     def test_steps_without_fluid(self):
-        """The image of a step without particles is that of its neighbour, without values: 0, or no number in a mean."""
+        """The image of a step without particles has its neighbour's pixels, whose values are 0, or no number in a mean."""
         files.write_vtp(self.directory / "none.vtp", [], {})
         options = ["--project", "z", "--resolution", "9", "--scalar", "Kind"]
         for more, empty in (([], lambda value: value == 0), (["--weighted-by", "Mass"], math.isnan)):

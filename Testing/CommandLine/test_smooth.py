@@ -16,7 +16,7 @@ class Smooth(CommandLineTest):
         self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
 
     def test_factors_in_a_file(self):
-        """The surface is that of lengths which were multiplied by the factors before, with the volumes of the original lengths and with cubes as
+        """Lengths multiplied by the factors beforehand make the same surface, with the volumes of the original lengths and with cubes as
         large."""
         for computed in (True, False):
             arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (

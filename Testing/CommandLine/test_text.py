@@ -9,7 +9,7 @@ import xml.etree.ElementTree
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, main
 
-# These characters act on a terminal: control characters, those of two UTF-8 bytes included, line separators, and marks that turn the direction of
+# These characters act on a terminal: control characters (some take two UTF-8 bytes), line separators, and marks that turn the direction of
 # writing.
 UNSAFE = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 

@@ -53,7 +53,7 @@ static const bits_case cases[] = {
   { "smooth", .field = MCOR_WEIGHT_SUM, .iso = 0.5, .smooth = 3 },
 };
 
-/* Gives some particles a far larger support, and as much weight as the others have. */
+/* Gives some particles a far larger support, and as much weight as all other particles. */
 static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)

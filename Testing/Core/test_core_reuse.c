@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* What a context keeps between calls never changes a result. Every parameter is changed alone, right after a call, and
- * changed back; each result is that of a new context. */
+ * changed back; a new context has the same results. */
 
 #include "core_fixture.h"
 

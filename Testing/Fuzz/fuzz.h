@@ -31,7 +31,7 @@ void fuzz_fail(const char* condition, const char* where, int line);
     }                                                                                              \
   } while (0)
 
-/* fuzz_byte: the next byte, 0 at the end. The others make numbers of bytes, some of them odd. */
+/* fuzz_byte: the next byte, 0 at the end. The other functions make numbers of bytes; some numbers are odd. */
 unsigned fuzz_byte(fuzz_bytes* bytes);
 double fuzz_scale(fuzz_bytes* bytes);
 double fuzz_positive(fuzz_bytes* bytes);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program under mpirun: what processes make together, and what they say where one of them fails.
+"""The program under mpirun: what processes make together, and what they say where one process fails.
 
     test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS PRELOAD
 
@@ -241,7 +241,7 @@ class Program(unittest.TestCase):
             alone, done = self.check_same(name, file, 5, *how)
             if name == "gauges.csv":
                 self.assertEqual(done.stdout, alone.stdout)
-        for name, time in ("gauges.csv", "0,"), ("walls.csv", "0.9"):  # the time of the pieces is that of their file
+        for name, time in ("gauges.csv", "0,"), ("walls.csv", "0.9"):  # The pieces have the time of their file.
             rows = Path(self.path(name)).read_text(encoding="utf-8").splitlines()[1:]
             self.assertTrue(all(row.startswith(time) for row in rows) and any(",wet," in row for row in rows), rows)
         for name, how in (("o.csv", ["--gauge", "a=0,0,0:0,0,1", "--smoothing-length", "Nope"]),
@@ -291,7 +291,7 @@ class Program(unittest.TestCase):
             self.assertEqual(said[0], said[1])
 
     def test_particle_distance(self):
-        """The dimension is that of all particles: first each piece lies in a plane, but not in the same; then all lie in one, apart from ignored
+        """All particles decide the dimension: first each piece lies in a plane of its own; then all lie in one plane, apart from ignored
         walls."""
         plane = read(self.write_plane())
         at = vtk_to_numpy(plane.GetPoints().GetData())
@@ -354,7 +354,7 @@ class Program(unittest.TestCase):
                 self.assertEqual(forms(part), alone)
 
     def test_pieces(self):
-        """Pieces are read and written; there are more of them than processes."""
+        """Pieces are read and written; there are more pieces than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
         self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface"))
         self.good(self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface"))
@@ -365,7 +365,7 @@ class Program(unittest.TestCase):
         self.assertEqual(ranks.GetCellData().GetGlobalIds().GetName(), "GlobalCellIds")
 
     def test_probe(self):
-        """Points come from one file, particles from pieces; the arrays are, to the last byte, those of one process."""
+        """Points come from one file, particles from pieces; one process makes the same arrays, to the last byte."""
         image = vtkImageData()
         low, high = np.reshape(read(PARTICLES).GetBounds(), (3, 2)).T
         image.SetOrigin(*low)
@@ -464,7 +464,7 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """A film with its tables, at stored times and between, is byte for byte that of one process, and so are gauges. A step that fails is named
+        """A film with its tables, at stored times and between, has the same bytes as one process makes, and so have gauges. A step that fails is named
         once, and the others are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
@@ -492,7 +492,7 @@ class Program(unittest.TestCase):
         self.check_fails(picture, "--screenshot")
 
     def test_components(self):
-        """The table of pieces, and the surface with their numbers, are byte for byte those of one process."""
+        """The table of pieces, and the surface with their numbers, have the same bytes as one process makes."""
         walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping", "--periodic", "0,0,0.67"]
         for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
                                (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),

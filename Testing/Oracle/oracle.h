@@ -51,7 +51,7 @@ extern "C"
   double oracle_kernel_value(
     oracle_kernel kernel, double h, const double offset[3], double gradient[3]);
 
-  /* Returns the integral of x^2 W over that of W, in h^2, in 2 or 3 dimensions. */
+  /* Returns the integral of x^2 W divided by the integral of W, in h^2, in 2 or 3 dimensions. */
   double oracle_kernel_variance(oracle_kernel kernel, int dimensions);
 
   /* Returns zeroed memory; ends the program if there is none. */
@@ -102,7 +102,7 @@ extern "C"
   void oracle_free_field(oracle_field* field);
 
   /* Fills particles->volume. With mass and density: mass / density. With mass alone: m_j / (sum_k m_k W(x_j - x_k, h_j)
-   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is that of three dimensions. F_j = 1 for solids; else F_j
+   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is three-dimensional. F_j = 1 for solids; else F_j
    * = 1 + 5/3 variance h_j^2 |g|^2 / n^2 with n = sum_k h_k^d W(x_j - x_k, h_j) and g = the sum of h_k^d grad W over
    * the fluid + t times that over the solids, where t from 0 to 1 makes |g| least. Ignored solids are left out of the
    * sums. */

@@ -53,7 +53,7 @@ extern "C"
     int level;
   } lattice_brick;
 
-  /* A cell with nodes on both sides, none of them certainly invalid. */
+  /* A cell with nodes on both sides, of which none is certainly invalid. */
   typedef struct lattice_cell
   {
     int64_t at[3];

@@ -76,7 +76,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, water)[0].GetPartition(0)) == self.alone)
 
     def test_sums(self):
-        """Costs are those of all blocks, and the fraction of the progress never falls."""
+        """Costs are summed over all blocks, and the fraction of the progress never falls."""
         extract, seen = sphere(), [0]
         run(extract, **APART, KeepDeviceData=0)
         bricks, peak = statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")

@@ -146,7 +146,7 @@ class TestDerivatives(unittest.TestCase):
         self.assertEqual(aborted(made).GetNumberOfPoints(), 0)
 
     def test_derivatives(self):
-        """Particles in blocks stay in their blocks, and are neighbours of those in other blocks."""
+        """Particles stay in their blocks, and are neighbours across blocks."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         outputs = []
@@ -209,7 +209,7 @@ class TestProbe(unittest.TestCase):
         self.assertEqual(probe.GetUsedSmoothingLengthArrayName(), "h")
 
     def test_points_of_an_image(self):
-        """Points of an image are computed row by row, in chunks; the bits are those of stored points."""
+        """Points of an image are computed row by row, in chunks; stored points give the same bits."""
         image = vtkImageData()
         image.SetExtent(3, 1033, -5, 511, 7, 8)  # more than one chunk of points
         image.SetSpacing(0.0011, 0.0009, 0.3)
@@ -337,7 +337,7 @@ class TestProbe(unittest.TestCase):
         self.assertIsNone(vtkSPHProbe().GetSource())
 
     def test_particles_among_meshes(self):
-        """Vertices beside other cells are the particles. Derivatives are those particles', in the class of the input."""
+        """Vertices beside other cells are the particles. Derivatives are made for these alone; the output has the input's class."""
         particles, mesh = make_vortex(8), vtkUnstructuredGrid()
         count = particles.GetNumberOfPoints()
         mesh.SetPoints(particles.GetPoints())

@@ -195,7 +195,7 @@ class TestArrays(FilterTest):
         self.has(self.good(extract, InterpolateAttributes=0), "Radius", "Position Id")
 
     def test_left_out(self):
-        """Two kinds of arrays are missing on the surface: those that the user excludes and, with a warning, those that are not finite where there is
+        """An array is missing on the surface if the user excludes it or, with a warning, if it is not finite where there is
         fluid."""
         wall = points_of(cube())[:, 0] < -0.9
         broken = numpy.where(wall, math.inf, 1)
@@ -302,7 +302,7 @@ class TestArrays(FilterTest):
         self.assertGreater(seconds.GetComponent(0, len(names) - 1), 0)
         for name in ("DeviceBytesPeak", "Bricks", "NodesEvaluated", "MarchRounds"):
             self.assertEqual((statistic(extract, name) > 0, data.HasArray(name)), (True, 0))
-        # The numbers are those of VTK's filters; a cut surface has no volume.
+        # VTK's filters measure the same; a cut surface has no volume.
         masses = vtkMassProperties()
         masses.SetInputData(surface)
         self.assertAlmostEqual(numbers["Area"] / masses.GetSurfaceArea(), 1, delta=1e-5)

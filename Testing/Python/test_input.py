@@ -62,7 +62,7 @@ class TestWeird(unittest.TestCase):
                 *((says("NO_SUCH_ARRAY", "'NoSuch'", role), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
                     ("Fluid", "fluid"))),
-                # Sentences of the core reach the user; core_input tests all of them.
+                # Sentences of the core reach the user; core_input tests every sentence.
                 (says("ARRAY_VALUE", "SmoothingLength", "17"), changed("SmoothingLength", 17, math.nan), {}),
                 (says("POSITION_NOT_FINITE", "20") + "|" + says("ARRAY_VALUE", "20"), moved, {}),
                 (says("BLOCKS_TOO_MANY"), cube(), {"CubeSize": 1e-4}), (says("NO_SUCH_DEVICE", "NoSuchDevice"), cube(), {"Device": "NoSuchDevice"})):
@@ -161,7 +161,7 @@ class TestKinds(unittest.TestCase):
         self.assertEqual({arrays.GetAbstractArray(i).GetNumberOfTuples() for i in range(arrays.GetNumberOfArrays())}, {count})
         shared = sphere(cube(), "SmoothingLength", H / 2)
         surface, _ = run(shared, FluidArrayName="SmoothingLength", FluidValue=H, MassArrayName="SmoothingLength")
-        self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # The field is nowhere half of it.
+        self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # The field is nowhere half the smoothing length.
 
     def test_points(self):
         """Coordinates may be whole numbers; the surface's points have the type of the particles' points."""

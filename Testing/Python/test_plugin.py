@@ -197,7 +197,7 @@ def check_blocks(reader):
             Delete(pieces)
         Delete(extract)
     assert counts[0] == counts[1] < counts[2], counts
-    assert held[0] == held[1] and 40000 < held[0][1][1] < 44880, held  # The walls are no part of it.
+    assert held[0] == held[1] and 40000 < held[0][1][1] < 44880, held  # The walls are not contoured.
 
 
 def check_plugin():

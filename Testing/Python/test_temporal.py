@@ -131,7 +131,7 @@ class TestTemporal(unittest.TestCase):
                 self.assertTrue((values_of(output, "Heat") == values_of(stored, "Heat")).all())
 
     def test_hermite(self):
-        """Errors of positions fall with the fourth power of the step, those of linear interpolation with the second."""
+        """Errors of positions fall with the fourth power of the step; with linear interpolation they fall with the second."""
         errors, linear = [], []
         for step in (0.4, 0.2, 0.1):
             film = interpolator({0.0: rotating(0.0), step: rotating(step)})

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's warnings arrive once in a run, and name their block; core_warning tests all of them."""
+"""The core's warnings arrive once in a run, and name their block; core_warning tests every warning."""
 import unittest
 
 import numpy

@@ -79,7 +79,7 @@ def take(data, chosen):
 
 
 def blocks_of(*blocks, **named):
-    """Returns blocks, the first without names, then those with names."""
+    """Returns blocks: first the ones without names, then the ones with names."""
     result = vtkMultiBlockDataSet()
     for i, block in enumerate((*blocks, *named.values())):
         result.SetBlock(i, block)
@@ -139,7 +139,7 @@ def surface_of(data):
 
 
 def statistics_of(extract):
-    """Returns the run's statistics, without those that another run for the same surface may change."""
+    """Returns the run's statistics, but not the costs, which may differ in another run for the same surface."""
     data = extract.GetRunStatistics()
     arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     return [(array.GetName(), [array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues())])

@@ -66,7 +66,7 @@ class Options(unittest.TestCase):
                 self.assertIn(frozenset(words.strip('"').split("|")), shown, member)
 
     def test_reuse_is_tried_with_each(self):
-        """Every option has a step in test_core_reuse.c, except those whose surfaces differ in kind."""
+        """Every option has a step in test_core_reuse.c, but not options that make another kind of surface."""
         text = (SOURCES / "Testing" / "Core" / "test_core_reuse.c").read_text(encoding="utf-8")
         members = {row[0] for row in rows_of("OPTION")}
         self.assertEqual(members - set(re.findall(r"^STEP\((\w+),", text, re.M)),

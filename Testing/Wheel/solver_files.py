@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes a ball of particles, and files of it whose layouts need only NumPy."""
+"""Makes a ball of particles, and writes it to files whose layouts need only NumPy."""
 import struct
 from pathlib import Path
 

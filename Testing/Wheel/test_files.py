@@ -271,7 +271,7 @@ class Layouts(Case):
     def test_pysph(self):
         write_pysph(self.at("run_9.hdf5"))
         particles = io.read(self.at("run_9.hdf5"))
-        own = np.concatenate([X[WALL][1:], X[~WALL][1:]])  # The order is that of the sets' names.
+        own = np.concatenate([X[WALL][1:], X[~WALL][1:]])  # Sets come in the order of their names.
         self.assertEqual(particles.positions.tobytes(), own.tobytes())
         self.assertEqual(particles.solid.tolist(), [True] * (WALL.sum() - 1) + [False] * ((~WALL).sum() - 1))
         self.assertEqual((particles.time, particles.dimension), (0.5, 3))

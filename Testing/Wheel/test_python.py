@@ -45,7 +45,7 @@ class Signatures(unittest.TestCase):
                 mc.widening, sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge, sph.flux, sph.project]
 
     def test_options_are_those_of_the_header(self):
-        """Every option of the core is a keyword, except those for ranks, and those that have another form."""
+        """Every option of the core is a keyword, except options for ranks, and options that have another form."""
         numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
         numbers.update(name[len("MCOR_OUT_"):].lower() for name in _structs.ENUMS["mcor_output"])
         others = {name for name in numbers if name.endswith("_count") or name in (

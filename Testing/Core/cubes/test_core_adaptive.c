@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces of adaptive cubes: with one level they are those of uniform cubes, and empty space costs nothing. The oracle
+/* Surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and empty space costs nothing. The oracle
  * checks their edges and triangles, core_adaptive_parts their bits in boxes. */
 
 #include "core_fixture.h"

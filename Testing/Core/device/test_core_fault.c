@@ -431,7 +431,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* Pages of a large buffer are reserved through a view of it, which may fail. */
+/* A large buffer is mapped to reserve its pages, which may fail. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;

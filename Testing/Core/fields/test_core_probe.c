@@ -335,7 +335,7 @@ typedef struct kept_call
 
 #define KEPT_POINTS 200
 
-/* Probes and checks that the bits are those of a new context. reused: whether the attributes of the call before must be
+/* Probes, and checks that a new context gives the same bits. reused: whether the attributes of the call before must be
  * used again. */
 static void kept_probe(mcor_context* context, const kept_call* call, bool reused, const char* step)
 {

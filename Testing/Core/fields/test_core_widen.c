@@ -169,7 +169,7 @@ static void test_factors(void** state)
   }
 }
 
-/* Checks that the surface is that of the widened lengths, in uniform cubes of the same size. */
+/* Compares the surface with one of the widened lengths, in uniform cubes of the same size. */
 static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
 {
   mcor_input input = *asked;

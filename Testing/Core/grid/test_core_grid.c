@@ -66,7 +66,7 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
 {
   CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
   uint64_t seed = 9;
-  double iso = 0; /* lies between the mean of the crowd and that of the particles beside it */
+  double iso = 0; /* lies between the crowd's mean and the mean of the particles beside the crowd */
   for (int i = 0; i < count + 40; ++i)
   {
     set.scalar[i] = (double)(random_bits(&seed) % 1000);

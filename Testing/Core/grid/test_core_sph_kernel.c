@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The SPH kernels as the device evaluates them: values and slopes are those of the oracle's kernels, whose integrals
+/* The SPH kernels as the device evaluates them: values and slopes equal the oracle's, whose integrals
  * oracle_self checks. */
 
 #include "core_fixture.h"

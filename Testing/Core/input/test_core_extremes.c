@@ -35,7 +35,7 @@ static void test_far_apart(void** state)
   assert_int_equal(surface.triangle_count, 8 * DROPS);
 }
 
-/* Smoothing lengths before scaling reach far beyond the lattice; pairs and computed volumes use those. */
+/* Smoothing lengths before scaling reach far beyond the lattice; pairs and computed volumes use the lengths before scaling. */
 static void test_far_reach(void** state)
 {
   const double iso = 0;
@@ -132,7 +132,7 @@ static void test_coincident(void** state)
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* The block's particles are twins; the others are all at a place where a simulation leaves unused particles. */
+    /* The block's particles are twins; all other particles lie at one place, where a simulation leaves unused particles. */
     const int64_t twin = i < block.count ? i / 2 * 2 : 0;
     for (int a = 0; a < 3; ++a)
     {

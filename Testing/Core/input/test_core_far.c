@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Particles that are absent or ignored play no part, whatever they hold. Particles too far away for the virtual grid do
- * not stop a run: with a box, or at points, they do not matter; otherwise a few of them are left out, with a warning. */
+ * not stop a run: with a box, or at points, they do not matter; otherwise a few are left out, with a warning. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -125,7 +125,7 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Medians are those of the 32 fluid particles with the least hashes; absent particles are not sampled. */
+/* Medians are taken over the 32 fluid particles with the least hashes; absent particles are not sampled. */
 static void test_measures(void** state)
 {
   enum

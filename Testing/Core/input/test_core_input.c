@@ -76,7 +76,7 @@ static void test_types(void** state)
   expect_good(*state);
 }
 
-/* Illegal values of options, and how many they are; only those that are not finite are for doubles alone. */
+/* Illegal values of options, and how many there are. NaN and infinity are tried with doubles alone. */
 #define ABOVE_0 { 0, -1, NAN, INFINITY }, 4
 #define AT_LEAST_0 { -1, NAN, INFINITY }, 3
 #define FROM(low, high) { (low)-1, (high) + 1 }, 2
@@ -235,7 +235,6 @@ static void test_particles(void** state)
   expect_good(*state);
 }
 
-/* Lattices that do not fit are refused, and the sentence says what to do. */
 /* Moves more particles than may be left out along an axis. */
 static void move_far(bad_call* call, int axis, double to)
 {
@@ -245,6 +244,7 @@ static void move_far(bad_call* call, int axis, double to)
   }
 }
 
+/* Lattices that do not fit are refused, and the sentence says what to do. */
 static void test_lattice_limits(void** state)
 {
   CAPACITY("GRID_TOO_LONG|along x;", move_far(&call, 0, 1e9));

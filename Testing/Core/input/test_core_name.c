@@ -181,7 +181,7 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
   return 0;
 }
 
-/* A scalar whose form mcor_extract refuses is not read, and other ranks learn of it. Each array is a heap block of its
+/* A scalar whose form mcor_extract refuses is not read, and other ranks are told. Each array is a heap block of its
  * exact size, for sanitizers. */
 static void test_iso_value_of_wrong_scalars(void** state)
 {

@@ -118,7 +118,7 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
   return at[i - 1].share;
 }
 
-/* Makes the block with 200 solids, so few that all of them are sampled. */
+/* Makes the block with 200 solids, so few that each is sampled. */
 static particle_set make_small_tank(void)
 {
   particle_set set = make_tank();

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes in boxes: levels are those of the whole set, and the boxes' surfaces make up the whole surface to the
+/* Adaptive cubes in boxes: levels are measured in the whole set, and the boxes' surfaces make up the whole surface to the
  * last bit. */
 
 #include "core_parts.h"
@@ -86,7 +86,7 @@ static void given_levels(void** state)
   CORE_SET set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  /* The particles' numbers would be those of another input. */
+  /* The box's input numbers particles in another way. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));

@@ -120,7 +120,7 @@ static void given_globals(void** state)
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
   core_ask_for_all(&options);
-  /* The particles' numbers would be those of another input. */
+  /* The box's input numbers particles in another way. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));

@@ -84,7 +84,7 @@ static mcor_status read_all(mcor_context* context, gauge_job* job, const mcor_in
     : mcor_gauge(context, input, options, job->lines, LINES, &job->gauges[rank]);
 }
 
-/* Takes the particles that the box between two sides needs: those nearer than `reach` to it or to its image a period
+/* Takes the particles that the box between two sides needs: particles nearer than `reach` to it or to its image a period
  * away. */
 static particle_set take_near(const gauge_job* job, double low, double high, double reach)
 {

@@ -130,7 +130,7 @@ static void check_halves(mcor_context* context, const mcor_input* input,
   mcor_free_globals(&globals);
 }
 
-/* Compares gradients at particles, some given periods away, with those that have all images as particles. */
+/* Compares gradients at particles, some of which are given periods away, with gradients where all images are particles. */
 static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };

@@ -401,7 +401,7 @@ static void test_boxes(void** state)
   core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
 }
 
-/* One period is filled from side to side; where there is fluid everywhere, all of it. */
+/* One period is filled from side to side; where there is fluid everywhere, the whole period is filled. */
 static void test_period(void** state)
 {
   const double isos[2] = { -1e3, 2 };
@@ -442,7 +442,7 @@ static void test_bits(void** state)
   }
 }
 
-/* Attributes of nodes are those of a probe at the same place. */
+/* A node has the attributes that a probe finds at its place. */
 static void test_attributes(void** state)
 {
   mcor_context* context = *state;

@@ -24,7 +24,7 @@ static int64_t compare_set(
   return compare(context, &input, &field, closed);
 }
 
-/* The oracle's W is that of three dimensions; W in the plane is plane_norm h times as large. */
+/* The oracle's W is three-dimensional; W in the plane is plane_norm h times as large. */
 static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
 {
   oracle_compute_volumes(set, (oracle_kernel)kernel, 2, NULL, NULL);

@@ -66,7 +66,7 @@ static void test_every_particle_counts(void** state)
   }
 }
 
-/* The reported residuals and lengths are those of the points. They include what rounded positions and sums may add, so
+/* The points have the reported residuals and lengths, which include what rounded positions and sums may add, so
  * that the true ones are not greater. */
 static void test_reported_numbers(void** state)
 {

@@ -50,7 +50,7 @@ void compare_note(compare_state* state, const char* format, ...);
 
 /* ---- oracle_compare_edges.c: which edge each vertex lies on, what that leaves out, how triangles join them ---- */
 
-/* Counts, for each component, the edges with a vertex and those without. */
+/* Counts, for each component, the edges with a vertex and the edges without one. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */

@@ -64,7 +64,7 @@ def plane(text):
 
 # These values are read in ways of their own; other ways follow from what the program's help says of a value.
 READERS = {"--smoothing-length": quantity, "--volume": quantity, "--mass": quantity, "--density": quantity, "--fluid": str, "--only": chosen,
-           "--wall-share": quantity, "--component": quantity, "--periodic": period, "--gauge": named_line, "--slice": plane,
+           "--wall-share": quantity, "--component": lambda text: -1 if text == "magnitude" else int(text), "--periodic": period, "--gauge": named_line, "--slice": plane,
            "--times": _film.to_times, "--attributes": lambda text: text.split(","), "--device": str}
 WORDS = {"--kernel": words_of("sph_kernel"), "--dimension": {"auto": 0, "2": 2, "3": 3}, "--boundary": {
     "weight_sum": "weight_sum", "weight": "weight_sum", "eigenvalue": "eigenvalue"}}
@@ -202,7 +202,14 @@ def surface_of(given, particles, more=()):
         return free_surface(particles, given.iso or 0.5, **words), words
     if given.free_surface:
         raise InvalidArgument("--free-surface and --scalar exclude each other; leave one of them out.")
-    return isosurface(particles, given.scalar, given.iso, **words), words
+    surface = isosurface(particles, given.scalar, given.iso, **words)
+    if surface.iso_value is not None and given.scalar in particles:
+        scalar = particles.array(given.scalar)
+        surface.iso_value_name = Found(
+            particles.positions, {given.scalar: scalar}, ["scalar"], {"scalar": given.scalar}, filled=bool(given.filled),
+            scalar_component=words.get("scalar_component", -1)).text("iso_value_name")
+        surface.iso_value = surface.iso_value.astype(np.float32 if scalar.dtype == np.float32 else np.float64)
+    return surface, words
 
 
 def run_surface(given, particles):

@@ -88,6 +88,7 @@ class Surface(Result):
     #: {name: particle} of the attributes that are left out, being NaN or infinite there
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: as mcor_statistics of mcor.h
+    iso_value_name: str = "IsoValue"  #: of the array iso_value in files
 
     @property
     def lines(self) -> List[np.ndarray]:
@@ -109,12 +110,9 @@ class Surface(Result):
 
     def point_arrays(self) -> Dict[str, np.ndarray]:
         """{name: array} of all that points carry, under the names that VTK's filter gives them."""
-        arrays = dict(self.attributes)
-        for f in fields(self):
-            array = getattr(self, f.name)
-            if isinstance(array, np.ndarray) and f.name not in CELLS:
-                arrays[camel(f.name)] = array
-        return arrays
+        own = {self.iso_value_name if f.name == "iso_value" else camel(f.name): getattr(self, f.name) for f in fields(self)
+               if isinstance(getattr(self, f.name), np.ndarray) and f.name not in CELLS}
+        return {**{name: array for name, array in self.attributes.items() if name not in own}, **own}
 
     def to_pyvista(self) -> pyvista.PolyData:
         """A pyvista.PolyData with all arrays of the surface."""
@@ -169,6 +167,9 @@ class Surface(Result):
         if ending in (".stl", ".obj", ".off") and not len(self.triangles) and (ending != ".obj" or not self.lines):
             raise InvalidArgument(f"{path.name} was not written, because the surface has no triangles, and files {ending} "
                                   "hold nothing else. Formats that can be empty are .npz, .ply and .vtp.")
+        if self.lines and not len(self.triangles) and ending == ".ply":
+            raise InvalidArgument(f"{path.name} was not written, because .ply holds no lines, which particles in a plane give. "
+                                  "Formats that do are .vtp, .csv, .obj and .npz.")
         if ending == ".npz":
             arrays = {f.name: getattr(self, f.name) for f in fields(self)
                       if isinstance(getattr(self, f.name), np.ndarray)}
@@ -195,9 +196,6 @@ class Surface(Result):
         else:
             raise InvalidArgument(f"The file name '{path}' has no ending that tells the format, as .npz, .ply, .vtp.")
         lost = sorted(set(self.point_arrays()) - {"Normals"})
-        if self.lines and ending == ".ply":
-            warn(f"{path.name} has the points of {len(self.lines)} lines, but not the lines. Formats that hold them are .vtp, "
-                 ".obj and .npz.")
         if lost and ending in (".stl", ".obj", ".off"):
             warn(f"A file {ending} holds no arrays: {', '.join(lost)} {'is' if len(lost) == 1 else 'are'} not in "
                  f"{path.name}. Formats that hold them are .ply, .vtp and .npz.")

@@ -44,7 +44,8 @@ class Command(unittest.TestCase):
     def test_ply(self):
         """The file is, byte for byte, the program's, with every array."""
         for words in (["--free-surface"], ["--free-surface", "--smooth", "--iso", "0.4,0.5", "--curvature"],
-                      ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"]):
+                      ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"], ["--scalar", "Pressure", "--iso", "500,900"],
+                      ["--scalar", "Velocity", "--component", "1", "--iso", "-0.1,0.1"], ["--scalar", "Velocity", "--iso", "1,2"]):
             mine, its = (Path(path).read_bytes() for path in self.run_it("surface", "a.ply", *FLUID, "--cube-factor", "2", *words))
             self.assertEqual(b"property float Velocity_z\n" in mine, words[0] != "--no-attributes")
             self.assertTrue(mine == its, words)
@@ -57,6 +58,11 @@ class Command(unittest.TestCase):
         data["=f"] = data["R"]
         given = str(Path(self.folder.name) / "in.vtp")
         data.save(given)
+        paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4,0.6", given=given)
+        mine, its = (Path(path).read_bytes() for path in paths)
+        self.assertEqual(mine.splitlines()[0], its.splitlines()[0])
+        self.run_it("surface", "a.ply", "--smoothing-length", "0.13", "--scalar", "R", status=1, given=given)
+        self.assertIn("a.ply was not written, because .ply holds no lines", self.said)
         paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4", given=given)
         mine, its = (list(csv.reader(Path(path).read_text().splitlines())) for path in paths)
         mine, its = ({column[0]: column[1:] for column in zip(*table)} for table in (mine, its))

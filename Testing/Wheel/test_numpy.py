@@ -271,9 +271,6 @@ class Inputs(unittest.TestCase):
         self.assertGreater(len(halves.triangles), 500)
 
     def test_right_arrays_are_not_copied(self):
-        from marchingcorrectors._call import prepare
-        from marchingcorrectors._units import Units
-
         for dtype in (np.float32, np.float64):
             positions, distance = lattice(dtype)
             arguments = prepare(Units(positions), {"smoothing_length": H, "volume": distance}, {"a": distance})

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""python -m marchingcorrectors convert IN... OUT.vtp|OUT.pvd: a solver's files for ParaView and the shell program.
-python -m marchingcorrectors convert FILM.pvd|STEPS.vtp FILM.usdc [--help]: surfaces for Blender, Houdini and other readers of USD.
-python -m marchingcorrectors surface IN... FILM.usdc [--help]: a film of surfaces, with the program's words.
-python -m marchingcorrectors surface | gauge | slice | line IN... OUT [--help]: of one file, with the program's words.
+"""python -m marchingcorrectors COMMAND IN... OUT [--help]. The commands:
+
+convert                      to .vtp or .pvd: a solver's files for ParaView and the shell program; to .usdc: surfaces for Blender and Houdini
+surface                      to .usdc: a film; else the surface of one file; with the program's words, as those below
+gauge, slice, line           levels, and the field on a plane or a line
 
 Several files are the times of a .pvd, and of a film (.usdc, .usda, .usd); else they are bodies of one set (.vtp, .vtu, .vtk)."""
 import signal

@@ -31,7 +31,7 @@ ABOUT_PARTICLES = '''
             and densities there are.
         fluid: ("ParticleType", 0) or "ParticleType=0": where this point array has another value, there are solids. "auto":
             by a point array of a usual name that clearly tells it.
-        within: (x0, x1, y0, y1, z0, z1): particles beyond these bounds are left out.
+        within: six bounds, as of box: particles beyond these are left out.
         only: {"ParticleType": 1} or {"ParticleType": (1, 3)}: particles with other values in these
             point arrays are left out.
         attributes: names of the point arrays to be carried along; by default all, and vx, vy, vz as

@@ -11,7 +11,7 @@ import numpy as np
 from . import _structs as c
 from ._find import ELEMENTS, as_bytes
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
-from ._options import BOUNDS, ISOSURFACE, did_you_mean, kind_of, words_of
+from ._options import BOUNDS, ISOSURFACE, camel, did_you_mean, kind_of, words_of  # noqa: F401  others import camel from here
 from ._units import plain, unit_of
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
@@ -23,11 +23,6 @@ WORDS = {int: "whole number", float: "number"}
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
-
-
-def camel(name):
-    """Returns VTK's spelling: "cube_size" becomes CubeSize."""
-    return "".join(part.capitalize() for part in name.split("_"))
 
 
 def is_real(array):

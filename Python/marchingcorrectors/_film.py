@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Films in one USD file, of particles (python -m marchingcorrectors surface STEPS film.usdc) or of surfaces that the program
-wrote (python -m marchingcorrectors convert film.pvd film.usdc)."""
+"""Films in one USD file, of particles (the command surface) or of surfaces that the program wrote (the command convert)."""
 import argparse
 import re
 import sys
@@ -23,7 +22,7 @@ from .io.vtk_xml import XmlFile, list_pieces, list_times
 OPTIONS = (("--fps", "N", float, "frames of a second of film (24)"),
            ("--slow", "S", float, "seconds of film that a unit of time takes (1)"),
            ("--up", "y|z", str, "the axis that points up (z; y for SPlisHSPlasH's .bgeo)"),
-           ("--meters-per-unit", "M", float, "the unit of the positions, in metres (1)"),
+           ("--meters-per-unit", "M", float, "how many metres a unit of length is (1)"),
            ("--velocity", "NAME", str, "the array that is the velocity, for motion blur (one of a usual name)"),
            ("--time-step", "DT", float, "time between files (theirs, or 1)"))
 

@@ -57,8 +57,7 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
         solid. Or (array, 0). "auto": by an array of a usual name that clearly tells it.
     outputs: further arrays of the surface, by their names below: outputs="residual", or ("residual", "gradients"); each is
         also a keyword: residual=True.
-    within: (x0, x1, y0, y1, z0, z1), L: particles beyond these bounds are left out, whatever their values
-        are; sides may be infinite.
+    within: six bounds, as of box, L: particles beyond these are left out, whatever their values are; sides may be infinite.
     only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: particles whose value in this array, of the file or of the
         attributes, is another, or not from the lowest to the highest one, are left out likewise. All names
         must agree. Or (particles,), True for those that are taken.
@@ -309,8 +308,8 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     direction: of the lines of sight: "x", "y", "z", or any three numbers; without it the constant axis of particles in
         a plane, else z.
     resolution: pixels along the longer side of the image.
-    weighted_by: (particles,): the image is the mean of the scalar along the line of sight, with these weights; by the
-        array of masses, the mean by mass. NaN where there is nothing.
+    weighted_by: (particles,): the image is the scalar's mean with these weights; by the array of masses, the mean by
+        mass. NaN where there is nothing.
     box: (x0, x1, y0, y1, z0, z1): what is seen; sides may be infinite. Along x, y or z, particles count, with all of
         their kernel, whose positions are in it along the line of sight. Without it the period, or all that particles
         reach.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""gauge: where lines cross the free surface; flux: what flows through sections."""
+"""gauge: levels on lines; flux: what flows through sections."""
 from __future__ import annotations
 
 import ctypes
@@ -93,7 +93,7 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
 
 
 FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, radius); '
-         '("box", (x0, x1, y0, y1, z0, z1)); (n, 3, 3): triangles; (2, 3) or (n, 2, 3): lines in two dimensions')
+         '("box", six bounds); (n, 3, 3): triangles; (2, 3) or (n, 2, 3): lines in two dimensions')
 
 
 @dataclass(eq=False, repr=False)
@@ -167,8 +167,8 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
 
     velocity: (particles, 3), L per unit of time; in two dimensions (particles, 2) will do.
     sections: one, a list of them, or {name: section}. A section is (3, 3): a rectangle's corner and two
-        ends, whose cross product is the normal; ("disc", centre, normal, radius); ("box", (x0, x1, y0, y1,
-        z0, z1)): its sides, with normals outwards; (n, 3, 3): triangles, with normals by the right-hand rule,
+        ends, whose cross product is the normal; ("disc", centre, normal, radius); ("box", six bounds): its
+        sides, with normals outwards; (n, 3, 3): triangles, with normals by the right-hand rule,
         or outwards if they are a closed surface; in two dimensions (2, 3) or (n, 2, 3): lines, with normals
         to their right.
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().

@@ -17,6 +17,11 @@ BOUNDS = "six bounds (x0, x1, y0, y1, z0, z1)"
 Function = TypeVar("Function", bound=Callable)  # Type checkers see the function as it is written.
 
 # Outputs are bits of one number in mcor_options; here each bit is a member.
+def camel(name):
+    """Returns VTK's spelling: "cube_size" becomes CubeSize."""
+    return "".join(part.capitalize() for part in name.split("_"))
+
+
 OUTPUTS = {name[len("MCOR_OUT_"):].lower(): bit for name, bit in c.ENUMS["mcor_output"].items()}
 
 
@@ -56,10 +61,7 @@ PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))
 WORDS = {
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
-    "dimension": "2: the particles lie in a plane of constant x, y or z; lines take the place of a surface, and "
-                 "volumes are areas. 0: 2 if exactly one coordinate is the same for all particles, else 3.",
-    "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points with a lower weight sum "
-                      "are not valid.",
+    "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): such points are not valid.",
     "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: with 0.5 where they "
                   "weigh more than the fluid, with \"measured\" on the layer of solids that faces it. 0: it does not "
                   "end at solids. \"auto\": \"measured\" for a scalar, 0 for the free surface.",
@@ -67,14 +69,8 @@ WORDS = {
     "box": f"{BOUNDS}: only the cells with their centres in this box; sides may be infinite.",
     "periodic": f"{BOUNDS}: the particles repeat along each axis with x0 < x1; or three lengths, 0 along axes that are not "
                 "periodic; or \"auto\", where a file or a data set tells it.",
-    "capping": "True: the surface is closed at the sides of the period and of the box.",
-    "normals": "True: unit normals from the field's gradient.",
+    "capping": of_panel("Capping"),
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
-    "weight_sum": "True: the sum of the weights at the points.",
-    "boundary_eigenvalue": "True: the eigenvalue of boundary_detection at the points.",
-    "correction_length": "True: how far each point was moved by the correction.",
-    "residual": "True: field minus iso value at the points.",
-    "boundary_flag": "True: 0 inside; 1 or 2 on a cut; 4 next to a cube that was left out; 8 on a cap.",
     "iso_value": "True: the iso value of each point.",
     "nearest_particle": "True: the index of the fluid particle that is nearest to each point.",
     "mean_curvature": "True: the mean curvature of the field's own surface, 1 / R for a drop of radius R; in two dimensions that "
@@ -94,7 +90,8 @@ WORDS = {
     "scalar_version": "the same promise for the scalar.",
     "attributes_version": "the same promise for probe()'s attributes.",
 }
-WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS}, **WORDS}
+WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS},
+         **{name: of_panel("Compute" + camel(name)) for name in OUTPUTS if name not in WORDS}, **WORDS}
 
 # Each function takes these options.
 ISOSURFACE = tuple(Options.__annotations__)

@@ -58,7 +58,7 @@ class Film:
     fps: frames of a second of film; a step's time code is time x fps x slow.
     slow: how many seconds of film a unit of time takes; velocities are divided by it, as they are per second of film.
     up: "y" or "z"; it may be set until the first step is added.
-    meters_per_unit: the unit of the positions, in metres.
+    meters_per_unit: how many metres a unit of length is.
     velocity: the name of the array that is the velocity; without it one of the usual names is looked for.
     """
 

@@ -585,12 +585,17 @@ extern "C"
     MCOR_PARTICLE_ID,   /* a whole number that identifies the particle at all times */
     MCOR_PARTICLE_TYPE, /* tells fluid from solids */
     MCOR_SPACING,       /* distance of particles; says nothing by itself */
+    MCOR_POSITION,      /* columns of a table, three to a position */
     MCOR_QUANTITY_COUNT
   } mcor_quantity;
 
   /* 0 for the most usual name of the quantity, higher for less usual ones, -1 for any other name.
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
+
+  /* Whether a table's column of this name tells particles, or kinds of them, apart by whole numbers:
+   * one that ends as "id", "type", "index", ... */
+  int mcor_tells_apart(const char* name);
 
   /* Whether an array of this name, with whole numbers from low to high over all particles, clearly
    * tells which particles are fluid: one that holds 0 and 1, or the codes of DualSPHysics. *fluid

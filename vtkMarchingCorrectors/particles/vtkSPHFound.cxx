@@ -79,6 +79,16 @@ bool vtkSPHTellsOfPeriod(const char* name)
   return mcor_tells_of_period(name) != 0;
 }
 
+bool vtkSPHTellsApart(const char* name)
+{
+  return mcor_tells_apart(name) != 0;
+}
+
+int vtkSPHPositionPriority(const char* name)
+{
+  return mcor_name_priority(MCOR_POSITION, name);
+}
+
 std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, const double extent[6])
 {
   std::vector<double> bounds = period;

@@ -42,6 +42,10 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 /** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
+/** What the names of a table's columns tell: mcor_tells_apart, and mcor_name_priority of positions. */
+VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
+VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
+
 /** Returns six bounds. Lengths alone are placed around the particles, which have this extent. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);

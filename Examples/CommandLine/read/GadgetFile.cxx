@@ -183,8 +183,8 @@ private:
     this->Stream.seekg(static_cast<std::streamoff>(at + 4 + size));
     if (this->ReadSize() != size || !this->Stream)
     {
-      this->Fail("the record that ends at byte " + std::to_string(at + 4 + size) +
-        " does not end as it begins");
+      throw std::runtime_error(
+        vtkSPHSay(MCOR_SAY(RECORD_ENDS), this->Name.c_str(), static_cast<long long>(at)));
     }
     this->Stream.seekg(static_cast<std::streamoff>(at + 4));
     this->Next = at + 8 + size;

@@ -104,7 +104,8 @@ std::vector<Element> ReadHead(Lines& lines, std::string& form)
     }
     else if (first != "comment" && first != "obj_info")
     {
-      FailToRead(lines.File, lines.Where() + " of its head is not known");
+      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_HEAD), lines.File.c_str(),
+        Printable(std::string(Trimmed(lines.Get()))).c_str()));
     }
   }
   return elements;

@@ -9,6 +9,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkSPHFound.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 
@@ -291,17 +292,10 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   {
     return ArrayWith<vtkStringArray>(first.Words);
   }
-  std::string letters = Small(first.Name);
-  letters.erase(std::remove_if(
-                  letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
-    letters.end());
-  const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
   const auto isLarge = [](double number) { return std::abs(number) >= 9007199254740992.0; };
   const bool areLarge = columns.size() == 1 &&
     std::any_of(first.Numbers.begin(), first.Numbers.end(), isLarge); // here doubles are 2 apart
-  const bool isIdentifier = columns.size() == 1 &&
-    std::any_of(ends.begin(), ends.end(),
-      [&letters](const char* end) { return letters == end || EndsWith(letters, end); });
+  const bool isIdentifier = columns.size() == 1 && vtkSPHTellsApart(first.Name.c_str());
   if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
     return ArrayWith<vtkTypeInt64Array>(first.Whole); // such an array tells particles, or kinds,
@@ -352,17 +346,21 @@ std::vector<std::size_t> FindPositions(const std::string& file, const Table& tab
         ". For particles in a plane add the third one, of zeros");
   };
   const std::vector<Array> arrays = FindArrays(table);
-  for (const char* usual : { "points", "point", "position", "positions", "pos", "coordinates",
-         "coordinate", "coords", "coord", "xyz", "r" })
+  const Array* usual = nullptr;
+  int best = -1;
+  for (const Array& array : arrays)
   {
-    for (const Array& array : arrays)
+    const std::size_t count = array.Columns.size();
+    const int rank = vtkSPHPositionPriority(array.Name.c_str());
+    if ((count == 2 || count == 3) && rank >= 0 && (!usual || rank < best))
     {
-      const std::size_t count = array.Columns.size();
-      if ((count == 2 || count == 3) && Small(array.Name) == usual)
-      {
-        return need(array.Columns);
-      }
+      usual = &array;
+      best = rank;
     }
+  }
+  if (usual)
+  {
+    return need(usual->Columns);
   }
   const std::vector<std::size_t> found = FindAxes(table, "");
   return found.empty() ? found : need(found);

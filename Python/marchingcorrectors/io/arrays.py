@@ -7,8 +7,8 @@ import zipfile
 import numpy as np
 
 from .._warnings import warn
-from ._particles import TIMES, FileError, check_claim, period_of_field
-from .tables import POSITIONS, axes_of, body_of
+from ._particles import TIMES, FileError, check_claim, period_of_field, usual
+from .tables import axes_of, body_of
 
 
 def array_of(file, name, data):
@@ -38,14 +38,14 @@ def read_arrays(path):
             check_claim(path.name, "its arrays together", sum(each.file_size for each in members), path.stat().st_size)
             found = {each.filename[:-4]: array_of(path.name, each.filename[:-4], packed.read(each)) for each in members
                      if each.filename.endswith(".npy")}
-    usual = [name for wanted in POSITIONS for name in found if name.lower() == wanted and found[name].ndim == 2]
-    usual += [name for name in axes_of(found) if found[name].ndim == 1]
-    count = len(found[usual[0]]) if usual else -1
+    places = [usual([name for name in found if found[name].ndim == 2], "position"), *(name for name in axes_of(found) if found[name].ndim == 1)]
+    place = next((name for name in places if name is not None), None)
+    count = -1 if place is None else len(found[place])
     plain = {name: np.ascontiguousarray(values, values.dtype.newbyteorder("=")) for name, values in found.items()
              if values.ndim in (1, 2) and len(values) == count}
-    if usual and found[usual[0]].ndim == 2 and found[usual[0]].shape[1] == 2:
-        plain[usual[0]] = np.pad(plain[usual[0]], ((0, 0), (0, 1)))  # The positions lie in a plane.
-    body = body_of(path.name, plain if usual else {name: np.empty(0) for name in found})
+    if place is not None and found[place].ndim == 2 and found[place].shape[1] == 2:
+        plain[place] = np.pad(plain[place], ((0, 0), (0, 1)))  # The positions lie in a plane.
+    body = body_of(path.name, {name: np.empty(0) for name in found} if place is None else plain)
     alone = {name: values for name, values in found.items() if name not in plain}
     time = next((values for name, values in alone.items() if name.lower() in ("t", *(each.lower() for each in TIMES))
                  and values.size == 1 and values.dtype.kind in "fiu"), None)

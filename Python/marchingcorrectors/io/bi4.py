@@ -75,7 +75,7 @@ class Reader:
     def item(self, depth=0):
         """Returns (values, arrays, [items])."""
         if depth > DEPTH:
-            raise FileError(f"{self.name} is damaged: its parts lie too deep in each other.")
+            raise FileError(f"{self.name} is damaged: too deep a nest of items.")
         self.number()
         self.expect("\nITEM\n")
         self.text(), self.number(), self.number(), self.text(), self.text()

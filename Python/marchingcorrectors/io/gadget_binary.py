@@ -61,7 +61,7 @@ class BinaryFile:
             raise FileError(say("FILE_ENDS", self.path.name, begin))
         self.file.seek(begin + size)
         if self.file.read(4) != before:
-            raise FileError(f"{self.path.name} is damaged: the record at byte {begin} does not end as it begins.")
+            raise FileError(say("RECORD_ENDS", self.path.name, begin))
         return begin, size
 
     def label(self):

@@ -31,7 +31,7 @@ def read_ply(path):
         elif words[:1] == ["property"] and elements and (len(words) == 3 and words[1] in TYPES or words[1:2] == ["list"]):
             elements[-1][2].append((words[-1], TYPES.get(words[1])))
         elif words and words[0] not in ("comment", "obj_info"):
-            raise FileError(f"{path.name}: the line '{line}' of its head is not known.")
+            raise FileError(say("PLY_HEAD", path.name, line))
     if form is None:
         raise FileError(f"{path.name} does not tell its format: ascii or binary.")
     at = head.end()

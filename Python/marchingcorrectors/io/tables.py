@@ -7,15 +7,14 @@ import re
 
 import numpy as np
 
-from .._library import say
+from .._find import as_bytes
+from .._library import lib, say
 from ._packed import ending_of, read_bytes
-from ._particles import Body, FileError, choose_step
+from ._particles import Body, FileError, choose_step, usual
 
-POSITIONS = ("points", "point", "position", "positions", "pos", "coordinates", "coordinate", "coords", "coord", "xyz", "r")
 MOST_COLUMNS = 10000
 COMPONENT = re.compile(r"(.+?)(?:[:_.]([0-8xyzXYZ])|[\[(]([0-8])[\])]|(?<=[a-z])([XYZ]))")
 NUMBER = re.compile(r"[-+]?(([0-9]+[.,]?[0-9]*|[.,][0-9]+)([eEdD][-+]?[0-9]+)?|nan|inf|infinity)", re.I)
-IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
 
 
 def lines_of(path):
@@ -63,8 +62,7 @@ def columns_of(file, lines, names, separator=None):
         values = [numbers_or_words(file, [row[i] for row in rows], separator) for i in range(len(names))]
     found = {}
     for i, (name, column) in enumerate(zip(names, values)):
-        letters = "".join(letter for letter in name.lower() if letter.isalpha())
-        is_identifier = bool(IS_IDENTIFIER.search(letters))
+        is_identifier = lib.mcor_tells_apart(as_bytes(name))
         if column.dtype.kind == "f" and (is_identifier or (np.abs(column) >= 2 ** 53).any()):
             column = as_integers(column, lambda: [split(line, separator)[i] for line in lines])
             if is_identifier and column.dtype.kind == "f" and (np.abs(column) >= 2 ** 53).any():
@@ -129,16 +127,15 @@ def body_of(file, columns, positions=(), **more):
     """positions: names of the columns of positions, if names do not tell."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
-        usual = [name for wanted in POSITIONS for name in arrays
-                 if name.lower() == wanted and arrays[name].ndim == 2 and arrays[name].shape[1] <= 3]
+        at = usual([name for name in arrays if arrays[name].ndim == 2 and arrays[name].shape[1] <= 3], "position")
         positions = axes_of(columns)
-        points = arrays.pop(usual[0]) if usual else None
+        points = None if at is None else arrays.pop(at)
         count = len(positions) if points is None else points.shape[1]
         if count == 0:
             raise NoPositions(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
                               f"Points:2; there are {', '.join(columns)}.")
         if count != 3 and count != len(columns):
-            found = [f"{usual[0]}:{i}" for i in range(count)] if usual else positions
+            found = positions if at is None else [f"{at}:{i}" for i in range(count)]
             raise FileError(f"{file}: of the three columns of positions only {' and '.join(found)} is found; there are "
                             f"{', '.join(columns)}. For particles in a plane add the third one, of zeros.")
     if points is None:

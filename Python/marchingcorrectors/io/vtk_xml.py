@@ -98,7 +98,7 @@ class XmlFile:
     def start(self, tag, attributes):
         self.path.append(tag)
         if len(self.path) > 100:
-            raise ValueError("its parts lie too deep in each other")
+            raise ValueError("too deep a nest of elements")
         if tag == "VTKFile":
             self.file = attributes
         elif tag == "Piece":

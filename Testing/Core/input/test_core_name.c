@@ -43,6 +43,15 @@ static void test_names(void** state)
   assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
   assert_string_equal(mcor_find_layout(""), "");
   assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
+  assert_int_equal(mcor_name_priority(MCOR_POSITION, "Points"), 0);
+  assert_true(mcor_name_priority(MCOR_POSITION, "coords") > 0);
+  const char* const apart[] = { "Idp", "particle_id", "Type", "PARTICLE IDS 2", "mk", "iorig" };
+  const char* const alike[] = { "", "idea", "d", "Density", "tagged", NULL };
+  for (int i = 0; i < 6; ++i)
+  {
+    assert_true(mcor_tells_apart(apart[i]));
+    assert_false(mcor_tells_apart(alike[i]));
+  }
 }
 
 /* The first array in the core's order gives the period; an array that is no period gives none. */

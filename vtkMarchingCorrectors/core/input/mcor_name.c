@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <string.h>
 
 /* Usual names, the most usual first, as small letters and digits alone. */
@@ -21,6 +22,8 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
     "isboundary", "iswall", "issolid", "isfluid", "wallblock" },
   [MCOR_SPACING] = { "particlespacing", "spacing", "particledistance" },
+  [MCOR_POSITION] = { "points", "point", "position", "positions", "pos", "coordinates",
+    "coordinate", "coords", "coord", "xyz", "r" },
 };
 
 static bool mcor_is_same_name(const char* name, const char* usual)
@@ -52,6 +55,33 @@ int mcor_name_priority(mcor_quantity quantity, const char* name)
     }
   }
   return -1;
+}
+
+int mcor_tells_apart(const char* name)
+{
+  static const char* const ends[] = { "id", "ids", "idp", "type", "types", "index", "mk", "tag",
+    "mol", "iorig" };
+  bool tells = false;
+  for (size_t e = 0; name && e < sizeof ends / sizeof ends[0]; ++e)
+  {
+    size_t left = strlen(ends[e]), at = strlen(name);
+    while (left > 0 && at > 0)
+    {
+      const char c = name[--at];
+      const char letter = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+      if (letter < 'a' || letter > 'z')
+      {
+        continue; /* digits and blanks do not count */
+      }
+      if (letter != ends[e][--left])
+      {
+        left = SIZE_MAX;
+        break;
+      }
+    }
+    tells = tells || left == 0;
+  }
+  return tells;
 }
 
 int mcor_find_fluid_value(const char* name, double low, double high, double* fluid)

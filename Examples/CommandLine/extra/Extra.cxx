@@ -7,7 +7,6 @@
 #include "vtkNew.h"
 #include "vtkOBJReader.h"
 #include "vtkPLYReader.h"
-#include "vtkPolyData.h"
 #include "vtkSTLReader.h"
 
 #include <stdexcept>

@@ -12,7 +12,6 @@
 #include "Runs.h"
 #include "SafeText.h"
 
-#include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"

@@ -9,7 +9,6 @@
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
 #include "Runs.h"
-#include "SafeText.h"
 #include "Sharing.h"
 
 #include "vtkCellArray.h"
@@ -19,19 +18,18 @@
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
-#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHComponents.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
+#include "vtkVector.h"
+#include "vtkVectorOperators.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -170,34 +168,25 @@ std::size_t LevelOf(const std::vector<Level>& levels, double iso)
 void MeasureLines(Run& run, const std::string& isoName)
 {
   vtkDataArray* isoValues = run.Surface->GetPointData()->GetArray(isoName.c_str());
+  std::vector<vtkVector3d> sums(run.Levels.size(), vtkVector3d(0.0));
+  std::vector<bool> areClosed(run.Levels.size(), true);
   vtkNew<vtkIdList> line;
-  for (Level& level : run.Levels)
+  for (vtkIdType l = 0; isoValues && l < run.Surface->GetNumberOfLines(); ++l)
   {
-    bool areClosed = true;
-    double sum[3] = { 0.0, 0.0, 0.0 };
-    for (vtkIdType l = 0; isoValues && l < run.Surface->GetNumberOfLines(); ++l)
+    run.Surface->GetLines()->GetCellAtId(l, line);
+    const vtkIdType first = line->GetId(0), last = line->GetNumberOfIds() - 1;
+    const std::size_t own = LevelOf(run.Levels, isoValues->GetComponent(first, 0));
+    areClosed[own] = areClosed[own] && first == line->GetId(last);
+    const auto at = [&](vtkIdType i) // near 0
+    { return vtkVector3d(run.Surface->GetPoint(line->GetId(i))) - vtkVector3d(run.Surface->GetPoint(first)); };
+    for (vtkIdType i = 0; i < last; ++i)
     {
-      run.Surface->GetLines()->GetCellAtId(l, line);
-      const vtkIdType count = line->GetNumberOfIds();
-      const std::size_t own = LevelOf(run.Levels, isoValues->GetComponent(line->GetId(0), 0));
-      if (&run.Levels[own] != &level)
-      {
-        continue;
-      }
-      areClosed = areClosed && line->GetId(0) == line->GetId(count - 1);
-      double first[3], a[3], b[3], both[3];
-      run.Surface->GetPoint(line->GetId(0), first);
-      for (vtkIdType i = 0; i + 1 < count; ++i)
-      {
-        run.Surface->GetPoint(line->GetId(i), a);
-        run.Surface->GetPoint(line->GetId(i + 1), b);
-        vtkMath::Subtract(a, first, a);
-        vtkMath::Subtract(b, first, b);
-        vtkMath::Cross(a, b, both);
-        vtkMath::Add(sum, both, sum);
-      }
+      sums[own] = sums[own] + at(i).Cross(at(i + 1));
     }
-    level.Area = areClosed ? 0.5 * vtkMath::Norm(sum) : NoNumber;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+  {
+    run.Levels[i].Area = areClosed[i] ? 0.5 * sums[i].Norm() : NoNumber;
   }
 }
 

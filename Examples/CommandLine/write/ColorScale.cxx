@@ -8,7 +8,6 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkFieldData.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"

@@ -5,7 +5,6 @@
 #include "ColorScale.h"
 #include "Ending.h"
 #include "FileName.h"
-#include "Job.h"
 #include "SafeText.h"
 
 #include "vtkAbstractArray.h"

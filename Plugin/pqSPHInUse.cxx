@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqSPHInUse.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
@@ -14,6 +15,7 @@
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkNew.h"
 #include "vtkOutputWindow.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
@@ -23,6 +25,7 @@
 #include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMInputProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
@@ -30,13 +33,16 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTransferFunctionProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSMVectorProperty.h"
+#include "vtkSMViewProxy.h"
 #include "vtkSmartPointer.h"
 
 #include <QComboBox>
 #include <QFormLayout>
 #include <QLabel>
+#include <QPushButton>
 #include <QRegularExpression>
 #include <QSignalBlocker>
 #include <QStringList>
@@ -53,13 +59,10 @@
 
 namespace
 {
-// The number is that of the filter's own warning, which comes when the run has begun.
-constexpr double HUGE_CELLS = 1e9;
-
 // Properties that tell what the next update would find. The panel shows them elsewhere, or begins
 // with them.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
-  "NextDimension", "NextFreeSurface", "NextFluid", "NextCells" };
+  "NextDimension", "NextFreeSurface", "NextFluid", "NextCells", "NextWarning" };
 const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension",
   "NextFreeSurface" };
 
@@ -105,6 +108,21 @@ QStringList namesOf(vtkSMProxy* filter)
   return names;
 }
 
+// Leaves only those series of a chart that have such names.
+void showSeries(vtkSMProxy* chart, const QRegularExpression& names)
+{
+  if (!chart->GetProperty("SeriesVisibility"))
+  {
+    return;
+  }
+  vtkSMPropertyHelper visible(chart, "SeriesVisibility");
+  for (unsigned int i = 0; i + 1 < visible.GetNumberOfElements(); i += 2)
+  {
+    visible.Set(i + 1, names.match(visible.GetAsString(i)).hasMatch() ? "1" : "0");
+  }
+  chart->UpdateVTKObjects();
+}
+
 bool isNew(vtkSMProxy* filter)
 {
   auto* found = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
@@ -139,6 +157,14 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   auto* form = new QFormLayout(values);
   form->setContentsMargins(0, 0, 0, 0);
   form->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  if (proxy->GetProperty("Level"))
+  {
+    this->Plot = new QPushButton("Plot Over Time", this);
+    this->Plot->setObjectName("Plot");
+    this->Plot->setToolTip("Draws a chart of the level, or of the volume flux, at all times.");
+    all->insertWidget(0, this->Plot);
+    this->connect(this->Plot, SIGNAL(clicked()), SLOT(plotOverTime()));
+  }
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
@@ -184,8 +210,11 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     return;
   }
   this->IsSmooth = vtkSMPropertyHelper(proxy, "Smooth").GetAsInt() != 0;
-  pqCoreUtilities::connect(proxy->GetProperty("Smooth"), vtkCommand::UncheckedPropertyModifiedEvent,
-    this, SLOT(showSmooth()));
+  for (const char* name : { "Smooth", "Filled" })
+  {
+    pqCoreUtilities::connect(proxy->GetProperty(name), vtkCommand::UncheckedPropertyModifiedEvent,
+      this, SLOT(showSmooth()));
+  }
   this->Pause.setSingleShot(true);
   this->Pause.setInterval(200);
   this->connect(&this->Pause, SIGNAL(timeout()), SLOT(lookAhead()));
@@ -201,13 +230,19 @@ void pqSPHInUse::beginNew()
 {
   vtkSMProxy* filter = this->proxy();
   this->offerMore();
+  auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
+  if (this->Plot && item)
+  {
+    const auto enable = [this] { this->Plot->setEnabled(!isNew(this->proxy())); };
+    this->connect(item, &pqProxy::modifiedStateChanged, this, enable);
+    enable();
+  }
   if (!isNew(filter))
   {
     return;
   }
   SCOPED_UNDO_EXCLUDE();
   this->WasEmpty = false; // because it has not been updated
-  auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   const QString label = filter->GetXMLLabel();
   const QString brief = label.section('(', 0, 0).remove(QRegularExpression("[^A-Za-z0-9]"));
   if (label.contains('('))
@@ -239,7 +274,7 @@ void pqSPHInUse::beginNew()
 }
 
 // A slice through the middle, or the particles' own plane; a line along the longest side, or
-// upright. All reach somewhat beyond the particles, where the fluid ends.
+// upright, through the densest part. All reach somewhat beyond the particles, where the fluid ends.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
@@ -286,8 +321,11 @@ void pqSPHInUse::beginPlace()
   }
   const int along = isGauge ? up : longest;
   double from[3], to[3];
-  std::copy_n(middle, 3, from);
-  std::copy_n(middle, 3, to);
+  const vtkSMPropertyHelper densest(filter, "NextDensest");
+  for (int a = 0; a < 3; ++a)
+  {
+    from[a] = to[a] = low[a] == high[a] ? low[a] : rounded(densest.GetAsDouble(3 * along + a));
+  }
   // Beyond the surface, which is half a spacing away from the uppermost particles.
   const double spacing =
     std::pow(filled / static_cast<double>(data->GetNumberOfPoints()), 1.0 / axes);
@@ -349,17 +387,20 @@ void pqSPHInUse::showSmooth()
 {
   vtkSMUncheckedPropertyHelper smooth(this->proxy(), "Smooth"), compact(this->proxy(), "Compact"),
     widening(this->proxy(), "Widening");
-  const bool isSmooth = smooth.GetAsInt() != 0;
-  if (isSmooth == std::exchange(this->IsSmooth, isSmooth))
-  {
-    return;
-  }
-  if (isSmooth)
+  const bool isSmooth = smooth.GetAsInt() != 0, wasSmooth = std::exchange(this->IsSmooth, isSmooth);
+  const bool isFilled = vtkSMUncheckedPropertyHelper(this->proxy(), "Filled").GetAsInt() != 0;
+  if (isSmooth && !wasSmooth)
   {
     this->Rough = { compact.GetAsInt(), widening.GetAsDouble() };
   }
-  compact.Set(isSmooth ? 1 : this->Rough.first);
-  widening.Set(isSmooth && this->Rough.second == 1.0 ? 2.0 : this->Rough.second);
+  if (isSmooth || wasSmooth)
+  {
+    compact.Set(isSmooth && !isFilled ? 1 : this->Rough.first);
+  }
+  if (isSmooth != wasSmooth)
+  {
+    widening.Set(isSmooth && this->Rough.second == 1.0 ? 2.0 : this->Rough.second);
+  }
 }
 
 void pqSPHInUse::showValues()
@@ -392,9 +433,14 @@ void pqSPHInUse::colourLate()
   if (isFirst)
   {
     this->WasEmpty = isEmpty; // this is a panel of an older object
+    for (pqDataRepresentation* shown : port->getRepresentations(nullptr))
+    {
+      this->watchColour(shown);
+    }
     return;
   }
-  if (isEmpty && !this->WasEmpty)
+  if (isEmpty && !this->WasEmpty &&
+    vtkSMPropertyHelper(this->proxy(), "MessageCount", true).GetAsInt() == 0)
   {
     const QString text = "The output of " + source->getSMName() +
       " is empty: nothing is drawn. See In Use, at the end of its properties, for what was "
@@ -413,10 +459,105 @@ void pqSPHInUse::colourLate()
       proxy->RescaleTransferFunctionToDataRange();
       shown->renderViewEventually();
     }
+    if (!this->Coloured.contains(shown) && active)
+    {
+      showSeries(shown->getProxy(), QRegularExpression("^" +
+        QRegularExpression::escape(active->GetName()) + "(_Magnitude)?$"));
+    }
   }
+  this->narrowColours();
   this->WasEmpty = isEmpty;
   this->Button->setText(isEmpty ? "The output is empty: what was found, and what is used"
                                 : "What was found, and what is used");
+}
+
+// Puts ParaView's own filter behind this one, as a person would, and shows one quantity alone.
+void pqSPHInUse::plotOverTime()
+{
+  const bool isGauge = this->proxy()->GetProperty("Point1") != nullptr;
+  BEGIN_UNDO_SET("Plot Over Time");
+  const auto plot = vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(
+    this->proxy()->GetSessionProxyManager()->NewProxy("filters", "PlotDataOverTime")));
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  controller->PreInitializeProxy(plot);
+  vtkSMPropertyHelper(plot, "Input").Set(this->proxy());
+  vtkSMPropertyHelper(plot, "FieldAssociation").Set(vtkDataObject::ROW);
+  vtkSMPropertyHelper(plot, "Only Report Selection Statistics").Set(0);
+  controller->PostInitializeProxy(plot);
+  controller->RegisterPipelineProxy(plot);
+  plot->UpdatePipeline();
+  const auto view = vtkSmartPointer<vtkSMViewProxy>::Take(vtkSMViewProxy::SafeDownCast(
+    this->proxy()->GetSessionProxyManager()->NewProxy("views", "XYChartView")));
+  controller->InitializeProxy(view);
+  controller->RegisterViewProxy(view);
+  controller->AssignViewToLayout(view);
+  showSeries(controller->Show(plot, 0, view), QRegularExpression("^(last|volume_flux)\\b"));
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set(isGauge ? "Level along the line" : "Volume flux");
+  vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Time");
+  view->UpdateVTKObjects();
+  view->StillRender();
+  pqActiveObjects::instance().setActiveSource(
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(plot));
+  END_UNDO_SET();
+}
+
+// Returns whether the picture has another array of colours than it was seen with before.
+bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
+{
+  vtkSMProperty* property = shown->getProxy()->GetProperty("ColorArrayName");
+  if (property && !this->Coloured.contains(shown))
+  {
+    pqCoreUtilities::connect(
+      property, vtkCommand::ModifiedEvent, this, SLOT(narrowColours()), Qt::QueuedConnection);
+  }
+  const QString name = property ? vtkSMPropertyHelper(property).GetAsString(4) : "";
+  return name != std::exchange(this->Coloured[shown], name);
+}
+
+// ParaView's own ranges are those of all values, which a few drops or corners decide. Where it has
+// taken such a range, or another array, the colours become those of most of the area.
+void pqSPHInUse::narrowColours()
+{
+  SCOPED_UNDO_EXCLUDE();
+  const QString ranges = vtkSMPropertyHelper(this->proxy(), "ColorRanges", true).GetAsString();
+  auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      this->proxy());
+  pqOutputPort* port = source ? source->getOutputPort(0) : nullptr;
+  vtkPVDataInformation* data = port && !isNew(this->proxy()) ? port->getDataInformation() : nullptr;
+  for (pqDataRepresentation* shown :
+    data ? port->getRepresentations(nullptr) : QList<pqDataRepresentation*>())
+  {
+    auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(shown->getProxy());
+    const bool isOther = this->watchColour(shown);
+    if (!proxy || !proxy->GetUsingScalarColoring())
+    {
+      continue;
+    }
+    const QString name = this->Coloured[shown];
+    vtkPVArrayInformation* array = data->GetPointDataInformation()->GetArrayInformation(
+      name.toUtf8().constData());
+    vtkSMProxy* colours = vtkSMPropertyHelper(proxy, "LookupTable").GetAsProxy();
+    const QRegularExpressionMatch found =
+      QRegularExpression("^(\\S+) (\\S+) " + QRegularExpression::escape(name) + "$",
+        QRegularExpression::MultilineOption)
+        .match(ranges);
+    double now[2];
+    if (!array || !colours || !found.hasMatch() ||
+      !vtkSMTransferFunctionProxy::GetRange(colours, now))
+    {
+      continue;
+    }
+    const bool isVector = array->GetNumberOfComponents() > 1;
+    const double* all = array->GetComponentRange(isVector ? -1 : 0);
+    if ((isOther || (now[0] == all[0] && now[1] == all[1])) &&
+      !(isVector && vtkSMPropertyHelper(colours, "VectorMode").GetAsInt() != 0))
+    {
+      vtkSMTransferFunctionProxy::RescaleTransferFunction(
+        colours, found.captured(1).toDouble(), found.captured(2).toDouble());
+      shown->renderViewEventually();
+    }
+  }
 }
 
 // Asks a filter like this one that nobody sees, with what the panel shows, applied or not. The range
@@ -512,8 +653,6 @@ void pqSPHInUse::showRows()
   for (const auto& row : this->Rows)
   {
     const QLatin1String name(row.first->GetXMLName());
-    const bool huge = name == QLatin1String("NextCells") &&
-      vtkSMPropertyHelper(row.first, true).GetAsDouble() >= HUGE_CELLS;
     const bool isDrawn = !this->WasEmpty && !isNew(this->proxy());
     QString text = textOf(row.first);
     if (text == "-" &&
@@ -521,11 +660,24 @@ void pqSPHInUse::showRows()
     {
       text = "all particles";
     }
-    row.second->setText(text + (huge ? ": this may take minutes and much memory" : ""));
-    row.second->setStyleSheet(huge ? "color: #c00000; font-weight: bold" : "");
-    if (huge)
-    {
-      this->Button->setChecked(true); // to be seen
-    }
+    row.second->setText(text);
+  }
+  QWidget* panel = this->parentWidget();
+  auto* size = panel ? panel->findChild<QWidget*>("CubeSizeFactor") : nullptr;
+  auto* box = size ? qobject_cast<QBoxLayout*>(size->layout()) : nullptr;
+  if (box && !this->Warning)
+  {
+    box->setDirection(QBoxLayout::TopToBottom);
+    this->Warning = new QLabel(size);
+    this->Warning->setObjectName("Warning");
+    this->Warning->setWordWrap(true);
+    this->Warning->setStyleSheet("color: #c00000; font-weight: bold");
+    box->addWidget(this->Warning);
+  }
+  if (this->Warning)
+  {
+    const QString text = vtkSMPropertyHelper(this->proxy(), "NextWarning", true).GetAsString();
+    this->Warning->setText(text);
+    this->Warning->setVisible(!text.isEmpty());
   }
 }

@@ -20,11 +20,14 @@
 #include "pqPropertyWidget.h"
 
 #include <QList>
+#include <QMap>
 #include <QPair>
 #include <QTimer>
 
 class QLabel;
+class QPushButton;
 class QToolButton;
+class pqDataRepresentation;
 class vtkSMProperty;
 class vtkSMPropertyGroup;
 
@@ -45,17 +48,23 @@ private Q_SLOTS:
   void beginNew();
   void offerMore();
   void showSmooth();
+  void narrowColours();
+  void plotOverTime();
 
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
   void begin();
   void beginPlace();
   void colourLate();
+  bool watchColour(pqDataRepresentation* shown);
 
   QToolButton* Button;
+  QPushButton* Plot = nullptr;
+  QLabel* Warning = nullptr; // beside the size of cubes
   bool HasLooked = false, WasEmpty = false; // at the last output
   bool IsSmooth = false;
   QPair<int, double> Rough{ 0, 1.0 }; // Compact and Widening without Smooth
+  QMap<pqDataRepresentation*, QString> Coloured; // by which array each picture is coloured
   QString Colour;      // the array that the last output is best coloured by; empty: none
   QList<double> Given; // the iso value that the panel chose last; none: it does not choose
 

@@ -469,6 +469,7 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
         mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
     }
   }
+  next.Warning = vtkSPHTakeText(mcor_describe_estimate(next.Cells));
   this->LookTime.Modified();
   return next;
 }

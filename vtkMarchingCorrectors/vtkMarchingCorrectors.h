@@ -478,8 +478,8 @@ public:
   /**
    * Values that an update with the present properties and input would find: FluidScalarRange,
    * the default iso value (NaN: not known), the number of components of the chosen array (1 for
-   * a dot product), whether there is a free surface, the dimension, EstimatedCells (of all blocks), UsedFluid, and the array that
-   * is contoured if none is chosen. The input is not updated. 0 to 0, 0, or empty: not known,
+   * a dot product), whether there is a free surface, the dimension, EstimatedCells (of all blocks), UsedFluid, the array that
+   * is contoured if none is chosen, and a warning of very many cells. The input is not updated. 0 to 0, 0, or empty: not known,
    * without particles or a scalar. If processes share a run, these are the values of the last
    * update, because one process cannot ask the others without waiting for them.
    */
@@ -491,6 +491,7 @@ public:
   double GetNextCells() { return this->LookAhead().Cells; }
   const char* GetNextFluid() { return this->LookAhead().Fluid.c_str(); }
   const char* GetNextArray() { return this->LookAhead().Array.c_str(); }
+  const char* GetNextWarning() { return this->LookAhead().Warning.c_str(); }
   ///@}
 
 protected:
@@ -537,7 +538,7 @@ private:
     double IsoValue = std::numeric_limits<double>::quiet_NaN();
     int Components = 0, Dimension = 0, FreeSurface = 0;
     double Cells = 0.0;
-    std::string Fluid, Array;
+    std::string Fluid, Array, Warning;
   };
   vtkAhead& LookAhead();
   void WarnOfHugeRun();

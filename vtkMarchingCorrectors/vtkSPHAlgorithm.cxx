@@ -208,11 +208,13 @@ void vtkSPHAlgorithm::Fail(const std::string& message)
 {
   const std::string sentence = this->BlockName + message;
   this->ErrorMessage += (this->ErrorMessage.empty() ? "" : "\n") + sentence;
+  ++this->MessageCount;
   vtkErrorMacro(<< sentence);
 }
 
 void vtkSPHAlgorithm::Warn(const std::string& message)
 {
+  ++this->MessageCount;
   vtkWarningMacro(<< this->BlockName << message);
 }
 
@@ -241,6 +243,7 @@ int vtkSPHAlgorithm::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->ErrorMessage.clear();
+  this->MessageCount = 0;
   this->BlockName.clear();
   this->Warned.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();

@@ -406,9 +406,9 @@ public:
   /**
    * Finds the box of the fluid's particles. It leaves out the few (0.1 %, or 8) that are farther
    * from the others' box than it is long. Collective if processes share a run. False if no
-   * particle is fluid.
+   * particle is fluid. densest: GetNextDensest(), of the particles at hand; may be null.
    */
-  bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
+  bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
 
   ///@{
   /**
@@ -466,6 +466,9 @@ public:
    */
   vtkSPHToldMacro(ErrorMessage);
 
+  /** How many errors and warnings the last run has reported. */
+  vtkGetMacro(MessageCount, int);
+
   /**
    * One array for each number of the last update: "Seconds" (one named component for each phase,
    * for building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the
@@ -504,11 +507,20 @@ public:
    * Defaults of a panel, from the particles as they are now: FindFluidBounds(), or 0 if unknown;
    * whether smoothing lengths must be estimated, because the particles have none by name or as
    * chosen; and the blocks that can be chosen as fluid array, beside point arrays, one a line.
+   * NextDensest: for lines along x, y and z, a point through which the densest one goes.
    */
   double* GetNextBounds() VTK_SIZEHINT(6);
+  double* GetNextDensest() VTK_SIZEHINT(9);
   int GetNextEstimate();
   const char* GetNextBlocks();
   ///@}
+
+  /**
+   * The ranges of colours in which a panel shows point arrays of the output, without walls: for each
+   * array a line of the lowest value, the highest one and the name. They span 98 % of the area, of
+   * the length of lines, or of the points. Empty for blocks, and if processes share a run.
+   */
+  const char* GetColorRanges();
 
   /**
    * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default):
@@ -604,9 +616,11 @@ protected:
   bool IsAborted();
 
   double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  std::string NextBlocks;
+  double NextDensest[9] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  std::string NextBlocks, ColorRanges;
   vtkMultiProcessController* Controller = nullptr;
 
+  int MessageCount = 0;
   std::set<int> Warned;  // kinds of warnings that this run has given
   std::string BlockName; // text before messages about a block of composite data
   vtkSmartPointer<vtkFieldData> RunStatistics;

@@ -9,10 +9,12 @@
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHColorRange.h"
 #include "vtkSPHRun.h"
 #include "vtkSPHSay.h"
 #include "vtkVersionMacros.h"
@@ -21,6 +23,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
 // All processes take part in the run of each block.
@@ -198,7 +201,7 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
 }
 
 // Keeps the lowest values along each axis; every other of what is below 0 as above it.
-bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
+bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);
   run->Begin(particles);
@@ -260,6 +263,43 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
     const double end = *ends[e].lower_bound(*ends[e].rbegin() - longest);
     bounds[e] = e % 2 ? -end : end;
   }
+  for (int a = 0; a < 3 && densest; ++a)
+  {
+    // Columns along this axis, side by side.
+    constexpr int Columns = 16;
+    const int across[2] = { (a + 1) % 3, (a + 2) % 3 };
+    std::vector<std::int64_t> counts(static_cast<std::size_t>(Columns * Columns), 0);
+    const auto width = [bounds](int b) { return (bounds[2 * b + 1] - bounds[2 * b]) / Columns; };
+    for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+    {
+      int column[2] = { 0, 0 };
+      bool isIn = takeFluid(i);
+      for (int k = 0; k < 2 && isIn; ++k)
+      {
+        const double from = x[across[k]] - bounds[2 * across[k]];
+        const double at = width(across[k]) > 0.0 ? from / width(across[k]) : 0.0;
+        isIn = at >= 0.0 && at <= Columns;
+        column[k] = isIn ? std::min(static_cast<int>(at), Columns - 1) : 0;
+      }
+      counts[Columns * column[0] + column[1]] += isIn ? 1 : 0;
+    }
+    // Of those with nearly the most, the one nearest to the middle.
+    const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
+    const auto off = [](int c)
+    { return std::abs(c / Columns - 0.5 * Columns) + std::abs(c % Columns - 0.5 * Columns); };
+    int best = -1;
+    for (int c = 0; c < Columns * Columns; ++c)
+    {
+      const bool isDense = static_cast<double>(counts[c]) >= 0.9 * most;
+      best = isDense && (best < 0 || off(c) < off(best)) ? c : best;
+    }
+    densest[3 * a + a] = 0.5 * bounds[2 * a] + 0.5 * bounds[2 * a + 1];
+    for (int k = 0; k < 2; ++k)
+    {
+      densest[3 * a + across[k]] = bounds[2 * across[k]] +
+        (0.5 + (k == 0 ? best / Columns : best % Columns)) * width(across[k]);
+    }
+  }
   return true;
 }
 
@@ -268,11 +308,49 @@ double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =
     this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
-  if (!particles || !this->FindFluidBounds(particles, this->NextBounds))
+  if (!particles || !this->FindFluidBounds(particles, this->NextBounds, this->NextDensest))
   {
     std::fill_n(this->NextBounds, 6, 0.0);
+    std::fill_n(this->NextDensest, 9, 0.0);
   }
   return this->NextBounds;
+}
+
+double* vtkSPHAlgorithm::GetNextDensest()
+{
+  this->GetNextBounds();
+  return this->NextDensest;
+}
+
+const char* vtkSPHAlgorithm::GetColorRanges()
+{
+  std::ostringstream text;
+  auto* shown = vtkDataSet::SafeDownCast(this->GetOutputDataObject(0));
+  auto* points = vtkPointSet::SafeDownCast(shown);
+  std::vector<bool> areWalls;
+  if (shown && !this->IsShared())
+  {
+    vtkSPHParticlesChoice choice(*this);
+    vtkSPHChoose(choice, points, nullptr, nullptr);
+    vtkPointData* data = shown->GetPointData();
+    vtkDataArray* fluid = data->GetArray(choice.FluidArrayName.c_str());
+    for (vtkIdType i = 0; fluid && points && i < fluid->GetNumberOfTuples(); ++i)
+    {
+      areWalls.push_back(fluid->GetComponent(i, 0) != choice.FluidValue);
+    }
+    const vtkSPHColorRange ranges(shown, areWalls);
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      double range[2];
+      vtkDataArray* array = data->GetArray(i);
+      if (array && array->GetName() && ranges.Find(array, range))
+      {
+        text << range[0] << " " << range[1] << " " << array->GetName() << "\n";
+      }
+    }
+  }
+  this->ColorRanges = text.str();
+  return this->ColorRanges.c_str();
 }
 
 int vtkSPHAlgorithm::GetNextEstimate()

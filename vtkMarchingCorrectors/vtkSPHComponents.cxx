@@ -55,12 +55,13 @@ vtkDataArray* FindArray(
 }
 
 /**
- * Adds the ids of the pieces that stay, as active scalars: most users want to tell pieces apart
- * by colour.
+ * Adds the ids of the pieces that stay, as active scalars if there are several: most users want to
+ * tell pieces apart by colour. Returns them.
  */
-void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
+vtkSmartPointer<vtkIdTypeArray> AddIds(
+  vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers, size_t pieces)
 {
-  vtkNew<vtkIdTypeArray> ids;
+  auto ids = vtkSmartPointer<vtkIdTypeArray>::New();
   ids->SetName(IdName);
   for (const vtkIdType number : numbers)
   {
@@ -70,7 +71,11 @@ void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
     }
   }
   data->AddArray(ids);
-  data->SetActiveScalars(IdName);
+  if (pieces > 1)
+  {
+    data->SetActiveScalars(IdName);
+  }
+  return ids;
 }
 
 /**
@@ -264,6 +269,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     table->AddColumn(column);
     columns[c] = column;
   }
+  std::vector<double> volumes;
   vtkDataArray* listed = mesh->GetFieldData()->GetArray("IsoValues");
   for (size_t i = 0; i < pieces.Pieces.size(); ++i)
   {
@@ -282,7 +288,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     const Content content = filled ? contents[i] : Content();
     const double* b = piece.Bounds;
     const double row[columnCount] = { static_cast<double>(number[i]), iso,
-      piece.Parent >= 0 ? static_cast<double>(number[piece.Parent]) : NoNumber,
+      piece.Parent >= 0 ? static_cast<double>(number[piece.Parent]) : -1.0,
       piece.Closed ? 1.0 : 0.0, piece.Area, has ? piece.Volume : NoNumber, piece.Centre[0],
       piece.Centre[1], piece.Centre[2], b[0], b[1], b[2], b[3], b[4], b[5],
       has ? std::cbrt(6.0 * std::abs(piece.Volume) / vtkMath::Pi()) : NoNumber,
@@ -292,8 +298,9 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     {
       columns[c]->InsertNextValue(row[c]);
     }
+    volumes.push_back(has ? piece.Volume : NoNumber);
   }
-  Numbers numbers = { pieces.PieceOfPoint, pieces.PieceOfTriangle };
+  Numbers numbers = { pieces.PieceOfPoint, pieces.PieceOfTriangle, volumes };
   for (std::vector<vtkIdType>* of : { &numbers.OfPoint, &numbers.OfTriangle })
   {
     for (vtkIdType& piece : *of)
@@ -339,8 +346,14 @@ void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyDa
     vtkSPHTakeTuples(mesh->GetCellData(), cells, output->GetCellData());
     output->GetFieldData()->PassData(mesh->GetFieldData());
   }
-  AddIds(output->GetPointData(), numbers.OfPoint);
-  AddIds(output->GetCellData(), numbers.OfTriangle);
+  AddIds(output->GetPointData(), numbers.OfPoint, numbers.Volumes.size());
+  const auto ids = AddIds(output->GetCellData(), numbers.OfTriangle, numbers.Volumes.size());
+  vtkNew<vtkDoubleArray> volumes;
+  volumes->SetName("ComponentVolume");
+  volumes->SetNumberOfValues(ids->GetNumberOfValues());
+  std::transform(ids->Begin(), ids->End(), volumes->Begin(),
+    [&numbers](vtkIdType id) { return numbers.Volumes[id]; });
+  output->GetCellData()->AddArray(volumes);
 }
 
 std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)

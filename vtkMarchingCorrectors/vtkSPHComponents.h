@@ -6,12 +6,12 @@
  *
  * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that
  * share points are one piece, also across the sides of a period. Its first output is the surface
- * with the point and cell array "ComponentId": 0 is the piece of the largest area, and so on. The
- * second output is a vtkTable with a row for each piece:
+ * with the point and cell array "ComponentId": 0 is the piece of the largest area, and so on; and the
+ * cell array "ComponentVolume", the volume of the cell's piece. The second output is a vtkTable with a row for each piece:
  *
  *     component            its number
  *     iso                  the iso value that it is a surface of; NaN where the surface does not tell
- *     parent               of a cavity, the piece around it; else NaN
+ *     parent               of a cavity, the piece around it; else -1
  *     closed               1 or 0: each edge has triangles on either side
  *     area, volume         volume only of closed pieces; negative for a cavity
  *     x, y, z              centre, of the volume; of open pieces, of the area
@@ -138,6 +138,7 @@ private:
   struct Numbers
   {
     std::vector<vtkIdType> OfPoint, OfTriangle;
+    std::vector<double> Volumes; ///< of the pieces that stay, by number
   };
   Numbers Split(vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const;
   std::vector<Content> Count(const vtkSPHPieces& pieces, vtkPointSet* particles) const;

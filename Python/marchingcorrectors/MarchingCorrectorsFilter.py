@@ -5,6 +5,7 @@
 This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
 import ctypes
+import re
 import sys
 from contextlib import contextmanager, suppress
 from importlib.util import module_from_spec, spec_from_file_location
@@ -75,8 +76,13 @@ NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayNa
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
 
 
+def snake(name):
+    """Returns the name that VTK 9.4 and later give a property in Python: CubeSize becomes cube_size."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
 def with_properties(kind):
-    """Defines SetX, GetX, XOn and XOff."""
+    """Defines SetX, GetX, XOn and XOff, and the property x."""
     for name, (_, convert, is_flag, limits) in PROPERTIES.items():
         def set_it(self, value, name=name, convert=convert, limits=limits):
             value = convert(value)
@@ -91,9 +97,9 @@ def with_properties(kind):
         if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
-    for name in (*NOTHING, "Box", "PeriodicBounds", "Within", "ErrorMessage", "RunStatistics"):
+    for name in (*NOTHING, "Box", "PeriodicBounds", "Within", "ErrorMessage", "MessageCount", "RunStatistics"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
-    for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array"):
+    for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array", "Warning"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in map(camel, QUANTITIES):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
@@ -113,6 +119,9 @@ def with_properties(kind):
     for method in ("SetValue", "GenerateValues"):
         setattr(kind, method, lambda self, *a, method=method: self._change("ContourValues", method, *a))
     kind.SetInputData, kind.GetOutput = kind.SetInputDataObject, lambda self, port=0: self.GetOutputDataObject(port)
+    for name in (*PROPERTIES, *NOTHING, "FreeSurfaceValue", "Box", "PeriodicBounds", "Within"):
+        setter = getattr(kind, "Set" + name, None)
+        setattr(kind, snake(name), property(getattr(kind, "Get" + name), setter))
     return kind
 
 
@@ -132,7 +141,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     MAGNITUDE = -1
     Box, PeriodicBounds, Within = (0.0, 1.0) * 3, (0.0,) * 6, (0.0,) * 6
 
-    def __init__(self):
+    def __init__(self, **properties):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
         vars(self).update(NOTHING)
         for name, (default, *_) in PROPERTIES.items():
@@ -141,7 +150,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
         self._kept, self._made = {}, {}  # These are data sets made of the input, and arrays of sums over neighbours.
-        self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
+        self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName, self.MessageCount = [], [], "", "", 0
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._in_run = self._release = False
@@ -150,6 +159,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._ahead, self._look_time = None, vtkTimeStamp()
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
+        for name, value in properties.items():
+            if not hasattr(type(self), name):
+                raise AttributeError(f"vtkMarchingCorrectors has no property '{name}'")
+            setattr(self, name, value)
 
     # -- as every poly data algorithm --
 
@@ -280,6 +293,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                        "FreeSurface": 0, "Fluid": "", "Array": ""}
         for each in sets_of(self._join(self._keep(take_vertices, data))):
             self._look_at(each, self._ahead)
+        warning = take_sentence(lib.mcor_describe_estimate(self._ahead["Cells"]))
+        self._ahead["Warning"] = in_panel(warning) if warning else ""
         self._look_time.Modified()
         return self._ahead
 
@@ -327,7 +342,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def RequestData(self, request, inInfo, outInfo):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
-        self.ErrorMessage, self.BlockName, self._warned = "", "", set()
+        self.ErrorMessage, self.BlockName, self._warned, self.MessageCount = "", "", set(), 0
         self.RunStatistics = vtkFieldData()
         taken = self._keep(take_vertices, data)
         self._warn_once("mesh", describe_mesh(data, taken))
@@ -569,6 +584,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._say(sentence, "Error")
 
     def _say(self, sentence, kind):
+        self.MessageCount += 1
         if not vtkObject.GetGlobalWarningDisplay():
             return
         sentence = in_panel(sentence)

@@ -33,7 +33,7 @@ class Components(CommandLineTest):
     def test_two_blocks(self):
         large, small = self.pieces()
         self.assertEqual([large["component"], small["component"]], ["0", "1"])
-        self.assertEqual([large["parent"], large["closed"], small["closed"]], ["", "1", "1"])
+        self.assertEqual([large["parent"], large["closed"], small["closed"]], ["-1", "1", "1"])
         for row, side in ((large, 1.0), (small, 0.5)):
             self.assertAlmostEqual(float(row["volume"]), side ** 3, delta=0.1 * side ** 2)
         # The 8 corner particles are missing, because less than half of the space around them is filled.
@@ -41,7 +41,7 @@ class Components(CommandLineTest):
         self.assertAlmostEqual(float(large["mass"]), 992, delta=1e-6)
         self.assertEqual([round(float(small[v]), 9) for v in ("vx", "vy", "vz")], [4, 5, 6])
         text = self.output.read_text()
-        self.assertEqual(text.count('Name="ComponentId"'), 2)
+        self.assertEqual([text.count(f'Name="{name}"') for name in ("ComponentId", "ComponentVolume")], [2, 1])
 
     def test_small_pieces_are_left_out(self):
         whole = len(self.pieces())

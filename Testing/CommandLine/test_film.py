@@ -88,7 +88,7 @@ class Film(CommandLineTest):
     def test_time_step(self):
         paths = self.write_steps(3)
         self.run_good(*paths, self.film, *FREE, "--times", "0.5",
-                      says="warning: .*film_0000.vtp .*" + says("STEP_MOVED", "moved 0.10", "'Velocity'", "--time-step"))
+                      says="warning: .*film_0000.vtp .*" + says("STEP_MOVED", "--time-step 0.1,", "moved 0.10", "'Velocity'"))
         files.write_pvd(self.directory / "steps.pvd", enumerate(path.name for path in paths))
         self.assertRegex(self.make("steps.pvd", "--times", "0.5").stderr, says("STEP_MOVED", "moved 0.10"))
         self.good(*paths, "--time-step", "0.1", "--times", "0.05,0.2")

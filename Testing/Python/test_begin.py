@@ -38,6 +38,20 @@ class TestPlaces(unittest.TestCase):
         gauge.SetInputData(block(numpy.concatenate([near, [[0, 0, 2.5]]])))
         self.assertAlmostEqual(gauge.GetNextBounds()[5], 2.5)
 
+    def test_densest(self):
+        """A line goes through the pool in a corner, not through the air in the middle of all, nor through walls."""
+        pool, tower = lattice(40, 40, 4), lattice(4, 4, 20) + [3.6, 0, 0]
+        walls = numpy.concatenate([lattice(4, 4, 60)] * 9) + [0, 3.6, 0]
+        points = numpy.concatenate([pool, tower, walls])
+        gauge = vtkSPHGauge()
+        gauge.SetFluidArrayName("Type")
+        gauge.SetInputData(block(points, Type=(numpy.arange(len(points)) >= len(points) - len(walls)).astype(float)))
+        places = numpy.reshape(gauge.GetNextDensest(), (3, 3))
+        for axis, low, high in ((0, (0, 0, 0), (3.9, 3.9, 0.3)), (1, (0, 0, 0), (3.9, 3.9, 0.3)), (2, (3.6, 0, 0), (3.9, 0.3, 1.9))):
+            across = [a for a in range(3) if a != axis]
+            place, low, high = places[axis][across], numpy.array(low)[across], numpy.array(high)[across]
+            self.assertTrue((place > low - 0.1).all() and (place < high + 0.1).all(), (axis, places))
+
     def test_plane(self):
         """Particles in a plane have only one slice, and a volume of one layer."""
         for axis in range(3):
@@ -86,8 +100,34 @@ class TestColours(unittest.TestCase):
             pieces = vtkSPHComponents()
             pieces.SetInputData(1, inputs[1])
             found, told = run(pieces, inputs[0])
-            self.assertEqual((told, active(found)), ([], "ComponentId"))
+            # There is one piece, whose number would be all colours.
+            self.assertEqual((told, active(found)), ([], "Velocity"))
             self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1912)
+
+
+    def ranges(self, filter_):
+        lines = [line.split(" ", 2) for line in filter_.GetColorRanges().splitlines()]
+        return {name: (float(low), float(high)) for low, high, name in lines}
+
+    def test_ranges(self):
+        """A fast drop, a sharp edge, and walls do not decide the colours of the rest."""
+        water, drop = lattice(20, 20, 20), lattice(2, 2, 2) + [0, 0, 5]
+        heat = numpy.concatenate([water[:, 0], numpy.full(8, 500.0)])
+        particles = block(numpy.concatenate([water, drop]), Heat=heat)
+        surface = vtkMarchingCorrectors()
+        self.assertEqual(surface.GetColorRanges(), "")
+        output, _ = run(surface, particles, FreeSurface=1, ComputeCurvature=1)
+        self.assertGreater(values_of(output, "Heat").max(), 400)
+        found = self.ranges(surface)
+        low, high = found["Heat"]
+        self.assertTrue(-0.01 < low < 0.1 and 1.8 < high < 2, found)
+        curvature = values_of(output, "MeanCurvature")
+        self.assertLess(found["MeanCurvature"][1] - found["MeanCurvature"][0], 0.8 * (curvature.max() - curvature.min()))
+        walls = (water[:, 2] < 0.25).astype(float)
+        derive = vtkSPHDerivatives()
+        run(derive, block(water, Type=walls), FluidArrayName="Type")
+        # Walls have a vorticity of 0; it is 2 in all of the fluid.
+        self.assertTrue(numpy.allclose(self.ranges(derive)["Vorticity"], 2, atol=1e-3), self.ranges(derive)["Vorticity"])
 
 
 class TestForgotten(unittest.TestCase):
@@ -99,6 +139,11 @@ class TestForgotten(unittest.TestCase):
         table = pieces.GetTable()
         names = [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())]
         self.assertEqual((told, names[-1], table.GetNumberOfRows()), ([], "diameter", 1))
+        lost = vtkMarchingCorrectors()
+        _, told = run(lost, block(), FreeSurface=1, Device="no such device")
+        self.assertEqual((len(told), lost.GetMessageCount()), (1, 1))
+        run(lost, block(), Device="")
+        self.assertEqual(lost.GetMessageCount(), 0)
         _, told = run(vtkSPHComponents(), block())
         self.assertEqual(len(told), 1)
         self.assertRegex(told[0], "SPH Contour")

@@ -212,7 +212,8 @@ class TestComponents(MeterTest):
             closed, sign = r != 0.4, -1 if parent is not None else 1
             self.assertEqual((row["component"], row["closed"]), (i, closed))
             self.assertAlmostEqual(row["area"] / (4 * math.pi * r * r), 1, delta=0.01)
-            for name, value in (("parent", parent), ("particles", held), ("mass", held and 2 * held)):
+            self.assertEqual(row["parent"], -1 if parent is None else parent)
+            for name, value in (("particles", held), ("mass", held and 2 * held)):
                 self.assertTrue(math.isnan(row[name]) if value is None else row[name] == value, (i, name))
             if closed:
                 self.assertAlmostEqual(row["volume"] / (sign * 4 / 3 * math.pi * r ** 3), 1, delta=0.01)
@@ -252,6 +253,8 @@ class TestComponents(MeterTest):
         corners = vtk_to_numpy(output.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         self.assertEqual(len(corners), surface.GetNumberOfCells())
         self.assertTrue((of_point[corners] == of_cell[:, None]).all())
+        volumes = vtk_to_numpy(output.GetCellData().GetArray("ComponentVolume"))
+        self.assertTrue(numpy.array_equal(volumes, numpy.array([row["volume"] for row in rows])[of_cell], equal_nan=True))
         self.assertIsNotNone(output.GetPointData().GetNormals())
         connectivity = vtkPolyDataConnectivityFilter()
         connectivity.SetInputData(output)

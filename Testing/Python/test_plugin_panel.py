@@ -20,6 +20,7 @@ PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
 FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
 PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
+GAUGE = (FILTERS[0], "activate", "SPHGauge")
 ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # Widgets that are not shown do not become grey.
 APPLY = (f"{PANEL}/Accept", "activate", "")
 DELETE = (f"{PANEL}/Delete", "activate", "")
@@ -103,9 +104,10 @@ def first_apply(folder):
         change("InteractiveBox/scaleX", "set_string", "1.5"), PAUSE,
         shown("sph_in_use/Values/NextCells", "text", "75211.7"),
         change("CubeSize/DoubleLineEdit0", "set_string", "0.0003"), PAUSE,
-        shown("sph_in_use/Values/NextCells", "text", "4.57686e+09: this may take minutes and much memory"),
+        shown("sph_in_use/Values/NextCells", "text", "4.57686e+09"),
+        shown("CubeSizeFactor/Warning", "visible", "true"),
         change("CubeSize/DoubleLineEdit0", "set_string", "0"), PAUSE,
-        shown("sph_in_use/Values/NextCells", "text", "75211.7"),
+        shown("sph_in_use/Values/NextCells", "text", "75211.7"), shown("CubeSizeFactor/Warning", "visible", "false"),
         APPLY, *save_state(f"{folder}/applied.pvsm"),
     ]
 
@@ -150,6 +152,30 @@ def later_applies(folder):
     ]
 
 
+def plot_over_time(folder):
+    """One button draws the level of a gauge at all times, and nothing else."""
+    return [DELETE, PAUSE, GAUGE, PAUSE, APPLY, PAUSE, change("sph_in_use/Plot", "activate", ""), PAUSE, *save_state(f"{folder}/chart.pvsm")]
+
+
+def check_chart(file):
+    state = xml.parse(file)
+    series = [e.get("value") for e in state.findall(".//Proxy[@type='XYChartRepresentation']/Property[@name='SeriesVisibility']/Element")]
+    drawn = {name for name, visible in zip(series[::2], series[1::2]) if visible == "1"}
+    assert len(series) > 10 and len(drawn) == 1 and drawn.pop().startswith("last"), series
+    gauge = {p.get("name"): [float(e.get("value")) for e in p.findall("Element")] for p in
+             state.findall(".//Proxy[@type='SPHGauge']/Property") if p.get("name") in ("Point1", "Point2")}
+    # It stands in the water, which is at one side of the tank, and is upright.
+    assert gauge["Point1"][::2] == gauge["Point2"][::2] and gauge["Point1"][1] < 0 < gauge["Point2"][1], gauge
+
+
+def check_colours(file):
+    """The colours of the speed are those of most of the area, not of the fastest drop."""
+    state = xml.parse(file)
+    colours = state.find(".//ProxyCollection[@name='lookup_tables']/Item[@name='Velocity.PVLookupTable']").get("id")
+    points = [float(e.get("value")) for e in state.findall(f".//Proxy[@id='{colours}']/Property[@name='RGBPoints']/Element")]
+    assert 0 < points[0] < 0.5 and 2 < points[-4] < 4, points
+
+
 # The names of properties that the panel only shows begin like this.
 SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "SurfaceMeasures")
 
@@ -187,12 +213,14 @@ def check_states(states):
 
 def main(paraview):
     with tempfile.TemporaryDirectory() as folder:
-        run(paraview, empty_first(folder) + first_apply(folder) + later_applies(folder), folder)
+        run(paraview, empty_first(folder) + first_apply(folder) + later_applies(folder) + plot_over_time(folder), folder)
+        check_chart(f"{folder}/chart.pvsm")
+        check_colours(f"{folder}/applied.pvsm")
         second = xml.parse(os.path.join(folder, "second.pvsm"))
         names = [item.get("name") for item in second.findall(".//ProxyCollection[@name='sources']/Item")]
         assert sorted(name for name in names if "SPH" in name) == ["SPHContour1", "SPHContour2"], names
         check_states({name[:-5]: properties(os.path.join(folder, name))
-                      for name in os.listdir(folder) if name.endswith(".pvsm")})
+                      for name in os.listdir(folder) if name.endswith(".pvsm") and "chart" not in name})
     print("the panel works")
 
 

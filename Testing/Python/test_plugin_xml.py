@@ -131,7 +131,7 @@ class TestPluginXml(unittest.TestCase):
         """Properties that show the last update have the types and sizes of their getters."""
         empty = marchingcorrectors.vtkMarchingCorrectors()
         information = [e for e in self.main if e.get("information_only")]
-        self.assertEqual(len(information), 19)
+        self.assertEqual(len(information), 22)
         for element in information:
             with self.subTest(element.get("name")):
                 self.assertEqual(element.get("command"), "Get" + element.get("name"))

@@ -195,6 +195,7 @@ class TestTemporal(unittest.TestCase):
         numbered = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1)})
         warning, = self.told(numbered, 0.5)
         self.assertIn("0.1003", warning)  # tan(0.1) / 0.1 times what the velocities say
+        self.assertIn("Choose Time Scale 0.1, or", warning)  # The remedy comes first, as a window cuts lines off.
         self.assertGreater(self.farthest(numbered.GetOutput(), 0.05), 1e-3)
         self.assertEqual(self.told(numbered, 0.6), [])  # said once
         self.assertEqual(self.told(numbered, 0.5, TimeScale=0.1), [])

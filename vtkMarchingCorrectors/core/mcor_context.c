@@ -27,14 +27,15 @@ void mcor_spell_out(mcor_options* options)
 {
   if (options && options->smooth)
   {
-    options->compact = 1;
+    options->compact |= !options->filled; /* a region needs the points on all edges */
     options->widen = options->widen == 1 ? 2 : options->widen;
   }
 }
 
 mcor_status mcor_check_spelled_out(mcor_context* context, const mcor_options* options)
 {
-  MCOR_FAIL_IF(options->smooth && (!options->compact || options->widen == 1), context,
+  MCOR_FAIL_IF(options->smooth &&
+      ((!options->compact && !options->filled) || options->widen == 1), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(SMOOTH_NOT_SPELLED_OUT));
   return MCOR_OK;
 }

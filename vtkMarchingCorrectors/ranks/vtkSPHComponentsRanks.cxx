@@ -191,7 +191,8 @@ std::string vtkSPHComponents::SplitDistributed(
   const Numbers found = this->Split(whole, all, table);
   vtkNew<vtkIdTypeArray> points, triangles;
   const Numbers own = { Return(ranks, mesh->GetPointData(), found.OfPoint, points),
-    Return(ranks, mesh->GetCellData(), found.OfTriangle, triangles) };
+    Return(ranks, mesh->GetCellData(), found.OfTriangle, triangles),
+    ranks.Gather(found.Volumes).front() };
   Keep(mesh, own, output);
   const auto renumber = [](vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
   {

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iomanip>
 #include <sstream>
 #include <utility>
 
@@ -340,8 +341,16 @@ void vtkSPHTemporalPair::CheckVelocities()
   }
   if (expected > 0.0 && !(moved >= 0.5 * expected && moved <= 2.0 * expected))
   {
-    this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), Text(first.Time).c_str(),
-      Text(second.Time).c_str(), Text(moved / expected).c_str(), this->VelocityName.c_str()));
+    const double ratio = moved / expected;
+    std::ostringstream remedy;
+    if (ratio > 0.0)
+    {
+      remedy << std::setprecision(3) << "Choose {time_scale " << this->TimeScale * ratio
+             << "}, or other times. ";
+    }
+    this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), remedy.str().c_str(),
+      Text(first.Time).c_str(), Text(second.Time).c_str(), Text(ratio).c_str(),
+      this->VelocityName.c_str()));
     this->FollowsVelocities = false;
     this->Ratio = moved / expected;
   }

@@ -14,6 +14,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetMapper.h"
+#include "vtkFieldData.h"
 #include "vtkLightKit.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -28,6 +29,7 @@
 #include "vtkScalarBarActor.h"
 #include "vtkTextProperty.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
 #include "vtkVector.h"
 #include "vtkVectorOperators.h"
 #include "vtkWindowToImageFilter.h"
@@ -35,6 +37,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include <dlfcn.h>
 
@@ -209,9 +213,12 @@ public:
     }
     if (!colors.GetName().empty())
     {
-      this->ShowBar(colors);
+      this->ShowBar(colors, data);
     }
-    const Vector up = AxisOf(this->Options.Up);
+    // DualSPHysics, whose particles have these numbers, has z upwards.
+    const bool isUpright = frame->GetPointData()->HasArray("Idp");
+    const Vector up =
+      AxisOf(!this->Options.Up.empty() ? this->Options.Up : isUpright ? "z" : "y");
     const std::vector<double>& given = this->Options.View;
     PlaceCamera(this->Renderer,
       !given.empty() ? MakeView(up, { given[0], given[1], given[2] })
@@ -290,28 +297,68 @@ private:
     }
   }
 
-  /// Shows the colour bar beside the picture, in a place of its own.
-  void ShowBar(const ColorScale& colors)
+  /// Makes a legend of the bands that a region is filled with, the lowest one first.
+  static vtkSmartPointer<vtkLookupTable> MakeSteps(const ColorScale& colors, vtkDataSet* data)
   {
+    vtkDataArray* bands = colors.CellArrayOf(data);
+    vtkDataArray* values = data->GetFieldData()->GetArray("IsoValues");
+    if (colors.GetName() != "BandValue" || !bands || !values)
+    {
+      return nullptr;
+    }
+    std::set<double> begins;
+    for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i)
+    {
+      begins.insert(values->GetComponent(i, 0));
+    }
+    const auto text = [](double value) { return vtkVariant(value).ToString(); };
+    auto steps = vtkSmartPointer<vtkLookupTable>::New();
+    steps->SetNumberOfTableValues(static_cast<vtkIdType>(begins.size()));
+    steps->IndexedLookupOn();
+    for (auto at = begins.begin(); at != begins.end(); ++at)
+    {
+      const auto next = std::next(at);
+      const std::string label = next == begins.end() ? "above " + text(*at)
+        : at == begins.begin()                       ? "below " + text(*next)
+                                                     : text(*at) + " to " + text(*next);
+      double color[3];
+      colors.GetTable()->GetColor(*at, color);
+      steps->SetTableValue(steps->SetAnnotation(*at, label), color[0], color[1], color[2]);
+    }
+    return steps;
+  }
+
+  /// Shows the colour bar beside the picture, in a place of its own.
+  void ShowBar(const ColorScale& colors, vtkDataSet* data)
+  {
+    const vtkSmartPointer<vtkLookupTable> steps = MakeSteps(colors, data);
     this->Renderer->SetViewport(0.0, 0.0, 1.0 - WidthOfBar, 1.0);
     this->Bars->SetViewport(1.0 - WidthOfBar, 0.0, 1.0, 1.0);
     this->Bars->SetBackground(1.0, 1.0, 1.0);
     this->Bars->RemoveAllViewProps();
     vtkNew<vtkScalarBarActor> bar;
-    bar->SetLookupTable(colors.GetTable());
+    bar->SetLookupTable(steps ? steps.Get() : colors.GetTable());
     bar->SetTitle(colors.GetName().c_str());
     bar->SetNumberOfLabels(6);
     bar->SetVerticalTitleSeparation(14);
-    bar->SetLabelFormat("%-#.4g");
+    bar->SetLabelFormat("%-.4g");
     bar->SetUnconstrainedFontSize(true);
     bar->SetPosition(0.1, 0.08);
     bar->SetWidth(0.8);
     bar->SetHeight(0.84);
     bar->SetBarRatio(0.25);
-    for (vtkTextProperty* text : { bar->GetLabelTextProperty(), bar->GetTitleTextProperty() })
+    if (steps) // their words stand beyond the bar's width
+    {
+      bar->SetTextPositionToPrecedeScalarBar();
+      bar->SetPosition(0.16, 0.08);
+      bar->SetWidth(0.24);
+      bar->SetBarRatio(0.6);
+    }
+    for (vtkTextProperty* text : { bar->GetLabelTextProperty(), bar->GetTitleTextProperty(),
+           bar->GetAnnotationTextProperty() })
     {
       text->SetColor(0.0, 0.0, 0.0);
-      text->SetFontSize(15);
+      text->SetFontSize(steps ? 13 : 15);
       text->ItalicOff();
       text->ShadowOff();
     }

@@ -44,7 +44,7 @@ struct PictureOptions
                                   ///< film
   std::string ColorBy;            ///< an array of the data that is shown; empty: chosen
   std::vector<double> ColorRange; ///< lowest and highest value; empty: the array's
-  std::string Up = "y";           ///< axis, or -axis, that points upwards
+  std::string Up;                 ///< axis, or -axis, that points upwards; empty: chosen
   std::vector<double> View;       ///< direction from the shown data to the eye; empty: chosen
 };
 

@@ -9,6 +9,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkPointData.h"
+#include "vtkSPHColorRange.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -18,13 +19,13 @@
 namespace
 {
 
-/// Nine of the colours of viridis, by S. van der Walt and N. Smith: evenly brighter, also in grey,
-/// and for the colour-blind.
+/// Blue, green and a pale yellow: evenly brighter, also in grey, and light enough for shading to be
+/// seen on what is slow.
 constexpr int StopCount = 9;
-const double Stops[StopCount][3] = { { 0.267, 0.005, 0.329 }, { 0.279, 0.175, 0.483 },
-  { 0.230, 0.322, 0.546 }, { 0.173, 0.449, 0.558 }, { 0.128, 0.567, 0.551 },
-  { 0.158, 0.684, 0.502 }, { 0.369, 0.789, 0.383 }, { 0.678, 0.864, 0.190 },
-  { 0.993, 0.906, 0.144 } };
+const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.690 },
+  { 0.210, 0.530, 0.740 }, { 0.270, 0.620, 0.760 }, { 0.370, 0.710, 0.740 },
+  { 0.510, 0.790, 0.690 }, { 0.670, 0.860, 0.630 }, { 0.830, 0.920, 0.600 },
+  { 0.980, 0.970, 0.660 } };
 
 }
 
@@ -90,6 +91,10 @@ void ColorScale::Include(vtkDataSet* data)
   if (this->IsGiven || !(range[0] <= range[1]))
   {
     return;
+  }
+  if (array == this->ArrayOf(data))
+  {
+    vtkSPHColorRange(data).Find(array, range);
   }
   const double* old = this->Table->GetTableRange();
   const double low = this->HasRange ? std::min(range[0], old[0]) : range[0];

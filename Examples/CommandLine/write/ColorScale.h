@@ -22,7 +22,7 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Widens the range by the values of this data set, unless a range was given: a film's colours
+  /// Widens the range by the values of most of this data set's area, unless a range was given: a film's colours
   /// cover all steps so far. Throws std::runtime_error if the data set has points but no such
   /// array.
   void Include(vtkDataSet* data);

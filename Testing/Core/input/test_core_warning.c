@@ -105,6 +105,18 @@ static void test_slots(void** state)
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
                         wide = { .constant = 2.1 }, far_off = { .constant = 0.0013 };
 
+/* Moves every other particle close to the one before it, as near as particles of a gas may be. */
+static void pair_up(particle_set* set)
+{
+  for (int64_t i = 3; i + 2 < 3 * set->count; i += 6)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      set->position[i + a] = set->position[i - 3 + a] + (a == 0 ? 0.3 : 0);
+    }
+  }
+}
+
 static void test_neighbours(void** state)
 {
   SILENT((void)call);
@@ -115,6 +127,7 @@ static void test_neighbours(void** state)
   SILENT(call.input.estimate_smoothing_length = 1);
   SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
   SILENT(call.options.sph_kernel = MCOR_WENDLAND_C6; call.input.smoothing_length = wide);
+  SILENT(pair_up(&call.set)); /* the number of neighbours is a usual one */
   WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "quartic|60 to 200|1 to 1.7|wendland",
          call.options.sph_kernel = MCOR_QUARTIC_SPLINE;
          call.input.smoothing_length = wide);
@@ -124,13 +137,17 @@ static void test_neighbours(void** state)
   WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.65|not the support radius",
          call.input.smoothing_length_is_support_radius = 1;
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.65|unit of the positions",
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
+    "is 0.65|unit of the positions; {estimate_smoothing_length} and {volume computed}",
          call.input.smoothing_length = half;
          call.options.vertex_threshold = 0);
   WARNED(
     MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
     "1 neighbours|no other particle|unit of the positions", call.input.smoothing_length = far_off;
     call.options.cube_size = 1; call.options.node_threshold = 0; call.options.vertex_threshold = 0);
+  /* One sentence tells the cause of an empty surface. */
+  WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.0013", call.input.smoothing_length = far_off;
+         call.options.cube_size = 1);
   WARNED(MCOR_WARN_NEIGHBOURS, VOLUMES_TOO_LARGE, "{volume}",
     call.input.volume = (mcor_array){ .constant = 1000 });
   WARNED(MCOR_WARN_NEIGHBOURS, ALL_AT_ONE_POINT, "1000",
@@ -208,7 +225,8 @@ static void test_precision(void** state)
 {
   WARNED(MCOR_WARN_PRECISION, GRID_TOO_LONG_FOR_SINGLE, "{precision double}",
          call.options.level_limit = MCOR_CUBE_LEVELS - 1;
-         call.set.smoothing_length[5] = 1.3 / 4000);
+         call.set.smoothing_length[5] = 1.3 / 40000);
+  SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 4000);
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.options.precision = MCOR_FLOAT64;
          call.set.smoothing_length[5] = 1.3 / 4000);
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 100);

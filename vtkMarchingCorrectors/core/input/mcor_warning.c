@@ -64,10 +64,12 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
   const bool wendland = mcor_is_wendland(kernel);
   const bool few = h < MCOR_LEAST_RATIO * spacing || spacing == 0;
   const double near = h / (spacing > 0 ? spacing : h), found = n->neighbours_median / cube;
-  const bool many = near > MCOR_SHEET_RATIO
-    ? found > (plane ? MCOR_ROW_NEIGHBOURS : MCOR_SHEET_NEIGHBOURS)
-    : near > (wendland ? MCOR_MOST_RATIO_WENDLAND : MCOR_MOST_RATIO) &&
-      found > (plane ? MCOR_MANY_IN_PLANE : MCOR_MANY_NEIGHBOURS);
+  const char* usual = mcor_kernel_of(kernel)->neighbours[plane];
+  const bool many = n->neighbours_median > atof(strrchr(usual, ' ')) &&
+    (near > MCOR_SHEET_RATIO
+        ? found > (plane ? MCOR_ROW_NEIGHBOURS : MCOR_SHEET_NEIGHBOURS)
+        : near > (wendland ? MCOR_MOST_RATIO_WENDLAND : MCOR_MOST_RATIO) &&
+          found > (plane ? MCOR_MANY_IN_PLANE : MCOR_MANY_NEIGHBOURS));
   const bool unusual = !s->input->estimate_smoothing_length && (few || many);
   if (n->fluid_particles < MCOR_FEW_PARTICLES || !(unusual || n->filled_median > MCOR_MOST_FILLED))
   {
@@ -84,7 +86,8 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
   const bool is_radius = s->input->smoothing_length_is_support_radius;
   const char* why = few && is_radius ? "Perhaps the array holds the smoothing length, not the "
                                        "support radius, or is not in the unit of the positions."
-    : few || is_radius ? "Perhaps the smoothing length is not in the unit of the positions."
+    : few || is_radius ? "Perhaps the smoothing length is not in the unit of the positions; "
+                         "{estimate_smoothing_length} and {volume computed} take both from these."
                        : "Perhaps the array holds the support radius (then use "
                          "{smoothing_length_is_support_radius}), or is not in the unit of the "
                          "positions.";
@@ -96,7 +99,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
       h / spacing, spacing);
   }
   return mcor_say(MCOR_SAY(NEIGHBOURS_UNUSUAL), n->neighbours_median, h, times,
-    mcor_sph_kernel_name(kernel), mcor_kernel_of(kernel)->neighbours[plane], wendland ? 2.2 : 1.7,
+    mcor_sph_kernel_name(kernel), usual, wendland ? 2.2 : 1.7,
     why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
@@ -283,9 +286,9 @@ static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
                  "{node_threshold 0} and {vertex_threshold 0}.");
 }
 
-/* A share of the smallest smoothing length: residuals are then off by about as much of the
- * range. */
-#define MCOR_MOST_POSITION_ERROR 5e-6
+/* A share of the smallest smoothing length. Nobody sees less, and where the field is off by more than
+ * its tolerance, another warning says so. */
+#define MCOR_MOST_POSITION_ERROR 1e-4
 
 /* A share of the cube size; less where the grid is short. */
 #define MCOR_LONG_GRID_ERROR 1e-6
@@ -336,6 +339,21 @@ static mcor_message mcor_warn_far(const mcor_suspicion* s)
     : mcor_say(MCOR_SAY(PARTICLES_FAR), (long long)n->far_particles, first, x[0], x[1], x[2]);
 }
 
+/* Returns whether another warning has named the cause of what this one would say. */
+static bool mcor_is_explained(mcor_warning warning, const mcor_suspicion* s)
+{
+  const bool follows = warning == MCOR_WARN_TRIMMED || warning == MCOR_WARN_PRECISION ||
+    warning == MCOR_WARN_TOLERANCE || warning == MCOR_WARN_FAR;
+  mcor_message cause = follows ? mcor_warn_neighbours(s) : MCOR_NO_MESSAGE;
+  if (!cause.text && warning == MCOR_WARN_TOLERANCE)
+  {
+    cause = mcor_warn_precision(s);
+  }
+  const bool is_explained = cause.text != NULL;
+  mcor_free_message(&cause);
+  return is_explained;
+}
+
 mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
@@ -348,7 +366,8 @@ mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input
   {
     return MCOR_NO_MESSAGE;
   }
-  return checks[warning](&(mcor_suspicion){ input, options, surface });
+  const mcor_suspicion suspicion = { input, options, surface };
+  return mcor_is_explained(warning, &suspicion) ? MCOR_NO_MESSAGE : checks[warning](&suspicion);
 }
 
 mcor_message mcor_describe_unused_type(

@@ -21,6 +21,7 @@
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMArrayListDomain.h"
+#include "vtkSMChartSeriesSelectionDomain.h"
 #include "vtkSMDocumentation.h"
 #include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMInputProperty.h"
@@ -42,6 +43,7 @@
 #include <QComboBox>
 #include <QFormLayout>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QSignalBlocker>
@@ -164,6 +166,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     this->Plot->setToolTip("Draws a chart of the level, or of the volume flux, at all times.");
     all->insertWidget(0, this->Plot);
     this->connect(this->Plot, SIGNAL(clicked()), SLOT(plotOverTime()));
+    vtkSMChartSeriesSelectionDomain::AddSeriesVisibilityDefault("^time( |$)", false);
   }
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
@@ -230,6 +233,7 @@ void pqSPHInUse::beginNew()
 {
   vtkSMProxy* filter = this->proxy();
   this->offerMore();
+  this->showNotGiven();
   auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   if (this->Plot && item)
   {
@@ -379,6 +383,33 @@ void pqSPHInUse::offerMore()
     arrays->IsInDomain("vz", at) && !arrays->IsInDomain("Velocity", at))
   {
     offer("SelectInputScalars", "Velocity");
+  }
+}
+
+// A number of 0 that means "not given" is shown as that, in grey, until a person clicks into its field.
+void pqSPHInUse::showNotGiven()
+{
+  QWidget* panel = this->parentWidget();
+  for (const char* name : { "SmoothingLength", "ParticleVolume", "Mass", "Density", "CubeSize" })
+  {
+    auto* field = panel ? panel->findChild<QWidget*>(name) : nullptr;
+    auto* edit = field ? field->findChild<QLineEdit*>() : nullptr;
+    if (!edit)
+    {
+      continue;
+    }
+    edit->setPlaceholderText("not given");
+    const auto hide = [edit]
+    {
+      if (edit->text() == "0" && !edit->hasFocus())
+      {
+        const QSignalBlocker block(edit);
+        edit->clear();
+      }
+    };
+    this->connect(edit, &QLineEdit::textChanged, edit, hide);
+    this->connect(edit, &QLineEdit::editingFinished, edit, hide);
+    hide();
   }
 }
 

@@ -54,6 +54,7 @@ private Q_SLOTS:
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
   void begin();
+  void showNotGiven();
   void beginPlace();
   void colourLate();
   bool watchColour(pqDataRepresentation* shown);

@@ -703,10 +703,22 @@ class Picture(CommandLineTest):
         self.assertGreater(len(hues(several, slice(0, 1100))), 1)
         self.assertGreater(len(hues(several, slice(1130, 1165))), 2)
 
+    def test_bands(self):
+        """Bands have a legend of as many steps, the lowest first. z is upwards where particles are those of DualSPHysics."""
+        plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
+        arrays = {name: [values[i] for i in plane] for name, values in self.arrays.items() if name in ("Radius", "SmoothingLength")}
+        files.write_vtp(self.input, [self.points[i] for i in plane], arrays)
+        rows = self.picture("s.vtp", "--scalar", "Radius", "--iso=-1,0.2,0.3,0.4", "--filled")[2]
+        steps = list(dict.fromkeys(row[1168] for row in rows if max(row[1168]) - min(row[1168]) > 40))
+        self.assertEqual(len(steps), 4)
+        self.assertEqual(sorted(steps, key=lambda color: color[1]), steps)
+        files.write_vtp(self.input, self.points, {**self.arrays, "Idp": list(range(len(self.points)))})
+        self.assertEqual(self.picture("s.vtp", "--free-surface"), self.picture("s.vtp", "--free-surface", "--up", "z"))
+
     def test_slice(self):
-        """A slice is seen straight on: large values are yellow, small ones violet, and places without fluid white."""
+        """A slice is seen straight on: large values are yellow, small ones blue, and places without fluid white."""
         rows = self.picture("s.vti", "--slice", "z=0", "--color-by", "Radius", "--resolution", "101")[2]
-        self.assertGreater(rows[400][556][2], rows[400][556][0])  # The middle is violet.
+        self.assertGreater(rows[400][556][2], rows[400][556][0])  # The middle is blue.
         drawn = [x for x in range(1100) if max(rows[400][x]) - min(rows[400][x]) > 60]
         self.assertGreater(rows[400][drawn[-1] - 3][1], rows[400][556][1] + 60)
         self.assertEqual(rows[5][556], (255, 255, 255))

@@ -177,7 +177,7 @@ def check_colours(file):
 
 
 # The names of properties that the panel only shows begin like this.
-SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "SurfaceMeasures")
+SHOWN = ("Next", "Used", "Estimated", "ColorRanges", "MessageCount", "FluidScalarRange", "Statistics", "SurfaceMeasures")
 
 
 def properties(file):

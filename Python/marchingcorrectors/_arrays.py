@@ -284,6 +284,14 @@ def number(name, kind, value):
     return convert(int, name, value)
 
 
+def values_of(view, count):
+    """Returns a copy of the numbers, (count,), of a mcor_array, or its constant; None if it is not given."""
+    if not view.data:
+        return view.constant or None
+    kind = next(dtype for dtype, number in FLOATS.items() if number == view.type)
+    return np.frombuffer((ctypes.c_char * (count * kind.itemsize)).from_address(view.data), kind).copy()
+
+
 def take(pointer, shape):
     """Returns a copy of the core's array that NumPy owns, or None if there is none."""
     if not pointer:

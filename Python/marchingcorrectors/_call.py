@@ -15,7 +15,7 @@ import numpy as np
 from . import _structs as c
 from ._arrays import (ABSENT, QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
 from ._context import Context, default_context
-from ._find import ELEMENTS, Found, as_bytes
+from ._find import ELEMENTS, Found, as_bytes, is_most_usual
 from ._library import InvalidArgument, InvalidData, lib, say
 from ._options import BOUNDS, OUTPUTS, Function, Options, check_names, did_you_mean, kind_of, show
 from ._units import without_unit
@@ -71,11 +71,11 @@ def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str
             and (name != "outputs" or not OUTPUTS.keys().isdisjoint(options))}
 
 
-def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Function], Function]:
+def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
     """Decorator: the function takes Keywords, and these options; all stand in its signature and its text.
 
     Particles of io.read() may stand in place of positions. An array's name is then an array, and what the file says of
-    h, mass, walls, kernel and period is taken, unless it is given. masses: masses and densities also beside volumes.
+    h, mass, walls, kernel and period is taken, unless it is given.
     """
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
@@ -86,7 +86,7 @@ def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Func
             if hasattr(positions, "words"):
                 given = signature.bind(positions, *arguments, **words).arguments
                 more = given.pop("words", {})
-                return function(**words_of_file(given.pop("positions"), {**given, **more}, masses))
+                return function(**words_of_file(given.pop("positions"), {**given, **more}))
             return function(positions, *arguments, **words)
 
         show(call, own_keywords(Keywords, options), options)
@@ -95,7 +95,7 @@ def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Func
     return decorate
 
 
-def words_of_file(particles, given, masses=False):
+def words_of_file(particles, given):
     """Returns keywords of a function, with arrays in place of names. source: the particles, whose arrays fluid and only may name."""
     words = dict(given)
     for name in ARRAYS:
@@ -103,9 +103,7 @@ def words_of_file(particles, given, masses=False):
         if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
                 (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
             words[name] = particles.array(text)
-    words = particles.words(words, beside=masses)
-    for name in ("mass", "density") if masses else ():
-        words[name] = particles.quantity(name) if words.get(name) is None else words[name]
+    words = particles.words(words)
     return {**words, "source": particles, "positions": particles.positions}
 
 
@@ -120,9 +118,7 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     arguments = Arguments(units.positions)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
     given.update(units.quantities(given), within=units.lengths(given["within"], "within"))
-    named = source.arrays if source else attributes if named is None else named
-    _find(arguments, given, units.options(options), wants, nothing, roles, named,
-          source.array if source else functools.partial(_attribute, named), source is not None)
+    _find(arguments, given, units.options(options), wants, nothing, roles, source, attributes if named is None else named)
     if "flow" not in wants:
         arguments.set_attributes(attributes)
     return arguments
@@ -132,9 +128,10 @@ class Ranges(list):
     """Has pairs (name, value or (low, high)) in place of the dictionary `only`, of which several may have one name: then any counts."""
 
 
-def _find(arguments, given, options, wants, nothing, roles, others, array_of, of_file):
-    """Lets the core find volumes, fluid, particles that are left out, and the scalar among the arrays that are given.
-    others: what fluid and only may name, by array_of(name). of_file: an array that seems to tell the fluid is looked for."""
+def _find(arguments, given, options, wants, nothing, roles, source, attributes):
+    """Lets the core find volumes, fluid, particles that are left out, and the scalar among the arrays that are given, and those of a file
+    (source: None, or its particles). Without a file, fluid and only name attributes."""
+    others, array_of = (source.arrays, source.array) if source else (attributes, functools.partial(_attribute, attributes))
     named, names, values, ranges = {}, {}, {}, []
 
     def add(name, array):
@@ -158,7 +155,7 @@ def _find(arguments, given, options, wants, nothing, roles, others, array_of, of
     ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
     request["estimate_smoothing_length"] = True if ratio else number("estimate_smoothing_length", "int", estimate)
     request["compute_volumes"] = isinstance(given["volume"], str) and given["volume"] == "computed"
-    request["particle_volume"] = options.pop("particle_volume", 0.0)
+    request["find"] = source is not None
     for role, array in {**{role: given[role] for role in QUANTITIES}, **roles}.items():
         words = role.replace("_", " ")
         if role == "volume" and request["compute_volumes"] or array is None:
@@ -171,6 +168,11 @@ def _find(arguments, given, options, wants, nothing, roles, others, array_of, of
             values[role] = arguments.constant(array, words)
         else:
             names[role] = add(words, arguments.shaped(array, words))
+    for role in ("volume", "mass", "density") if source else ():
+        array = None if role in names or role in values else source.quantity(role)
+        if array is not None:
+            name = getattr(source, role)
+            add(name if is_most_usual(name, role) else role, arguments.shaped(np.broadcast_to(array, arguments.count), role))
     solid, fluid, only = given["solid"], given["fluid"], given["only"]
     if solid is not None and fluid is not None:
         raise InvalidArgument("solid and fluid both tell which particles are fluid. Leave one of them out.")
@@ -180,7 +182,7 @@ def _find(arguments, given, options, wants, nothing, roles, others, array_of, of
         name, request["fluid_value"] = parse_fluid(fluid)
         names["fluid"] = add(name, take("fluid", name)) if isinstance(name, str) else add("fluid", arguments.marks(name, "fluid"))
     request["find_fluid"] = isinstance(fluid, str) and fluid == "auto"
-    looks = "fluid" not in names and (of_file or request["find_fluid"])
+    looks = "fluid" not in names and (source is not None or request["find_fluid"])
     for name in others if looks else ():
         if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
             add(name, np.ascontiguousarray(array_of(name)))

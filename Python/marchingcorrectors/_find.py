@@ -35,6 +35,10 @@ def list_named(arrays):
     return named, len(pairs)
 
 
+def is_most_usual(name, quantity):
+    return isinstance(name, str) and lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], as_bytes(name)) == 0
+
+
 def find_named(arrays, quantity, components, count):
     """Returns the index of the array with the most usual name for a quantity, or -1."""
     named, many = list_named(arrays)
@@ -49,10 +53,6 @@ def choose_view(arrays, active=-1):
 def tells_of_walls(name):
     """Returns whether a block or body of this name holds walls."""
     return bool(lib.mcor_tells_of_walls(as_bytes(name)))
-
-
-def role_bits(names):
-    return sum(1 << ROLES[name] for name in names)
 
 
 class Found:
@@ -112,16 +112,3 @@ class Found:
         data = np.frombuffer((ctypes.c_char * (size * kind.itemsize)).from_address(made.data), kind).copy() if size else \
             np.empty(0, kind)
         return made.name.decode(), data.reshape(made.tuples, made.components) if made.components > 1 else data
-
-
-def describe_unused(given, used, volumes=None, **words):
-    """Returns a sentence about what is given by hand and has no effect; given, used: names of quantities."""
-    request = c.mcor_request(**words)
-    return take_sentence(lib.mcor_describe_unused(ctypes.byref(request), role_bits(given), role_bits(used),
-                                                  None if volumes is None else as_bytes(volumes)))
-
-
-def choose_volumes(given, known, **words):
-    """Returns which of these quantities make the volumes."""
-    used = lib.mcor_choose_volumes(ctypes.byref(c.mcor_request(**words)), role_bits(given), role_bits(known))
-    return {name for name in known if used & role_bits([name])}

@@ -290,7 +290,7 @@ def _direction(direction):
     return numbers.tolist()
 
 
-@of_particles(PROJECT, masses=True)
+@of_particles(PROJECT)
 def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
             direction: Union[None, str, Sequence[float]] = None,
             resolution: int = 512,

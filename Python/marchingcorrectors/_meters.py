@@ -157,7 +157,7 @@ def _as_sections(sections, units):
     return names, made, kept
 
 
-@of_particles(GAUGE, masses=True)
+@of_particles(GAUGE)
 def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
     """Fluxes through sections, to 1e-5 of the largest flux that the velocities there allow.
 

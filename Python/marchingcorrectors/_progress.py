@@ -11,51 +11,38 @@ class TextBar:
     """Is the bar without tqdm: one line on stderr that is overwritten, or a line per phase in a file."""
 
     def __init__(self):
-        self.phase, self.percent = "", -1
+        self.state = None
 
     def __call__(self, fraction, phase):
-        percent, line_by_line = int(100 * fraction), not sys.stderr.isatty()
-        if phase != self.phase or not line_by_line and percent != self.percent:
-            self.phase, self.percent = phase, percent
-            sys.stderr.write(f"{'' if line_by_line else chr(13)}{percent:3d} % {phase:<20}"
-                             f"{chr(10) if line_by_line else ''}")
-            sys.stderr.flush()
+        is_screen, percent = sys.stderr.isatty(), int(100 * fraction)
+        state = (phase, percent) if is_screen else phase
+        if state != self.state:
+            self.state = state
+            print(f"{chr(13) * is_screen}{percent:3d} % {phase:<20}", end="" if is_screen else "\n", file=sys.stderr, flush=True)
 
     def close(self):
-        if sys.stderr.isatty() and self.percent >= 0:
-            sys.stderr.write("\n")
-
-
-class TqdmBar:
-    def __init__(self, tqdm):
-        self.bar = tqdm(total=100, unit="%", leave=True, bar_format="{l_bar}{bar}| {elapsed}")
-
-    def __call__(self, fraction, phase):
-        self.bar.set_description_str(phase, refresh=False)
-        self.bar.update(int(100 * fraction) - self.bar.n)
-
-    def close(self):
-        self.bar.close()
+        if sys.stderr.isatty() and self.state:
+            print(file=sys.stderr)
 
 
 @contextlib.contextmanager
 def callback_of(progress):
     """Returns the function to call with a fraction and a phase, or None."""
-    if progress is None or progress is False:
-        yield None
-    elif progress is True:
-        try:
-            from tqdm import tqdm
-
-            bar = TqdmBar(tqdm)
-        except ImportError:
-            bar = TextBar()
-        try:
-            yield bar
-        finally:
-            bar.close()
-    elif callable(progress):
-        yield progress
-    else:
+    if progress is not True and progress not in (None, False) and not callable(progress):
         raise InvalidArgument(f"progress is {progress!r}; it must be True, for a bar, or a function that takes a "
                               "fraction from 0 to 1 and the name of the phase.")
+    if progress is not True:
+        yield progress or None
+        return
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        bar = call = TextBar()
+    else:
+        bar = tqdm(total=100, unit="%", leave=True, bar_format="{l_bar}{bar}| {elapsed}")
+
+        def call(fraction, phase):
+            bar.set_description_str(phase, refresh=False)
+            bar.update(int(100 * fraction) - bar.n)
+    with contextlib.closing(bar):
+        yield call

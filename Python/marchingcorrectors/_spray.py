@@ -5,6 +5,7 @@ import dataclasses
 
 import numpy as np
 
+from ._arrays import values_of
 from ._call import prepare, words_of_file
 from ._functions import probe
 from ._library import InvalidArgument
@@ -17,12 +18,14 @@ from .io._particles import usual
 KEYWORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid", "within", "only", "device")
 
 
-def fluid_of(words):
-    """Returns which particles are fluid, by the keywords of a function."""
+def fluid_and_volume(words):
+    """Returns which particles are fluid, and their volumes, or None where they are computed; words: keywords of a function."""
     words = dict(words)
     arguments = prepare(Units(words.pop("positions")), words)
-    solid = arguments.input.solid
-    return np.ctypeslib.as_array(solid, (arguments.count,)) == 0 if solid else np.ones(arguments.count, bool)
+    given, count = arguments.input, arguments.count
+    volume, mass, density = (values_of(each, count) for each in (given.volume, given.mass, given.density))
+    volume = mass / density if volume is None and mass is not None and density is not None else volume
+    return np.ctypeslib.as_array(given.solid, (count,)) == 0 if given.solid else np.ones(count, bool), volume
 
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
@@ -35,8 +38,9 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
     kept = {name: value for name, value in words.items() if name in PROBE or name in KEYWORDS}
-    own, every = words_of_file(particles, kept), particles.positions
-    fluid = np.flatnonzero(fluid_of(own))
+    every = particles.positions
+    is_fluid, volume = fluid_and_volume(words_of_file(particles, kept))
+    fluid = np.flatnonzero(is_fluid)
     is_spray = probe(particles, every[fluid], **kept).weight_sum < iso
     label = label_pieces(surface.triangles, len(surface.points))
     small = small_pieces(surface, label, every, fluid, least)
@@ -47,7 +51,7 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
     chosen = fluid[is_spray]
     ids = usual([name for name in particles.arrays if particles.arrays[name].dtype.kind in "iu"], "particle_id")
     return without_points(surface, is_small), Spray(
-        every[chosen], find_widths(surface, own, len(every))[chosen],
+        every[chosen], find_widths(surface, volume, len(every))[chosen],
         None if velocity is None else particles.arrays[velocity][chosen], None if ids is None else particles.arrays[ids][chosen])
 
 
@@ -120,11 +124,7 @@ def without_points(surface, left_out):
         attributes={name: array[~left_out] for name, array in surface.attributes.items()})
 
 
-def find_widths(surface, words, count):
+def find_widths(surface, volume, count):
     """Returns diameters of balls with the particles' volumes; without volumes, of a spacing of h / 1.3."""
-    volume = words.get("volume")
-    if volume is None or isinstance(volume, str):
-        mass, density = words.get("mass"), words.get("density")
-        has_volume = volume is None and mass is not None and density is not None
-        volume = mass / density if has_volume else (surface.statistics["smoothing_length_max"] / 1.3) ** 3
+    volume = (surface.statistics["smoothing_length_max"] / 1.3) ** 3 if volume is None else volume
     return np.broadcast_to(np.cbrt(6 / np.pi * np.asarray(volume, float)), count)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes output files by the program's rules: beside their places, then all are moved there together."""
+import contextlib
 import os
 import secrets
 import shutil
@@ -107,18 +108,13 @@ def _copy_mode(old, new):
     os.chmod(new, mode)
 
 
-class _sentences:
+@contextlib.contextmanager
+def _sentences(path):
     """Raises what the system says of a file, with the file's name."""
-
-    def __init__(self, path):
-        self._path = path
-
-    def __enter__(self):
-        pass
-
-    def __exit__(self, kind, error, _):
-        if isinstance(error, OSError):
-            raise FileError(f"{self._path} could not be written: {error.strerror}.") from None
+    try:
+        yield
+    except OSError as error:
+        raise FileError(f"{path} could not be written: {error.strerror}.") from None
 
 
 def _is_step(path):

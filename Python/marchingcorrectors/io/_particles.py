@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .._find import Found, choose_volumes, describe_unused, find_named
+from .._find import Found, find_named
 from .._library import Error, InvalidArgument, lib, say
 from .._options import BOUNDS, did_you_mean, words_of
 from .._warnings import warn
@@ -151,17 +151,6 @@ class Particles:
     def __repr__(self) -> str:
         return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays) or 'none'}>"
 
-    def _choose_volumes(self, words, beside):
-        """Replaces only those of volume, mass and density that are given."""
-        sizes, compute = ("volume", "mass", "density"), {"compute_volumes": isinstance(words.get("volume"), str)}
-        given = {name for name in sizes if words.get(name) is not None and not isinstance(words[name], str)}
-        used = choose_volumes(given, given | {name for name in sizes if getattr(self, name) is not None}, **compute)
-        unused = "" if beside else describe_unused(given, used, str(self.volume), **compute)
-        if unused:
-            warn(unused)
-            words.update(dict.fromkeys(given - used))
-        words.update({name: self.quantity(name) for name in used - given})
-
     def array(self, name: str) -> np.ndarray:
         if name not in self.arrays:
             raise FileError(f"{self.file} has no array '{name}'.{did_you_mean(name, self.arrays)} Arrays: "
@@ -188,9 +177,8 @@ class Particles:
             raise InvalidArgument(say("NO_PERIOD"))
         return self.period
 
-    def words(self, given, beside=False):
-        """Returns keywords of the functions for NumPy; arguments that are given replace these. beside: masses and densities are wanted beside
-        volumes."""
+    def words(self, given):
+        """Returns keywords of the functions for NumPy; arguments that are given replace these. Of volume, mass and density the core chooses."""
         words = dict(given)
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
             words["smoothing_length"] = self.quantity("smoothing_length")
@@ -199,7 +187,6 @@ class Particles:
             elif len(self):
                 names = {name: NO_VALUE for name in self.arrays}
                 raise InvalidArgument(Found(np.empty((len(self), 3)), names, ["sizes"]).error)
-        self._choose_volumes(words, beside)
         if words.get("solid") is None and words.get("fluid") is None and self.solid is not None:
             words["solid"] = self.solid
         if isinstance(words.get("periodic"), str):

@@ -3,14 +3,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which device suits a series of surfaces: the seconds of an update with new particles, in one context, on each.
 
-  devices.py [--sizes 670k,10M] [DEVICE...]     numbers or parts of names; default: all that the Python package lists
+  devices.py [--sizes 670k,10M] [--profile] [DEVICE...]     numbers or parts of names; default: all that the Python package lists
 
 Needs the package marching-correctors and NumPy alone. Medians of six updates after the first, which is given apart and
-holds what a driver compiles. The surfaces of all devices are compared, to the last bit.
+holds what a driver compiles. The surfaces of all devices are compared, to the last bit. --profile adds, for each phase of
+the update with the median time, what it takes of the host and of the device, and the kernels that take longest; measuring
+each command makes updates a little slower.
 """
 import argparse
+import collections
+import csv
 import hashlib
+import os
 import statistics
+import tempfile
 import time
 
 import marchingcorrectors
@@ -29,17 +35,48 @@ def make_tank(count):
     return x, (a * numpy.roll(b, -1, 1)).sum(1), {name: numpy.full(len(x), size, "f4") for name, size in sizes.items()}
 
 
+def show_profile(path, call):
+    """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase is what it spends outside
+    OpenCL's calls."""
+    totals = collections.defaultdict(lambda: collections.Counter(dict.fromkeys(("phase", "build"), 0)))
+    kernels = collections.Counter()
+    with open(path, newline="") as file:
+        for row in csv.DictReader(file):
+            if int(row["call"]) != call:
+                continue
+            command, phase, host, device = row["command"], totals[row["phase"]], float(row["host_seconds"]), float(row["device_seconds"])
+            for key, value in (("", host), (" count", int(row["count"])), (" bytes", int(row["bytes"])), (" device", device)):
+                phase[command + key] += value
+            phase["calls"] += host if command not in ("phase", "build") else 0
+            if command == "launch":
+                kernels[row["kernel"]] += device
+    totals["all"] = sum(totals.values(), collections.Counter())
+    print("\n| phase | ms | host, ms | launches | kernels, ms | waits | waits, ms | up, MB | up, ms | down, MB | down, ms |"
+          "\n|---|---|---|---|---|---|---|---|---|---|---|")
+    for name, of in totals.items():
+        print(f"| {name} | {1e3 * of['phase']:.1f} | {1e3 * (of['phase'] - of['calls']):.1f} | {of['launch count']} | "
+              f"{1e3 * of['launch device']:.1f} | {of['wait count']} | {1e3 * of['wait']:.1f} | {1e-6 * of['write bytes']:.1f} | "
+              f"{1e3 * of['write']:.1f} | {1e-6 * of['read bytes']:.1f} | {1e3 * of['read']:.1f} |")
+    print("\nKernels, ms: " + ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in kernels.most_common(8)) + "\n", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("devices", nargs="*", metavar="DEVICE", default=list(range(len(marchingcorrectors.devices()))))
     parser.add_argument("--sizes", default="670k,10M")
+    parser.add_argument("--profile", action="store_true")
     arguments = parser.parse_args()
+    folder = tempfile.TemporaryDirectory()
+    profile = os.path.join(folder.name, "profile.csv")
+    if arguments.profile:
+        os.environ["MCOR_PROFILE"] = profile
     print("| particles | surface | device | triangles | first, s | update, s | bits |\n|---|---|---|---|---|---|---|")
     for size in arguments.sizes.split(","):
         x, swirl, sizes = make_tank(float(size.replace("k", "e3").replace("M", "e6")))
         for what in ("free", "scalar"):
             expected = None
             for device in arguments.devices:
+                open(profile, "w").close()
                 context, seconds = marchingcorrectors.Context(device), []
                 for turn in range(7):
                     begin, moved = time.perf_counter(), x + numpy.float32(1e-4 * (turn % 2))
@@ -50,6 +87,8 @@ def main():
                 expected = expected or bits
                 print(f"| {len(x):,} | {what} | {device} | {len(surface.triangles):,} | {seconds[0]:.3f} | "
                       f"{statistics.median(seconds[1:]):.3f} | {'the same' if bits == expected else 'DIFFERENT'} |", flush=True)
+                if arguments.profile:
+                    show_profile(profile, seconds.index(statistics.median_high(seconds[1:]), 1))
                 del context, surface
 
 

@@ -317,12 +317,13 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* Masks of cells, and topology by the field, belong to the lattice's program. */
+  /* Masks of cells, and topology by the field, belong to the lattice's programs. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
-  const mcor_program base = of_lattice ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
-  const cl_uint count = (cl_uint)mcor_program_sources(cl, base, sources);
+  const cl_uint count =
+    (cl_uint)mcor_program_sources(cl, of_lattice ? MCOR_PARTS_LATTICE : MCOR_PARTS_FIELD, sources);
   char options[512];
-  mcor_program_options(cl, base, options, sizeof options);
+  mcor_program_options(
+    cl, of_lattice ? MCOR_PROGRAM_GRID : MCOR_PROGRAM_NODES, options, sizeof options);
   sources[count] = source;
   cl_int error;
   cl_program program = clCreateProgramWithSource(cl->context, count + 1, sources, NULL, &error);
@@ -351,7 +352,7 @@ void core_extend_program(mcor_context* context, const char* source)
         mcor_make_room(
           context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
       mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
-      *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_FIELD };
+      *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_NODES };
       strcpy(kernel->name, name);
       kernel->kernel = clCreateKernel(program, name, &error);
       assert_int_equal(error, CL_SUCCESS);

@@ -365,6 +365,95 @@ static void test_build(void** state)
   }
 }
 
+/* What a profile has of one call. */
+typedef struct profiled
+{
+  double phases[MCOR_PHASE_COUNT], commands[MCOR_PHASE_COUNT]; /* seconds */
+  int64_t bytes, corrections;
+  double correction_seconds;
+} profiled;
+
+static void read_profile(const char* path, int64_t wanted, profiled* found)
+{
+  char line[256];
+  FILE* file = fopen(path, "r");
+  assert_non_null(file);
+  *found = (profiled){ .bytes = 0 };
+  assert_non_null(fgets(line, sizeof line, file));
+  assert_string_equal(line, "call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n");
+  while (fgets(line, sizeof line, file))
+  {
+    long long call, count, bytes;
+    char phase[32], command[16], kernel[64];
+    double host, device;
+    int number = 0;
+    int length = 0;
+    assert_int_equal(sscanf(line, "%lld,%31[^,],%15[^,],%n", &call, phase, command, &length), 3);
+    const size_t name = strcspn(line + length, ","); /* which may be empty */
+    snprintf(kernel, sizeof kernel, "%.*s", (int)name, line + length);
+    assert_int_equal(
+      sscanf(line + length + name, ",%lld,%lld,%lf,%lf", &count, &bytes, &host, &device), 4);
+    while (strcmp(phase, mcor_phase_name((mcor_phase)number)) != 0)
+    {
+      ++number;
+    }
+    if (call != wanted)
+    {
+      continue;
+    }
+    const bool is_phase = strcmp(command, "phase") == 0;
+    found->phases[number] += is_phase ? host : 0;
+    found->commands[number] += is_phase || strcmp(command, "build") == 0 ? 0 : host;
+    found->bytes += bytes;
+    if (strcmp(kernel, "mcor_correct_vertices") == 0 && strcmp(command, "launch") == 0)
+    {
+      found->corrections += count;
+      found->correction_seconds += device;
+    }
+  }
+  fclose(file);
+}
+
+/* A profile has all phases of each call, and what each of them asks of the device; the surface stays the same. */
+static void test_profile(void** state)
+{
+  const char* path = "core_context_profile.csv";
+  CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
+  const double iso = 2.5;
+  const mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  const uint64_t expected = hash_of(*state, &input, &options);
+  CORE_CONTEXT context = NULL;
+  remove(path);
+  setenv("MCOR_PROFILE", path, 1);
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  unsetenv("MCOR_PROFILE");
+  for (int call = 0; call < 2; ++call)
+  {
+    CORE_SURFACE surface = core_extract(context, &input, &options);
+    assert_true(core_hash(&surface) == expected);
+    profiled found;
+    read_profile(path, call, &found);
+    for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
+    {
+      CORE_CHECK(fabs(found.phases[p] - surface.statistics.seconds[p]) < 1e-8, "phase %d: %g s", p,
+        found.phases[p]);
+      CORE_CHECK(found.commands[p] > 0 && found.commands[p] < found.phases[p] + 0.01,
+        "phase %d: %g s of commands in %g s", p, found.commands[p], found.phases[p]);
+    }
+    assert_true(found.bytes > 12 * input.count);
+    CORE_CHECK(found.corrections > 0 && found.correction_seconds > 0, "%lld corrections, %g s",
+      (long long)found.corrections, found.correction_seconds);
+  }
+  remove(path);
+  setenv("MCOR_PROFILE", "/nonexistent/profile.csv", 1);
+  CORE_CONTEXT none = NULL;
+  const mcor_status status = mcor_create_context(NULL, &none);
+  unsetenv("MCOR_PROFILE");
+  assert_int_equal(status, MCOR_INVALID_ARGUMENT);
+  assert_true(core_told(none, "PROFILE_FILE|/nonexistent/profile.csv"));
+}
+
 CORE_MAIN(core_set_up, core_tear_down, test_several_iso_values, test_order_of_input,
   test_memory_limit, test_kept_buffers, test_devices, test_names, test_lanes, test_build,
-  test_statistics)
+  test_statistics, test_profile)

@@ -173,11 +173,20 @@ extern "C"
     const void* data;
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
-    double constant;  /* the value of all particles where data is NULL */
+    double constant;  /* the value of all particles where data and memory are NULL */
     const char* name; /* for messages; may be NULL */
+
+    /* For programs with an OpenCL context of their own: a cl_mem of any context, in which the values
+     * are where data is NULL. Those of the first particle begin at byte `offset`, and of each next
+     * one `stride` bytes later; 0: they are packed. Calls on a mcor_context map the arrays of
+     * mcor_input for reading (on a CPU without a copy; from a GPU they pass through the host, which
+     * checks and measures all particles); commands that write to them must have finished. Functions
+     * without a context, and arrays elsewhere, do not read them. See mcor_store for results. */
+    void* memory;
+    size_t offset, stride;
   } mcor_array;
 
-  /* Whether the array has data, or a constant other than 0. */
+  /* Whether the array has data or memory, or a constant other than 0. */
   int mcor_is_given(const mcor_array* array);
 
 #define MCOR_MAGNITUDE (-1)
@@ -385,7 +394,8 @@ extern "C"
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
-    /* What progress reports while the device's programs are built, which may take a minute. */
+    /* What progress reports while the device's programs are built, which may take a minute; if that
+     * is known, ", about 5 s to come" follows. */
 #define MCOR_BUILDING "building the OpenCL program (first time only)"
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
@@ -647,6 +657,14 @@ extern "C"
   mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
+
+  /* Writes an array of a result, from->data [count][components], to an OpenCL buffer, to->memory, in
+   * its type, at its offset and stride; bytes between the values stay. Where types are the same,
+   * bytes are copied, so that whole numbers may pass as floats of their size. The array is written
+   * when the call returns. Fails with MCOR_INVALID_ARGUMENT if the buffer is too small, or the
+   * components differ. */
+  mcor_status mcor_store(
+    mcor_context* context, const mcor_array* from, int64_t count, const mcor_array* to);
 
   /* Finds the range of the finite values of the scalar at fluid particles, and suggests an iso
    * value: the median (one of the values). If the median is at an end of the middle 90 % of the

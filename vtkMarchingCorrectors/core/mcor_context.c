@@ -5,6 +5,7 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
+#include "mcor_cl_memory.h"
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
@@ -113,6 +114,7 @@ void mcor_free_context(mcor_context* context)
   }
   mcor_release_all_data(context);
   mcor_close_device(context);
+  mcor_close_profile(context);
   free(context);
 }
 
@@ -203,6 +205,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   {
     mcor_blame_outlier(context, &flat.input);
   }
+  mcor_write_profile(context, statistics);
   const bool is_all = !far.solid;
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
@@ -217,14 +220,11 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   return status;
 }
 
-mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
+/* Makes a second attempt where memory ran out and some could be freed. */
+static mcor_status mcor_try_twice(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)
 {
-  if (!context->created)
-  {
-    return MCOR_DEVICE_ERROR; /* the error sentence says why */
-  }
   mcor_cl* cl = &context->cl;
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
@@ -244,5 +244,21 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   {
     mcor_release_memory(context); /* lets a smaller input find room */
   }
+  return status;
+}
+
+mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
+  void* result)
+{
+  if (!context->created)
+  {
+    return MCOR_DEVICE_ERROR; /* the error sentence says why */
+  }
+  mcor_sight sight;
+  mcor_status status = mcor_see_input(context, input, &sight);
+  MCOR_THEN(status,
+    mcor_try_twice(context, &sight.input, options, uses_solids, statistics, body, result));
+  mcor_end_sight(&sight);
   return status;
 }

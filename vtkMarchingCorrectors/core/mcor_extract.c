@@ -9,7 +9,34 @@
 #include "mcor_cap.h"
 #include "mcor_compact.h"
 #include "mcor_fill.h"
+#include "mcor_input.h"
 #include "mcor_plane.h"
+
+/* Begins to build the programs that the surface needs. */
+static mcor_status mcor_begin_building(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  const bool may_have = input->solid && context->run.uses_solids;
+  bool has_solids = false;
+  for (int64_t i = 0; i < input->count && may_have && !has_solids; ++i)
+  {
+    has_solids = input->solid[i] != 0 && input->solid[i] != MCOR_ABSENT;
+  }
+  const mcor_build build = mcor_build_of(options, has_solids);
+  const unsigned shape = MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE |
+    MCOR_OUT_GAUSS_CURVATURE;
+  int programs = 1 << MCOR_PROGRAM_GRID | 1 << MCOR_PROGRAM_BRICKS | 1 << MCOR_PROGRAM_NODES |
+    1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES | 1 << MCOR_PROGRAM_TRIM;
+  programs |= mcor_needs_density(input) ? 1 << MCOR_PROGRAM_DENSITY : 0;
+  programs |= input->attribute_count > 0 ? 1 << MCOR_PROGRAM_ATTRIBUTES : 0;
+  programs |= options->topology == MCOR_TOPOLOGY_FIELD ? 1 << MCOR_PROGRAM_CHOICES : 0;
+  programs |= mcor_is_plane(context) ? 1 << MCOR_PROGRAM_RARE : 0;
+  programs |= (options->outputs & shape) != 0 ||
+      options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE || options->capping
+    ? 1 << MCOR_PROGRAM_SHAPE
+    : 0;
+  return mcor_build_ahead(context, &build, programs);
+}
 
 /* Appends the surface of one iso value. */
 static mcor_status mcor_extract_iso(
@@ -77,6 +104,7 @@ static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* inp
   {
     return MCOR_OK;
   }
+  MCOR_TRY(mcor_begin_building(context, input, options));
   MCOR_TRY(mcor_prepare(context, input, options)); /* [III-A] */
   MCOR_FAIL_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(FILLED_WITH_COMPACT));

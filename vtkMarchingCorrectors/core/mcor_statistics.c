@@ -40,6 +40,9 @@ mcor_status mcor_report_launch(mcor_context* context)
     context->run.fraction_end);
 }
 
+/* Seconds between two reports of how long building may still take. */
+#define MCOR_REST_SECONDS 0.5
+
 mcor_status mcor_observe_call(mcor_context* context, bool compiles)
 {
   const mcor_options* options = context->run.options;
@@ -47,11 +50,20 @@ mcor_status mcor_observe_call(mcor_context* context, bool compiles)
   {
     return mcor_report_launch(context);
   }
-  const bool told = context->run.building_told;
+  const double rest = mcor_build_rest(&context->cl), now = mcor_seconds();
+  if (context->run.building_told && (rest == 0 || now - context->run.report_time < MCOR_REST_SECONDS))
+  {
+    return MCOR_OK;
+  }
+  char text[sizeof MCOR_BUILDING + 40] = MCOR_BUILDING;
+  if (rest > 0)
+  {
+    snprintf(text, sizeof text, MCOR_BUILDING ", about %.0f s to come", ceil(rest));
+  }
   context->run.building_told = true;
-  MCOR_FAIL_IF(
-    !told && options->progress(options->progress_user, context->run.fraction, MCOR_BUILDING) != 0,
-    context, MCOR_CANCELLED, MCOR_SAY(CANCELLED_BUILDING));
+  context->run.report_time = now;
+  MCOR_FAIL_IF(options->progress(options->progress_user, context->run.fraction, text) != 0, context,
+    MCOR_CANCELLED, MCOR_SAY(CANCELLED_BUILDING));
   return MCOR_OK;
 }
 

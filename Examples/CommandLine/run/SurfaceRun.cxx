@@ -272,7 +272,7 @@ public:
       std::fflush(stderr);
       return;
     }
-    this->IsBuilding = phase == MCOR_BUILDING;
+    this->IsBuilding = phase.rfind(MCOR_BUILDING, 0) == 0;
     if (this->IsQuiet || !this->IsBuilding || std::exchange(this->HasBegun, true))
     {
       return;

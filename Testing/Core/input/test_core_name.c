@@ -199,10 +199,10 @@ static void test_iso_value_of_wrong_scalars(void** state)
   {
     three[i] = i;
   }
-  const mcor_array vector = { three, MCOR_FLOAT64, 3, 0, "v" },
-                   scalar = { three, MCOR_FLOAT64, 1, 0, "s" },
-                   unknown = { three, (mcor_type)7, 1, 0, "u" },
-                   negative = { three, MCOR_FLOAT64, -3, 0, "n" };
+  const mcor_array vector = { .data = three, .type = MCOR_FLOAT64, .components = 3, .name = "v" },
+                   scalar = { .data = three, .type = MCOR_FLOAT64, .components = 1, .name = "s" },
+                   unknown = { .data = three, .type = (mcor_type)7, .components = 1, .name = "u" },
+                   negative = { .data = three, .type = MCOR_FLOAT64, .components = -3, .name = "n" };
   const mcor_input wrong[] = { { .count = 2, .scalar = vector, .scalar_component = 3 },
     { .count = 2, .scalar = vector, .scalar_component = 1 << 30 },
     { .count = 2, .scalar = vector, .scalar_component = -2 },

@@ -38,14 +38,33 @@ typedef struct mcor_build
   bool solids;
 } mcor_build;
 
-/* Programs are built, and kernels compiled, when they are first needed. */
+/* Programs are built when they are first needed, or ahead of that, see mcor_build_ahead. Which sources
+ * they have is in kernels/programs.cmake, which kernels in mcor_program.c. */
 typedef enum mcor_program
 {
-  MCOR_PROGRAM_LATTICE,  /* compiled once for all SPH kernels and fields, with and without solids */
-  MCOR_PROGRAM_FIELD,    /* for surfaces of this build */
-  MCOR_PROGRAM_PROBE,    /* for mcor_probe and mcor_derive */
+  /* Compiled once for all SPH kernels and fields, with and without solids. */
+  MCOR_PROGRAM_GRID,    /* scans, sorts, the search grid */
+  MCOR_PROGRAM_BRICKS,  /* blocks and bricks */
+  MCOR_PROGRAM_CELLS,   /* marching, and triangles that are cut; lines in two dimensions */
+  MCOR_PROGRAM_LEAVES,  /* adaptive cubes */
+  MCOR_PROGRAM_CHOICES, /* topology, boxes, pairs */
+  /* Compiled for surfaces of a build. */
+  MCOR_PROGRAM_ATTRIBUTES, /* not for each field */
+  MCOR_PROGRAM_DENSITY,    /* volumes that are computed; not for each field */
+  MCOR_PROGRAM_NODES,      /* seeds and values at nodes */
+  MCOR_PROGRAM_VERTICES,   /* correction */
+  MCOR_PROGRAM_TRIM,
+  MCOR_PROGRAM_SHAPE, /* boundary eigenvalue, curvature, values at points of caps */
+  MCOR_PROGRAM_RARE,  /* seeds of pairs, nodes in two dimensions */
+  /* For mcor_probe, mcor_derive and mcor_widen: not for each field, nor in a GPU's form for solids. */
+  MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
+/* Sets of programs: those of the lattice, of a build's surfaces, of probes. On the built-in device
+ * each set is one program. */
+#define MCOR_PARTS_LATTICE ((1 << MCOR_PROGRAM_ATTRIBUTES) - 1)
+#define MCOR_PARTS_PROBE (1 << MCOR_PROGRAM_PROBE)
+#define MCOR_PARTS_FIELD (MCOR_PARTS_PROBE - 1 - MCOR_PARTS_LATTICE)
 
 typedef struct mcor_kernel
 {
@@ -69,8 +88,10 @@ typedef struct mcor_cl
   cl_device_id share; /* the device, if it is a share of another one; else NULL */
   cl_context context;
   struct mcor_pool* pool;              /* threads of the built-in device; else NULL */
+  struct mcor_profile* profile;        /* NULL: none is wanted */
   cl_command_queue queue, timed_queue; /* a queue that measures times, for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
+  struct mcor_builder* builder; /* programs that are built ahead; NULL: none */
   mcor_build build;     /* the variant for which the programs are built */
   mcor_kernel* kernels; /* kernels made so far */
   int kernel_count;
@@ -154,6 +175,11 @@ mcor_status mcor_settle_device(
 void mcor_close_device(mcor_context* context);
 /* Sets the variant of the kernels from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
+/* Begins to build a set of programs in threads of their own, in the order in which a run needs them,
+ * where a driver compiles them and none of this build is there yet. */
+mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
+/* Returns about how many seconds the programs to come take; 0: not known. */
+double mcor_build_rest(mcor_cl* cl);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* Releases a buffer. A large one is kept for the next request of about its size: the first touch
  * of memory takes longer than most of what is done in it, and successive phases and calls have
@@ -202,5 +228,8 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
+/* Appends what the call has cost to the profile, if there is one. */
+void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics);
+void mcor_close_profile(mcor_context* context);
 
 #endif

@@ -169,9 +169,9 @@ mcor_status mcor_read(
 {
   if (bytes > 0)
   {
-    MCOR_CL_TRY(context,
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_READ, "", bytes,
       clEnqueueReadBuffer(
-        context->cl.queue, buffer->mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL),
+        context->cl.queue, buffer->mem, CL_TRUE, offset, bytes, data, 0, NULL, MCOR_EVENT),
       "clEnqueueReadBuffer");
   }
   return MCOR_OK;
@@ -198,9 +198,11 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
     mcor_free_locked(cl, best);
     best->mem = clCreateBuffer(cl->context, CL_MEM_ALLOC_HOST_PTR, size, NULL, &error);
     MCOR_CL_TRY(context, error, "clCreateBuffer");
-    best->host = clEnqueueMapBuffer(
-      cl->queue, best->mem, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, size, 0, NULL, NULL, &error);
-    MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_LOCK, "", size,
+      (best->host = clEnqueueMapBuffer(cl->queue, best->mem, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+         size, 0, NULL, MCOR_EVENT, &error),
+        error),
+      "clEnqueueMapBuffer");
     best->size = size;
   }
   *taken = best;
@@ -231,9 +233,12 @@ mcor_status mcor_map(
     return MCOR_OK;
   }
   cl_int error;
-  void* mapped = clEnqueueMapBuffer(cl->queue, buffer->mem, CL_TRUE,
-    write ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ, 0, some, 0, NULL, NULL, &error);
-  MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
+  void* mapped = NULL;
+  MCOR_CL_COMMAND(context, MCOR_COMMAND_MAP, "", bytes,
+    (mapped = clEnqueueMapBuffer(cl->queue, buffer->mem, CL_TRUE,
+       write ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ, 0, some, 0, NULL, MCOR_EVENT, &error),
+      error),
+    "clEnqueueMapBuffer");
   *data = mapped;
   return MCOR_OK;
 }
@@ -249,11 +254,13 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
     {
       const size_t bytes = l->written;
       *l = (mcor_locked){ .mem = l->mem, .host = l->host, .size = l->size };
-      MCOR_CL_TRY(context,
-        bytes > 0
-          ? clEnqueueWriteBuffer(cl->queue, buffer->mem, CL_TRUE, 0, bytes, mapped, 0, NULL, NULL)
-          : CL_SUCCESS,
-        "clEnqueueWriteBuffer");
+      if (bytes > 0)
+      {
+        MCOR_CL_COMMAND(context, MCOR_COMMAND_WRITE, "", bytes,
+          clEnqueueWriteBuffer(
+            cl->queue, buffer->mem, CL_TRUE, 0, bytes, mapped, 0, NULL, MCOR_EVENT),
+          "clEnqueueWriteBuffer");
+      }
       return MCOR_OK;
     }
   }
@@ -305,9 +312,9 @@ mcor_status mcor_fill_range(
   for (size_t at = first, bytes; at < last; at += bytes)
   {
     bytes = mcor_step_of(last - at);
-    MCOR_CL_TRY(context,
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_COPY, "", bytes,
       clEnqueueFillBuffer(
-        context->cl.queue, buffer->mem, &byte, sizeof byte, at, bytes, 0, NULL, NULL),
+        context->cl.queue, buffer->mem, &byte, sizeof byte, at, bytes, 0, NULL, MCOR_EVENT),
       "clEnqueueFillBuffer");
     MCOR_TRY(mcor_ask(context, false));
   }
@@ -320,9 +327,9 @@ mcor_status mcor_copy(
   for (size_t at = 0, step; at < bytes; at += step)
   {
     step = mcor_step_of(bytes - at);
-    MCOR_CL_TRY(context,
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_COPY, "", step,
       clEnqueueCopyBuffer(
-        context->cl.queue, from->mem, to->mem, at, to_offset + at, step, 0, NULL, NULL),
+        context->cl.queue, from->mem, to->mem, at, to_offset + at, step, 0, NULL, MCOR_EVENT),
       "clEnqueueCopyBuffer");
     MCOR_TRY(mcor_ask(context, false));
   }
@@ -359,9 +366,9 @@ mcor_status mcor_append_bytes(
   MCOR_TRY(mcor_extend(context, buffer, old, old + bytes));
   if (bytes > 0)
   {
-    MCOR_CL_TRY(context,
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_WRITE, "", bytes,
       clEnqueueWriteBuffer(
-        context->cl.queue, buffer->mem, CL_TRUE, old, bytes, data, 0, NULL, NULL),
+        context->cl.queue, buffer->mem, CL_TRUE, old, bytes, data, 0, NULL, MCOR_EVENT),
       "clEnqueueWriteBuffer");
   }
   return MCOR_OK;

@@ -22,6 +22,43 @@
     }                                                                                              \
   } while (0)
 
+/* mcor_cl_profile.c. What a profile counts: launches, waits for the device, bytes to the device and
+ * from it, copies and fills on it, buffers that the host sees, memory that a driver locks, and
+ * builds. */
+typedef enum mcor_command
+{
+  MCOR_COMMAND_LAUNCH,
+  MCOR_COMMAND_WAIT,
+  MCOR_COMMAND_WRITE,
+  MCOR_COMMAND_READ,
+  MCOR_COMMAND_COPY,
+  MCOR_COMMAND_MAP,
+  MCOR_COMMAND_LOCK,
+  MCOR_COMMAND_BUILD
+} mcor_command;
+/* Opens the profile that MCOR_PROFILE in the environment names, if it does. */
+mcor_status mcor_open_profile(mcor_context* context);
+/* Returns where OpenCL is to write the event of a command. */
+cl_event* mcor_begin_profiled(struct mcor_profile* profile);
+mcor_status mcor_end_profiled(
+  mcor_context* context, mcor_command command, const char* name, size_t bytes);
+/* Counts one more command, unless there is no profile. host, device: seconds. */
+mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
+  int64_t bytes, double host, double device);
+/* Returns the seconds between start and end of a command; -1: the driver does not tell. */
+double mcor_event_seconds(cl_event event);
+
+/* Tries a command. `call` has MCOR_EVENT as its event: NULL, unless there is a profile. */
+#define MCOR_CL_COMMAND(context, command, name, bytes, call, what)                                 \
+  do                                                                                               \
+  {                                                                                                \
+    cl_event* const MCOR_EVENT =                                                                   \
+      (context)->cl.profile ? mcor_begin_profiled((context)->cl.profile) : NULL;                   \
+    MCOR_CL_TRY(context, call, what);                                                              \
+    MCOR_TRY((context)->cl.profile ? mcor_end_profiled(context, command, name, bytes) : MCOR_OK);  \
+    (void)MCOR_EVENT;                                                                              \
+  } while (0)
+
 /* mcor_cl_error.c */
 const char* mcor_cl_error_name(cl_int error);
 /* Whether an error means that memory ran out. Drivers that allocate late report it in any later
@@ -63,7 +100,16 @@ static inline bool mcor_is_native(const mcor_cl* cl)
 /* mcor_cl_program.c */
 /* Builds a program unless it is built. */
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);
-/* Drops all programs and their kernels, or only the ones that depend on the variant. */
-void mcor_drop_programs(mcor_cl* cl, bool all);
+/* Drops a set of programs, and their kernels. */
+void mcor_drop_programs(mcor_cl* cl, int programs);
+#define MCOR_PARTS_ALL ((1 << MCOR_PROGRAM_COUNT) - 1)
+mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program);
+
+/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. *program: NULL, if this one
+ * is not. */
+mcor_status mcor_await_program(
+  mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
+/* Ends the threads, and keeps the programs that they have built. */
+void mcor_end_builder(mcor_cl* cl);
 
 #endif

@@ -290,7 +290,8 @@ static mcor_status mcor_start_device(
     cl->units = cl->pool->threads = mcor_processors(count);
   }
   cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
-  cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
+  cl->queue = clCreateCommandQueue(
+    cl->context, cl->device, cl->profile ? CL_QUEUE_PROFILING_ENABLE : 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
   cl->timed_queue =
     clCreateCommandQueue(cl->context, cl->device, CL_QUEUE_PROFILING_ENABLE, &error);
@@ -346,6 +347,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   const char* wanted = device && *device ? device : getenv("MCOR_DEVICE");
   mcor_device_list list;
   bool by_number = false;
+  MCOR_TRY(mcor_open_profile(context));
   cl->place = place;
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
@@ -378,7 +380,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 void mcor_close_device(mcor_context* context)
 {
   mcor_cl* cl = &context->cl;
-  mcor_drop_programs(cl, true);
+  mcor_drop_programs(cl, MCOR_PARTS_ALL);
   free(cl->kernels);
   if (cl->timed_queue)
   {
@@ -423,7 +425,8 @@ mcor_status mcor_settle_device(
   release(context);
   mcor_close_device(context);
   *cl = (mcor_cl){
-    .is_default = true, .place = before.place, .count = before.count, .observer = before.observer
+    .is_default = true, .place = before.place, .count = before.count, .observer = before.observer,
+    .profile = before.profile
   };
   const mcor_status status = mcor_start_default(context, &list, build);
   cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory

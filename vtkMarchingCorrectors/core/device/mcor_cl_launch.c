@@ -32,7 +32,7 @@ static bool mcor_has_kernel(cl_program program, const char* name)
   return has;
 }
 
-/* Finds a kernel among those made so far, or makes it of the first program that has it. */
+/* Finds a kernel among those made so far, or makes it. */
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** found)
 {
   mcor_cl* cl = &context->cl;
@@ -46,26 +46,14 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   }
   MCOR_TRY(mcor_make_room(
     context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
-  cl_int error = CL_INVALID_KERNEL_NAME;
   mcor_kernel* kernel = *found = &cl->kernels[cl->kernel_count];
-  *kernel = (mcor_kernel){ 0 };
+  *kernel = (mcor_kernel){ .program = mcor_program_of(name) };
   snprintf(kernel->name, sizeof kernel->name, "%s", name);
-  const bool is_probe = strncmp(name, "mcor_probe_", 11) == 0 ||
-    strncmp(name, "mcor_derive_", 12) == 0 || strncmp(name, "mcor_widen_", 11) == 0;
-  for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
+  MCOR_TRY(mcor_need_program(context, kernel->program));
+  cl_int error = CL_INVALID_KERNEL_NAME;
+  if (mcor_has_kernel(cl->programs[kernel->program], name))
   {
-    kernel->program = (mcor_program)p;
-    if (is_probe != (p == MCOR_PROGRAM_PROBE)) /* a program need not be built to know whether it has
-                                                * the kernel */
-    {
-      continue;
-    }
-    MCOR_TRY(mcor_need_program(context, kernel->program));
-    if (mcor_has_kernel(cl->programs[p], name))
-    {
-      kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
-      MCOR_CL_TRY(context, error, name);
-    }
+    kernel->kernel = clCreateKernel(cl->programs[kernel->program], name, &error);
   }
   MCOR_CL_TRY(context, error, name);
   ++cl->kernel_count;
@@ -77,36 +65,31 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
 
 /* Launches a kernel for the first time, alone, since drivers may compile it only now. What the
  * kernel itself does not take counts as building. */
-static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const size_t* offset,
-  const size_t* global, const size_t* group)
+static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* kernel,
+  const size_t* offset, const size_t* global, const size_t* group)
 {
   mcor_cl* cl = &context->cl;
   cl_event event;
-  cl_ulong start = 0, end = 0;
-  cl_int error = clFinish(cl->queue);
+  MCOR_TRY(mcor_finish(context));
   const double begin = mcor_seconds();
-  if (error == CL_SUCCESS)
-  {
-    error =
-      clEnqueueNDRangeKernel(cl->timed_queue, kernel, 1, offset, global, group, 0, NULL, &event);
-  }
-  if (error != CL_SUCCESS)
-  {
-    return error;
-  }
-  error = clFinish(cl->timed_queue);
+  MCOR_CL_TRY(context,
+    clEnqueueNDRangeKernel(
+      cl->timed_queue, kernel->kernel, 1, offset, global, group, 0, NULL, &event),
+    kernel->name);
+  const cl_int error = clFinish(cl->timed_queue);
   const double seconds = mcor_seconds() - begin;
-  if (error == CL_SUCCESS &&
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL) ==
-      CL_SUCCESS &&
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS)
+  const double running = error == CL_SUCCESS ? mcor_event_seconds(event) : -1;
+  clReleaseEvent(event);
+  MCOR_CL_TRY(context, error, kernel->name);
+  if (running >= 0)
   {
-    const double building = fmax(seconds - 1e-9 * (double)(end - start), 0);
+    const double building = fmax(seconds - running, 0);
     cl->build_seconds += building;
     cl->compiles = building > MCOR_COMPILE_SECONDS;
+    MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, kernel->name, 0, building, 0));
   }
-  clReleaseEvent(event);
-  return error;
+  return mcor_add_to_profile(
+    context, MCOR_COMMAND_LAUNCH, kernel->name, 0, fmax(running, 0), fmax(running, 0));
 }
 
 /* The time that a part of a heavy launch should take. Drivers of GPUs abort a launch that takes
@@ -134,12 +117,16 @@ static mcor_status mcor_enqueue_part(
   {
     MCOR_TRY(mcor_ask(context, true));
   }
-  MCOR_CL_TRY(context,
-    *launched
-      ? clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, from, &count, &group, 0, NULL, NULL)
-      : mcor_enqueue_first(context, kernel->kernel, from, &count, &group),
+  if (!*launched)
+  {
+    MCOR_TRY(mcor_enqueue_first(context, kernel, from, &count, &group));
+    *launched = true;
+    return MCOR_OK;
+  }
+  MCOR_CL_COMMAND(context, MCOR_COMMAND_LAUNCH, kernel->name, 0,
+    clEnqueueNDRangeKernel(
+      cl->queue, kernel->kernel, 1, from, &count, &group, 0, NULL, MCOR_EVENT),
     kernel->name);
-  *launched = true;
   return MCOR_OK;
 }
 
@@ -231,6 +218,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
 
 mcor_status mcor_finish(mcor_context* context)
 {
-  MCOR_CL_TRY(context, clFinish(context->cl.queue), "clFinish");
+  MCOR_CL_COMMAND(
+    context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
   return MCOR_OK;
 }

@@ -10,29 +10,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-void mcor_drop_programs(mcor_cl* cl, bool all)
+void mcor_drop_programs(mcor_cl* cl, int programs)
 {
   int kept = 0;
+  mcor_end_builder(cl);
   for (int i = 0; i < cl->kernel_count; ++i)
   {
-    if (!all && cl->kernels[i].program == MCOR_PROGRAM_LATTICE)
-    {
-      cl->kernels[kept++] = cl->kernels[i];
-    }
-    else
+    if (1 << cl->kernels[i].program & programs)
     {
       clReleaseKernel(cl->kernels[i].kernel);
     }
+    else
+    {
+      cl->kernels[kept++] = cl->kernels[i];
+    }
   }
   cl->kernel_count = kept;
-  for (int p = all ? 0 : MCOR_PROGRAM_LATTICE + 1; p < MCOR_PROGRAM_COUNT; ++p)
+  for (int p = 0; p < MCOR_PROGRAM_COUNT; ++p)
   {
-    if (cl->programs[p])
+    if (cl->programs[p] && (1 << p & programs))
     {
       clReleaseProgram(cl->programs[p]);
       cl->programs[p] = NULL;
     }
   }
+}
+
+mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program)
+{
+  const mcor_cl* cl = &context->cl;
+  const char* sources[MCOR_SOURCE_LIMIT];
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, 1 << number, sources);
+  cl_int error;
+  *program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
+  return MCOR_OK;
 }
 
 mcor_status mcor_need_program(mcor_context* context, mcor_program number)
@@ -45,14 +57,18 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   MCOR_TRY(mcor_ask(context, true));
   const double begin = mcor_seconds();
   char options[512];
-  const char* sources[MCOR_SOURCE_LIMIT];
-  const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
   mcor_program_options(cl, number, options, sizeof options);
-  cl_int error;
-  cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
-  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
-  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
-  cl->build_seconds += mcor_seconds() - begin;
+  cl_program program = NULL;
+  cl_int error = CL_SUCCESS;
+  MCOR_TRY(mcor_await_program(context, number, &program, &error));
+  if (!program)
+  {
+    MCOR_TRY(mcor_make_program(context, number, &program));
+    error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
+  }
+  const double seconds = mcor_seconds() - begin;
+  cl->build_seconds += seconds;
+  MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, "", 0, seconds, 0));
   if (error == CL_SUCCESS)
   {
     cl->programs[number] = program;
@@ -101,7 +117,7 @@ bool mcor_has_ahead(const mcor_cl* cl, const mcor_build* build)
   mcor_cl tried = *cl;
   tried.build = *build;
   tried.lanes = mcor_choose_lanes(cl, build->precision);
-  mcor_program_options(&tried, MCOR_PROGRAM_FIELD, options, sizeof options);
+  mcor_program_options(&tried, MCOR_PROGRAM_NODES, options, sizeof options);
   return mcor_find_program(options) != NULL;
 }
 
@@ -113,11 +129,16 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
     MCOR_SAY(NO_DOUBLE_PRECISION), cl->device_name);
   const mcor_build* now = &cl->build;
   const int lanes = mcor_choose_lanes(cl, build->precision);
-  const bool all = cl->lanes != lanes || now->precision != build->precision;
-  if (all || now->sph_kernel != build->sph_kernel || now->field != build->field ||
-    now->solids != build->solids)
+  const int without_field = 1 << MCOR_PROGRAM_ATTRIBUTES | 1 << MCOR_PROGRAM_DENSITY;
+  const int without_solids = lanes == 1 ? MCOR_PARTS_PROBE : 0;
+  const int changed = cl->lanes != lanes || now->precision != build->precision ? MCOR_PARTS_ALL
+    : now->sph_kernel != build->sph_kernel ? MCOR_PARTS_FIELD | MCOR_PARTS_PROBE
+    : now->solids != build->solids ? (MCOR_PARTS_FIELD | MCOR_PARTS_PROBE) & ~without_solids
+    : now->field != build->field   ? MCOR_PARTS_FIELD & ~without_field
+                                   : 0;
+  if (changed)
   {
-    mcor_drop_programs(cl, all);
+    mcor_drop_programs(cl, changed);
     cl->lanes = lanes;
     cl->build = *build;
     cl->real_size = is_double ? sizeof(cl_double) : sizeof(cl_float);

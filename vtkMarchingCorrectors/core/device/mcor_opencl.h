@@ -22,11 +22,14 @@
 #define clEnqueueReadBuffer mcor_clEnqueueReadBuffer
 #define clEnqueueUnmapMemObject mcor_clEnqueueUnmapMemObject
 #define clEnqueueWriteBuffer mcor_clEnqueueWriteBuffer
+#define clEnqueueWriteBufferRect mcor_clEnqueueWriteBufferRect
 #define clFinish mcor_clFinish
 #define clGetDeviceIDs mcor_clGetDeviceIDs
 #define clGetDeviceInfo mcor_clGetDeviceInfo
 #define clGetEventProfilingInfo mcor_clGetEventProfilingInfo
 #define clGetKernelInfo mcor_clGetKernelInfo
+#define clGetContextInfo mcor_clGetContextInfo
+#define clGetMemObjectInfo mcor_clGetMemObjectInfo
 #define clGetPlatformIDs mcor_clGetPlatformIDs
 #define clGetPlatformInfo mcor_clGetPlatformInfo
 #define clGetProgramBuildInfo mcor_clGetProgramBuildInfo

@@ -10,13 +10,45 @@
 #include <stdio.h>
 #include <string.h>
 
-int mcor_program_sources(
-  const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT])
+/* Beginnings of names, of which the first that fits counts. */
+static const struct
+{
+  const char* begin;
+  mcor_program program;
+} mcor_kernel_programs[] = { { "grid_density", MCOR_PROGRAM_DENSITY },
+  { "grid_weight", MCOR_PROGRAM_DENSITY },
+  { "seed_request", MCOR_PROGRAM_BRICKS }, { "seed_grow", MCOR_PROGRAM_BRICKS },
+  { "seed_", MCOR_PROGRAM_NODES }, { "node_", MCOR_PROGRAM_NODES },
+  { "block_states", MCOR_PROGRAM_NODES }, { "block_", MCOR_PROGRAM_BRICKS },
+  { "brick_", MCOR_PROGRAM_BRICKS }, { "march_", MCOR_PROGRAM_CELLS },
+  { "trim_margin", MCOR_PROGRAM_TRIM }, { "trim_linear", MCOR_PROGRAM_TRIM },
+  { "trim_solve", MCOR_PROGRAM_TRIM }, { "trim_", MCOR_PROGRAM_CELLS },
+  { "correct_", MCOR_PROGRAM_VERTICES }, { "field_", MCOR_PROGRAM_SHAPE },
+  { "attribute_", MCOR_PROGRAM_ATTRIBUTES }, { "leaf_", MCOR_PROGRAM_LEAVES },
+  { "plane_nodes", MCOR_PROGRAM_RARE }, { "pair_seed", MCOR_PROGRAM_RARE },
+  { "boundary_", MCOR_PROGRAM_SHAPE }, { "curvature_", MCOR_PROGRAM_SHAPE },
+  { "plane_", MCOR_PROGRAM_CELLS }, { "topology_", MCOR_PROGRAM_CHOICES },
+  { "box_", MCOR_PROGRAM_CHOICES }, { "pair_", MCOR_PROGRAM_CHOICES },
+  { "probe_", MCOR_PROGRAM_PROBE }, { "derive_", MCOR_PROGRAM_PROBE },
+  { "widen_", MCOR_PROGRAM_PROBE }, { "", MCOR_PROGRAM_GRID } };
+
+mcor_program mcor_program_of(const char* kernel)
+{
+  const char* name = kernel + strlen("mcor_");
+  int i = 0;
+  while (strncmp(name, mcor_kernel_programs[i].begin, strlen(mcor_kernel_programs[i].begin)) != 0)
+  {
+    ++i;
+  }
+  return mcor_kernel_programs[i].program;
+}
+
+int mcor_program_sources(const mcor_cl* cl, int programs, const char* sources[MCOR_SOURCE_LIMIT])
 {
   int count = 0;
   for (const mcor_kernel_source* s = mcor_kernel_sources; s->text; ++s)
   {
-    if ((s->programs >> program & 1) && s->form != (cl->lanes > 1 ? MCOR_GPU_FORM : MCOR_CPU_FORM))
+    if ((s->programs & programs) && s->form != (cl->lanes > 1 ? MCOR_GPU_FORM : MCOR_CPU_FORM))
     {
       sources[count++] = s->text;
     }
@@ -36,13 +68,20 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const mcor_build* build = &cl->build;
   const mcor_kernel_row* kernel = mcor_kernel_of(build->sph_kernel);
   const bool is_double = build->precision == MCOR_FLOAT64;
-  /* Probes sum any arrays, not the scalar to contour, so their program is compiled for one
-   * field. */
-  const mcor_field field = program == MCOR_PROGRAM_PROBE ? MCOR_WEIGHT_SUM : build->field;
+  const int set = 1 << program,
+            number = set & MCOR_PARTS_LATTICE ? 0
+    : set & MCOR_PARTS_FIELD                  ? 1
+                                              : 2;
+  /* What does not depend on the field is compiled as for a free surface; in a GPU's form, probes do
+   * not depend on solids either. */
+  const int without_field =
+    1 << MCOR_PROGRAM_ATTRIBUTES | 1 << MCOR_PROGRAM_DENSITY | MCOR_PARTS_PROBE;
+  const mcor_field field = set & without_field ? MCOR_WEIGHT_SUM : build->field;
+  const bool solids = build->solids && !(set & MCOR_PARTS_PROBE && cl->lanes == 1);
   const char* f = is_double ? "" : "f";
   int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s -DMCOR_PROGRAM=%d",
-    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", (int)program);
-  if (program == MCOR_PROGRAM_LATTICE)
+    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", number);
+  if (number == 0)
   {
     snprintf(text + length, size - (size_t)length, " -DMCOR_LANES=%d -DMCOR_DOUBLE=%d", cl->lanes,
       is_double);
@@ -53,5 +92,5 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
     "-DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%s%s -DMCOR_TENSOR=%d "
     "-DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
     cl->lanes, is_double, kernel->name, kernel->name, kernel->name, kernel->norm_text, f,
-    kernel->support_text, f, kernel->is_tensor, (int)field, build->solids);
+    kernel->support_text, f, kernel->is_tensor, (int)field, solids);
 }

@@ -24,9 +24,10 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* Lists the sources of a program, in order; returns their number. */
-int mcor_program_sources(
-  const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
+/* Returns the program that has a kernel, from the beginning of its name. */
+mcor_program mcor_program_of(const char* kernel);
+/* Lists the sources of a set of programs, in order; returns their number. */
+int mcor_program_sources(const mcor_cl* cl, int programs, const char* sources[MCOR_SOURCE_LIMIT]);
 /* Names a build for an error sentence: "the SPH kernel sinc6". */
 #define MCOR_BUILD_NAME 80
 void mcor_name_build(const mcor_build* build, char* text, size_t size);

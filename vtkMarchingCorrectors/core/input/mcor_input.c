@@ -11,7 +11,7 @@
 
 int mcor_is_given(const mcor_array* array)
 {
-  return array->data || array->constant != 0;
+  return array->data || array->memory || array->constant != 0;
 }
 
 /* Compilers vectorise this loop where the stride is known. */

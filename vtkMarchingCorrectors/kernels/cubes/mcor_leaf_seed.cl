@@ -10,9 +10,6 @@
  * the leaf if it and they are on one side. Beside leaves of other levels, the state has to cover
  * all points of the leaf, sides included. All lengths are in cells of the level. */
 
-/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
-#define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
-
 /* Returns the bits of the 8 bricks of a row, counted through the rows of all blocks. */
 #define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)
 uint mcor_row_of(__global const uint* bits, int row)

@@ -12,6 +12,12 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
+/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
+#define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
+
+/* Whether a slot's state is certain, so that no node's value is needed. */
+#define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
+
 /* Blocks and bricks are positions among those of their level, and the level (w). */
 
 /* Returns the key of a block. */
@@ -147,135 +153,4 @@ ulong mcor_add_cells(__global uint* cells, int at, ulong added)
   const uint new_low = low ? low & ~atomic_or(cells + 2L * at, low) : 0;
   const uint new_high = high ? high & ~atomic_or(cells + 2L * at + 1, high) : 0;
   return new_low | (ulong)new_high << 32;
-}
-
-#if MCOR_OF_LATTICE
-/* One work-item = one word of 32 bricks. Counts its bricks. */
-__kernel void mcor_brick_count(
-  const int word_count, __global const uint* brick_bits, __global int* counts)
-{
-  MCOR_ITEM(word, word < word_count);
-  counts[word] = (int)popcount(brick_bits[word]);
-}
-
-/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
- * each brick to its slot, and its cells where it is chosen as seed. */
-__kernel void mcor_brick_fill(
-  MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
-{
-  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
-  int slot = brick_base[word];
-  for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
-  {
-    const int b = 31 - (int)clz(bits & -bits);
-    bricks[slot] = mcor_brick_of_number(rungs, block_keys, word * 32 + b);
-    seeds[slot++] = seed_bits[word] >> b & 1 ? ~0UL : 0;
-  }
-}
-
-/* One work-item = one brick. Finds its 7 upper neighbours (offset bits 1 x, 2 y, 4 z: entry
- * offset - 1), and becomes their lower one (entry offset + 6). Entries are -1 before. */
-__kernel void mcor_brick_neighbours(
-  MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
-{
-  MCOR_ITEM(slot, slot < brick_count);
-  const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
-  for (int d = 1; d < 8; ++d)
-  {
-    const int other = mcor_slot_of_number(
-      brick_bits, brick_base, mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_up(d)));
-    if (other >= 0)
-    {
-      neighbours[slot * 14L + d - 1] = other;
-      neighbours[other * 14L + d + 6] = slot;
-    }
-  }
-}
-
-/* Whether a slot's state is certain, so that no node's value is needed. */
-#define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
-
-/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are
- * unless they are known. With leaves of several levels, those of certain slots are only if they
- * were needed before (mcor_leaf_need); values below the node threshold never are. */
-__kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
-  const int leaf_count, __global const uchar* proofs, __global ulong* need)
-{
-  MCOR_ITEM(slot, slot < brick_count);
-  const int state = leaf_count > 0 ? proofs[slot] : MCOR_EXAMINE;
-  const bool idle = state == MCOR_VOID || (MCOR_IS_CERTAIN(state) && need[slot] == 0);
-  need[slot] = known[slot] || idle ? 0 : ~0UL;
-}
-
-/* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
- * one. words: 4-byte words that the values of a brick's nodes take; they are known all or none. */
-__kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
-  __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
-  __global const ulong* old_valid, const int words, __global const uint* old_value,
-  __global const uint* old_weight, __global ulong* known, __global ulong* above,
-  __global ulong* valid, __global uint* node_value, __global uint* node_weight)
-{
-  MCOR_ITEM(old, old < old_count);
-  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, old_bricks[old]);
-  if (slot < 0)
-  {
-    return;
-  }
-  known[slot] = old_known[old];
-  above[slot] = old_above[old];
-  valid[slot] = old_valid[old];
-  for (int n = 0; n < words && old_known[old]; ++n)
-  {
-    node_value[slot * (long)words + n] = old_value[old * (long)words + n];
-    node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];
-  }
-}
-#endif
-
-/* A box [x0, x1) x ..., in halves of the smallest cubes. */
-#define MCOR_SIDES_PARAMS                                                                          \
-  const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
-#define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
-
-/* Keeps a brick's cells, of its level, whose centres are in the box. */
-ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
-{
-  ulong cells = ~0UL;
-  for (int i = 0; i < MCOR_BRICK; ++i)
-  {
-    const int4 at = (2 * (brick * MCOR_BRICK + i) + 1) << brick.w;
-    cells &= at.x >= x0 && at.x < x1 ? ~0UL : ~(MCOR_LOW_X << i);
-    cells &= at.y >= y0 && at.y < y1 ? ~0UL : ~(MCOR_LOW_Y << 4 * i);
-    cells &= at.z >= z0 && at.z < z1 ? ~0UL : ~(MCOR_LOW_Z << 16 * i);
-  }
-  return cells;
-}
-
-/* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
-MCOR_ONE_COPY void mcor_brick_masks(
-  __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
-{
-  out[0] = masks[slot];
-  for (int d = 1; d < 8; ++d)
-  {
-    const int other = neighbours[slot * 14L + first + d - 1];
-    out[d] = other < 0 ? 0 : masks[other];
-  }
-}
-
-/* Returns the nodes or cells of a brick on some of its sides. x, y, z: 0 the first layer along the
- * axis, 2 the last one, 1 all. */
-ulong mcor_on_sides(int x, int y, int z)
-{
-  return (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
-    (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
-    (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
-}
-
-/* Whether any of these cells of a brick has nodes in its upper neighbour d (bits x, y, z; 0 is
- * itself). */
-bool mcor_cells_reach(ulong cells, int d)
-{
-  return (cells & mcor_on_sides(1 + (d & 1), 1 + (d >> 1 & 1), 1 + (d >> 2))) != 0;
 }

@@ -164,19 +164,3 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
     boundary->gradient[a] = sum[a];
   }
 }
-
-/* One work-item = one group of points. Writes their boundary eigenvalues. */
-__kernel void mcor_boundary_points(
-  MCOR_GROUP_PARAMS, __global const real4* offset, const int plane, __global real* eigenvalue)
-{
-  MCOR_GROUP_ITEM(0);
-  mcor_quantity boundary;
-  mcor_evaluate_boundary(&grid, &query, &reach.tile, &points, plane, false, &boundary);
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    if (points.index[lane] >= 0)
-    {
-      eigenvalue[points.index[lane]] = MCOR_GET(boundary.value, lane);
-    }
-  }
-}

@@ -105,15 +105,3 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, mcor_query* query,
     }
   }
 }
-
-/* One work-item = one group of points that no edge has: of caps, and where the field decides on the
- * topology. Writes value, gradient, weight and attributes there. */
-__kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real4* offset,
-  __global real* value, __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
-{
-  MCOR_GROUP_ITEM(0);
-  mcor_field_at at;
-  mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
-  mcor_points_store(&grid, &query, &points, iso, &reach, &at, offset, value, gradient, weight,
-    MCOR_ATTRIBUTE_ARGS);
-}

@@ -1,0 +1,24 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_cl_memory_h
+#define mcor_cl_memory_h
+
+/* Inputs with arrays in OpenCL buffers of the caller's, see mcor_array.memory. */
+
+#include "mcor.h"
+
+/* An input whose arrays the host can read. All zero: none. */
+typedef struct mcor_sight
+{
+  mcor_input input;
+  mcor_array* attributes; /* of this input, where some array is in a buffer; else NULL */
+  struct mcor_seen* seen; /* [count] */
+  int count;
+} mcor_sight;
+
+/* Lets the host see all arrays of an input until mcor_end_sight, which is called after a failure,
+ * too. */
+mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_sight* sight);
+void mcor_end_sight(mcor_sight* sight);
+
+#endif

@@ -1,0 +1,188 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What a call costs, by phase: seconds, launches of each kernel, waits, transfers. The variable
+ * MCOR_PROFILE in the environment names the table to which each call is appended. */
+
+#include "mcor_cl_call.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Commands of one kind and name within one phase. */
+typedef struct mcor_profile_row
+{
+  mcor_phase phase;
+  mcor_command command;
+  char name[48]; /* of the kernel; "" for other commands */
+  int64_t count, bytes;
+  double host, device; /* seconds within OpenCL's calls, and on the device */
+} mcor_profile_row;
+
+/* A command that may still run. */
+typedef struct mcor_profile_event
+{
+  cl_event event;
+  int64_t row;
+} mcor_profile_event;
+
+struct mcor_profile
+{
+  FILE* file;
+  int64_t call; /* counts the calls of this context */
+  MCOR_LIST(mcor_profile_row) rows;
+  MCOR_LIST(mcor_profile_event) pending;
+  cl_event event; /* of the command under way */
+  double begin;
+};
+
+mcor_status mcor_open_profile(mcor_context* context)
+{
+  const char* path = getenv("MCOR_PROFILE");
+  if (!path || !*path)
+  {
+    return MCOR_OK;
+  }
+  struct mcor_profile* profile = context->cl.profile = calloc(1, sizeof *profile);
+  MCOR_TRY(mcor_allocated(context, profile != NULL));
+  profile->file = fopen(path, "a");
+  MCOR_FAIL_IF(
+    !profile->file, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), path, strerror(errno));
+  if (fseek(profile->file, 0, SEEK_END) == 0 && ftell(profile->file) == 0)
+  {
+    fputs("call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n", profile->file);
+  }
+  return MCOR_OK;
+}
+
+void mcor_close_profile(mcor_context* context)
+{
+  struct mcor_profile* profile = context->cl.profile;
+  if (profile)
+  {
+    if (profile->file)
+    {
+      fclose(profile->file);
+    }
+    free(profile->rows.of);
+    free(profile->pending.of);
+    free(profile);
+    context->cl.profile = NULL;
+  }
+}
+
+cl_event* mcor_begin_profiled(struct mcor_profile* profile)
+{
+  profile->event = NULL;
+  profile->begin = mcor_seconds();
+  return &profile->event;
+}
+
+double mcor_event_seconds(cl_event event)
+{
+  cl_ulong start = 0, end = 0;
+  const bool known = clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start,
+                       &start, NULL) == CL_SUCCESS &&
+    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS;
+  return known ? 1e-9 * (double)(end - start) : -1;
+}
+
+/* Returns the number of a row, which is made where there is none; -1: memory ran out. */
+static int64_t mcor_profile_row_of(mcor_context* context, mcor_command command, const char* name)
+{
+  struct mcor_profile* profile = context->cl.profile;
+  const mcor_phase phase = context->run.phase;
+  for (int64_t i = 0; i < profile->rows.count; ++i)
+  {
+    const mcor_profile_row* row = profile->rows.of + i;
+    if (row->phase == phase && row->command == command && strcmp(row->name, name) == 0)
+    {
+      return i;
+    }
+  }
+  if (profile->rows.count == profile->rows.room &&
+    mcor_make_room(context, (void**)&profile->rows.of, profile->rows.count, &profile->rows.room,
+      sizeof(mcor_profile_row)) != MCOR_OK)
+  {
+    return -1;
+  }
+  mcor_profile_row* row = profile->rows.of + profile->rows.count;
+  *row = (mcor_profile_row){ .phase = phase, .command = command };
+  snprintf(row->name, sizeof row->name, "%s", name);
+  return profile->rows.count++;
+}
+
+/* Takes the times of commands that are done. */
+static void mcor_take_events(struct mcor_profile* profile)
+{
+  for (int64_t i = 0; i < profile->pending.count; ++i)
+  {
+    const mcor_profile_event* pending = profile->pending.of + i;
+    profile->rows.of[pending->row].device += fmax(mcor_event_seconds(pending->event), 0);
+    clReleaseEvent(pending->event);
+  }
+  profile->pending.count = 0;
+}
+
+mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
+  int64_t bytes, double host, double device)
+{
+  struct mcor_profile* profile = context->cl.profile;
+  const int64_t row = profile ? mcor_profile_row_of(context, command, name) : -1;
+  if (row >= 0)
+  {
+    profile->rows.of[row].count += 1;
+    profile->rows.of[row].bytes += bytes;
+    profile->rows.of[row].host += host;
+    profile->rows.of[row].device += device;
+  }
+  return !profile || row >= 0 ? MCOR_OK : mcor_allocated(context, false);
+}
+
+mcor_status mcor_end_profiled(
+  mcor_context* context, mcor_command command, const char* name, size_t bytes)
+{
+  struct mcor_profile* profile = context->cl.profile;
+  const double seconds = mcor_seconds() - profile->begin;
+  MCOR_TRY(mcor_add_to_profile(
+    context, command, name, (int64_t)bytes, seconds, mcor_is_native(&context->cl) ? seconds : 0));
+  if (profile->event)
+  {
+    MCOR_APPEND(context, &profile->pending,
+      (mcor_profile_event){ profile->event, mcor_profile_row_of(context, command, name) });
+  }
+  if (command == MCOR_COMMAND_WAIT)
+  {
+    mcor_take_events(profile);
+  }
+  return MCOR_OK;
+}
+
+void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics)
+{
+  static const char* const names[] = { "launch", "wait", "write", "read", "copy", "map", "lock",
+    "build" };
+  struct mcor_profile* profile = context->cl.profile;
+  if (!profile)
+  {
+    return;
+  }
+  clFinish(context->cl.queue);
+  mcor_take_events(profile);
+  for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
+  {
+    fprintf(profile->file, "%lld,%s,phase,,1,0,%.9f,0\n", (long long)profile->call,
+      mcor_phase_name((mcor_phase)p), statistics->seconds[p]);
+  }
+  for (int64_t i = 0; i < profile->rows.count; ++i)
+  {
+    const mcor_profile_row* row = profile->rows.of + i;
+    fprintf(profile->file, "%lld,%s,%s,%s,%lld,%lld,%.9f,%.9f\n", (long long)profile->call,
+      mcor_phase_name(row->phase), names[row->command], row->name, (long long)row->count,
+      (long long)row->bytes, row->host, row->device);
+  }
+  fflush(profile->file);
+  profile->rows.count = 0;
+  ++profile->call;
+}

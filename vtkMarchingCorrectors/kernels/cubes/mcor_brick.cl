@@ -1,0 +1,83 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Bricks that get slots [III-B]; functions for them are in mcor_virtual_grid.cl. */
+
+/* One work-item = one word of 32 bricks. Counts its bricks. */
+__kernel void mcor_brick_count(
+  const int word_count, __global const uint* brick_bits, __global int* counts)
+{
+  MCOR_ITEM(word, word < word_count);
+  counts[word] = (int)popcount(brick_bits[word]);
+}
+
+/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
+ * each brick to its slot, and its cells where it is chosen as seed. */
+__kernel void mcor_brick_fill(
+  MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
+{
+  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
+  int slot = brick_base[word];
+  for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
+  {
+    const int b = 31 - (int)clz(bits & -bits);
+    bricks[slot] = mcor_brick_of_number(rungs, block_keys, word * 32 + b);
+    seeds[slot++] = seed_bits[word] >> b & 1 ? ~0UL : 0;
+  }
+}
+
+/* One work-item = one brick. Finds its 7 upper neighbours (offset bits 1 x, 2 y, 4 z: entry
+ * offset - 1), and becomes their lower one (entry offset + 6). Entries are -1 before. */
+__kernel void mcor_brick_neighbours(
+  MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
+{
+  MCOR_ITEM(slot, slot < brick_count);
+  const int4 brick = bricks[slot];
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
+  for (int d = 1; d < 8; ++d)
+  {
+    const int other = mcor_slot_of_number(
+      brick_bits, brick_base, mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, mcor_up(d)));
+    if (other >= 0)
+    {
+      neighbours[slot * 14L + d - 1] = other;
+      neighbours[other * 14L + d + 6] = slot;
+    }
+  }
+}
+
+/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are
+ * unless they are known. With leaves of several levels, those of certain slots are only if they
+ * were needed before (mcor_leaf_need); values below the node threshold never are. */
+__kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
+  const int leaf_count, __global const uchar* proofs, __global ulong* need)
+{
+  MCOR_ITEM(slot, slot < brick_count);
+  const int state = leaf_count > 0 ? proofs[slot] : MCOR_EXAMINE;
+  const bool idle = state == MCOR_VOID || (MCOR_IS_CERTAIN(state) && need[slot] == 0);
+  need[slot] = known[slot] || idle ? 0 : ~0UL;
+}
+
+/* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
+ * one. words: 4-byte words that the values of a brick's nodes take; they are known all or none. */
+__kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
+  __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
+  __global const ulong* old_valid, const int words, __global const uint* old_value,
+  __global const uint* old_weight, __global ulong* known, __global ulong* above,
+  __global ulong* valid, __global uint* node_value, __global uint* node_weight)
+{
+  MCOR_ITEM(old, old < old_count);
+  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, old_bricks[old]);
+  if (slot < 0)
+  {
+    return;
+  }
+  known[slot] = old_known[old];
+  above[slot] = old_above[old];
+  valid[slot] = old_valid[old];
+  for (int n = 0; n < words && old_known[old]; ++n)
+  {
+    node_value[slot * (long)words + n] = old_value[old * (long)words + n];
+    node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];
+  }
+}

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
+from ._device_arrays import on_host
 from ._find import ELEMENTS, as_bytes
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
 from ._options import BOUNDS, ISOSURFACE, camel, did_you_mean, kind_of, words_of  # noqa: F401  others import camel from here
@@ -30,7 +31,7 @@ def is_real(array):
 
 
 def as_array(values, role):
-    """Calls np.asarray, and raises one sentence if that fails or would lose something."""
+    """Calls np.asarray, and raises one sentence if that fails or would lose something. Arrays on a CUDA device are copied to the host."""
     if np.ma.is_masked(values):
         raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
     parts = values if isinstance(values, (list, tuple)) else [values]
@@ -38,9 +39,12 @@ def as_array(values, role):
     if unit is not None:
         raise InvalidArgument(f"The {role} has the unit {unit}; it must be plain numbers here.")
     try:
+        values = on_host(values, role)
         if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
             return np.from_dlpack(values)
         array = np.asarray(values)
+    except Error:
+        raise
     except (TypeError, ValueError, RuntimeError, BufferError) as error:
         raise InvalidArgument(
             f"The {role} is not an array in this computer's memory that NumPy can take: {error}") from None

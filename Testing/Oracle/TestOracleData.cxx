@@ -104,7 +104,7 @@ const DataCase LargeCases[] = {
 // Lends a VTK array to the core; float and double are used as they are.
 mcor_array BorrowArray(vtkDataArray* array)
 {
-  mcor_array result;
+  mcor_array result = {};
   std::memset(&result, 0, sizeof(result));
   result.data = array->GetVoidPointer(0);
   result.type = array->GetDataType() == VTK_DOUBLE ? MCOR_FLOAT64 : MCOR_FLOAT32;

@@ -403,7 +403,6 @@ void pqSPHInUse::showNotGiven()
     {
       if (edit->text() == "0" && !edit->hasFocus())
       {
-        const QSignalBlocker block(edit);
         edit->clear();
       }
     };

@@ -106,7 +106,7 @@ def first_apply(folder):
         change("CubeSize/DoubleLineEdit0", "set_string", "0.0003"), PAUSE,
         shown("sph_in_use/Values/NextCells", "text", "4.57686e+09"),
         shown("CubeSizeFactor/Warning", "visible", "true"),
-        change("CubeSize/DoubleLineEdit0", "set_string", "0"), PAUSE,
+        change("CubeSize/DoubleLineEdit0", "set_string", "0"), PAUSE, shown("CubeSize/DoubleLineEdit0", "text", ""),
         shown("sph_in_use/Values/NextCells", "text", "75211.7"), shown("CubeSizeFactor/Warning", "visible", "false"),
         APPLY, *save_state(f"{folder}/applied.pvsm"),
     ]

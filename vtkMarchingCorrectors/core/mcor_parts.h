@@ -125,6 +125,13 @@ extern "C"
    * particle; see mcor_options.globals. */
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
+  /* Returns how far from a box all particles are needed, however short their supports are, because
+   * what reaches the box depends on them; 0: none. All lengths have one unit. computes_volumes:
+   * whether the call computes volumes; widest: options.widen of mcor_widen, 0 of other calls; reach:
+   * the most by which a particle that reaches the box may be away from it, 0 if none does; margin:
+   * at least two cubes, as particles and the box are rounded. */
+  double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,
+    double reach, double margin);
 
   /* Area and volume of a surface in parts: to the last bit those in the statistics of the whole
    * surface. */

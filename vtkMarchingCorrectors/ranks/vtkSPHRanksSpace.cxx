@@ -166,17 +166,15 @@ vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& i
   return to;
 }
 
-// Finds how far around its box each rank needs all particles, whatever their supports: for
-// computed volumes, and for nearest particles.
+// Finds how far around its box each rank needs all particles, see mcor_reach_around().
 std::vector<double> vtkSPHRanksSpace::FindRadii(
   vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const
 {
   const mcor_options& o = *this->Options;
   const bool computesVolumes = vtkSPHComputesVolumes(input);
-  const bool findsNearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) != 0;
-  std::vector<double> radii(Index(ranks.GetCount()), 0.0);
   const bool findsFactors = o.widen > 1.0 && !input.widening.data; // with mcor_widen
-  if (!computesVolumes && !findsFactors && !findsNearest)
+  std::vector<double> radii(Index(ranks.GetCount()), 0.0);
+  if (mcor_reach_around(&o, computesVolumes, findsFactors, 1.0, 1.0) == 0.0)
   {
     return radii;
   }
@@ -195,12 +193,8 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
   for (double& radius : radii)
   {
-    const double cubes = this->Margin;
-    const double volumes = computesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
-    const double nearest = findsNearest ? radius + cubes : 0.0;
-    const double widened =
-      findsFactors ? std::max(volumes, radius) * (1.0 + o.widen) + cubes : 0.0;
-    radius = radius > 0.0 ? std::max({ volumes, nearest, widened }) : 0.0;
+    radius =
+      mcor_reach_around(&o, computesVolumes, findsFactors ? o.widen : 0.0, radius, this->Margin);
   }
   return radii;
 }

@@ -90,6 +90,31 @@ static void other_fields(void** state)
   core_check_cuts(*state, "sum, tensor kernel", &input, &options);
 }
 
+/* The nearest of many small particles around a large one, which makes the surface, often has a support that ends before
+ * the box. */
+static void nearest_particles(void** state)
+{
+  const double half = 0.5;
+  CORE_SET set = core_make_random(60, 14, 0.3, 3, 7);
+  uint64_t seed = 21;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = i == 0 ? 0 : 4 * random_unit(&seed) - 2;
+    }
+    set.smoothing_length[i] = i == 0 ? 1 : 0.1;
+    set.volume[i] = i == 0 ? 40 : 1e-6;
+  }
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&half);
+  core_ask_for_all(&options);
+  options.field = MCOR_WEIGHT_SUM;
+  options.cube_size = 0.12;
+  options.level_limit = 0;
+  core_check_cuts(*state, "nearest", &input, &options);
+}
+
 /* Returns an input with masses alone, so that volumes are computed, and with solids. In a region of it all values of x
  * have one sign. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
@@ -346,4 +371,5 @@ static void caps(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, trimmed_surfaces, rough_surfaces, other_fields,
-  kept_particles, caps, given_globals, impossible_globals, small_boxes, bad_boxes)
+  nearest_particles, kept_particles, caps, given_globals, impossible_globals, small_boxes,
+  bad_boxes)

@@ -40,6 +40,7 @@ typedef struct mcor_far_job
   bool open[3];        /* axes without a period */
   double reach, slack; /* per smoothing length: the support radius, and how much farther a particle
                         * is needed */
+  double margin;       /* of mcor_reach_around */
   double radius;       /* the least distance at which a particle still counts */
   double centre[3],
     half; /* without a region: the grid's middle, and how far it may go from there */
@@ -77,7 +78,7 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       found.first = is_far && particle < found.first ? particle : found.first;
       if (is_used && !is_far)
       {
-        mcor_add_range(&found, 0, 0, p.length[i] * job->reach);
+        mcor_add_range(&found, 0, 0, p.length[i] * (job->reach + job->slack));
       }
     }
   }
@@ -102,13 +103,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   MCOR_TRY(mcor_mark_far(context, job));
   if (job->all.sums[MCOR_STAYING] > 0)
   {
-    const double largest = job->all.most[0];
-    const double volumes =
-      mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
-    /* Keeps also particles that reach there with widened lengths, and those that the mean of the
-     * factors and the sums there need. */
-    const double around = (volumes + largest) * (1 + 2 * context->run.widest);
-    job->radius = largest > 0 ? around + 2 * context->measure.h_min : 0;
+    job->radius = mcor_reach_around(
+      options, mcor_needs_density(job->input), context->run.widest, job->all.most[0], job->margin);
     return mcor_mark_far(context, job);
   }
   /* There is no fluid. A run needs some, wherever that is. */
@@ -178,6 +174,7 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   mcor_far_job job = { .context = context, .input = input, .far = far };
   job.reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
   job.slack = (has_box ? mcor_box_slack(options) : MCOR_POINTS_SLACK) * edge / m->h_min;
+  job.margin = 2 * edge;
   job.half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job.reach * m->h_median;
   for (int a = 0; a < 3; ++a)
   {

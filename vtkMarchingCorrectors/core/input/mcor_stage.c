@@ -577,28 +577,19 @@ mcor_status mcor_stage(mcor_staging* staging)
   if (mcor_find_reach(context, &reach))
   {
     staging->reach = &reach;
-    /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
-     * particle's unscaled support; the nearest particle may be nearer than one that reaches; and
-     * the other particle of a pair is within the smoothing length. Sums at particles with longer
-     * lengths are needed as far as a support from the box. */
     const double widest = context->run.widest;
-    const bool computes = mcor_needs_density(staging->input),
-               nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE),
-               pairs = mcor_uses_pairs(context) && !context->box.of_points;
-    const int slices = computes || nearest || widest > 0 || pairs
-      ? mcor_parallel_for(
-          context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging)
-      : 0;
+    const bool computes = mcor_needs_density(staging->input);
+    /* Whether the reach is widened at all. */
+    const bool widens = mcor_reach_around(options, computes, widest, 1, 2) > 0;
+    const int slices = widens ? mcor_parallel_for(context, staging->input->count, MCOR_HEAVY_GRAIN,
+                                  mcor_find_reaching, staging)
+                              : 0;
     double farthest = 0;
     for (int s = 0; s < slices; ++s)
     {
       farthest = fmax(farthest, staging->slices[s].farthest);
     }
-    const double volumes = computes ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
-    const double others = nearest || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
-    const double beyond =
-      widest > 0 ? fmax(volumes, farthest) * (1 + widest) + 2 : fmax(volumes, others);
-    reach.radius = farthest > 0 ? beyond : 0;
+    reach.radius = mcor_reach_around(options, computes, widest, farthest, 2);
     staging->images = malloc((size_t)staging->input->count + 1);
     MCOR_TRY(mcor_allocated(context, staging->images));
   }

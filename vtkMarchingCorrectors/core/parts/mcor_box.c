@@ -302,6 +302,20 @@ double mcor_reach_margin(
               : MCOR_GLOBALS_MARGIN(ring));
 }
 
+double mcor_reach_around(
+  const mcor_options* options, int computes_volumes, double widest, double reach, double margin)
+{
+  /* A volume is found from all particles within the particle's own, unscaled support. */
+  const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
+  /* The nearest particle may have a support that ends before the box; it is nearer than the
+   * particles that reach it. So is the other particle of a pair, which is within a smoothing length. */
+  const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
+  const double nearest = others ? reach + margin : 0;
+  /* A factor is found from sums with widened supports at the particle and at those around it. */
+  const double factors = widest > 0 ? fmax(volumes, reach) * (1 + widest) + margin : 0;
+  return reach > 0 ? fmax(fmax(volumes, nearest), factors) : 0;
+}
+
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
 {
   const double period = ldexp(box->period[axis], box->fix_bits);

@@ -137,18 +137,17 @@ static mcor_status mcor_fit_period(
   MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   /* How far from the period an image may be and still be needed, L; see mcor_stage. */
-  const double beyond = context->run.widest * (1 + 1 / options->h_scale);
-  const double reach = m->support_max * (2 + 1 / options->h_scale + beyond) + 8 * longest;
+  const double reach = m->support_max +
+    mcor_reach_around(options, true, context->run.widest, m->support_max, 0) + 8 * longest;
   const double margin = longest *
-    (*top > 0 ? ldexp(mcor_box_slack(options) + 1.5, *top)
-              : mcor_ring_of(options) - MCOR_BOX_RING);
+    (*top > 0 ? ldexp(mcor_box_slack(options) + 1.5, *top) : mcor_ring_of(options) - MCOR_BOX_RING);
   for (int a = 0; a < 3; ++a)
   {
     if (length[a] > 0)
     {
       const double most = MCOR_MOST_PERIODS * length[a];
       const double widest = context->run.widest,
-                   fits = (most / m->support_max - 2 - 1 / options->h_scale) * widest / beyond;
+                   fits = (most / m->support_max - 1) / (1 + 1 / options->h_scale) - 1;
       MCOR_FAIL_IF(reach - 8 * longest > most && widest > 0, context, MCOR_INVALID_ARGUMENT,
         MCOR_SAY(PERIOD_TOO_SHORT_WIDENED), mcor_axis_letter(context, a), length[a], m->support_max,
         widest * m->support_max,

@@ -195,44 +195,6 @@ class OutputFiles(CommandLineTest):
                                   stdout=log, stderr=subprocess.PIPE)
         self.one_sentence(result, 2, "log.json would be written twice: standard output goes there, too")
 
-    def test_pieces_are_inputs(self):
-        """Files that a list of pieces names are inputs, too, and are not overwritten under any name."""
-        piece = self.directory / "piece.vtp"
-        self.input.rename(piece)
-        before = piece.read_text()
-        link = self.directory / "link.vtp"
-        link.symlink_to("piece.vtp")
-        pieces = self.directory / "particles.pvtp"
-        files.write_pieces(pieces, ["piece.vtp"])
-        steps = self.directory / "steps.pvd"
-        files.write_pvd(steps, [(0, "particles.pvtp")])
-        film = self.directory / "film.pvd"
-        for arguments in ([pieces, piece], [pieces, link], [pieces, "s.vtp", "--stats", piece],
-                          [pieces, "s.vtp", "--screenshot", self.directory / "piece.png"],
-                          [steps, film, "--stats", piece]):
-            if "--screenshot" in arguments:
-                arguments[-1].symlink_to("piece.vtp")
-            result = self.run_program(*arguments, *FREE)
-            self.one_sentence(result, 2, "would overwrite the input")
-        result = self.run_program(pieces, piece, "--line", "0,0,0,1,0,0")
-        self.one_sentence(result, 2, "piece.vtp would overwrite the input")
-        self.assertEqual(piece.read_text(), before)
-        self.assertFalse((self.directory / "s.vtp").exists())
-        self.assertFalse(film.exists())
-
-    def test_gauges_are_inputs(self):
-        gauges = self.directory / "gauges.csv"
-        gauges.write_text("mast=0,0,-1:0,0,1\n")
-        (self.directory / "link.csv").symlink_to(gauges)
-        film = [self.input, self.input, "film.pvd", *FREE, "--gauges", gauges]
-        for name in ("gauges.csv", "link.csv"):
-            for options in (["--numbers", name], ["--numbers", "n.csv", "--components", name],
-                            ["--numbers", "n.csv", "--stats", name]):
-                self.one_sentence(self.run_program(*film, *options), 2, name + " would overwrite the input")
-            self.one_sentence(self.run_program(self.input, name, "--gauges", gauges), 2, "would overwrite the input")
-        self.assertEqual(gauges.read_text(), "mast=0,0,-1:0,0,1\n")
-        self.assertFalse((self.directory / "film.pvd").exists())
-
     def test_no_output_replaces_an_input(self):
         """Each option that names an output is tried with each way to name an input. The input is refused as output and stays as it was."""
         at = self.directory
@@ -267,7 +229,9 @@ class OutputFiles(CommandLineTest):
         fields = [(".vti", ["OUT", "--slice", "z=0"]), (".vtp", ["OUT", "--line", "0,0,0,1,0,0"]), (".vti", ["OUT", "--project", "z"]),
                   (".png", ["o.vti", "--project", "z", "--screenshot", "OUT"])]
         tables = [(".csv", ["OUT", *gauge]), (".vti", ["OUT", "--gauge-grid", "2,2:0,1,0,1,0,1"]), (".csv", ["OUT", "--flux", "a=0,0,0:1,0,0:0,1,0"])]
-        own = {"--probe": [(".vtp", ["OUT"])], "--gauges": [(".csv", ["OUT"]), (".csv", [*film, "--numbers", "OUT"])],
+        own = {"--probe": [(".vtp", ["OUT"])], "--gauges": [(".csv", ["OUT"]), (".csv", [*film, "--numbers", "OUT"]),
+                                                          (".csv", [*film, "--numbers", "n.csv", "--components", "OUT"]),
+                                                          (".json", [*film, "--numbers", "n.csv", "--stats", "OUT"])],
                "--fluxes": [(".csv", ["OUT"])], "--flux": [(".csv", ["OUT"])]}
         number = 0
         for source, read, more in sources:

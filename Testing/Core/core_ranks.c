@@ -52,58 +52,35 @@ static int show(core_rank* rank, const void* value, int64_t size)
   return wait_for_all(rank->world);
 }
 
-static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
-{
-  core_rank* rank = user;
-  double* result = malloc((size_t)count * sizeof *result);
-  int failed = !result || show(rank, values, count);
-  /* Sums must not depend on the order, so each rank adds in another order. */
-  for (int r = 0; r < rank->world->count && !failed; ++r)
-  {
-    const int from = (r + rank->number) % rank->world->count;
-    const double* other = rank->world->value[from];
-    failed = failed || rank->world->size[from] != count;
-    for (int i = 0; i < count && !failed; ++i)
-    {
-      const int take = reduction == MCOR_LEAST ? other[i] < result[i] : other[i] > result[i];
-      result[i] = r > 0 && reduction == MCOR_SUM_OF ? result[i] + other[i]
-        : r == 0 || take                            ? other[i]
-                                                    : result[i];
-    }
+/* Makes a function that reduces numbers of a type. Sums must not depend on the order, so each rank adds in another order. */
+#define RANKS_REDUCE(name, type)                                                                   \
+  static int name(void* user, mcor_reduction reduction, type* values, int count)                   \
+  {                                                                                                \
+    core_rank* rank = user;                                                                        \
+    type* result = malloc((size_t)count * sizeof *result);                                         \
+    int failed = !result || show(rank, values, count);                                             \
+    for (int r = 0; r < rank->world->count && !failed; ++r)                                        \
+    {                                                                                              \
+      const int from = (r + rank->number) % rank->world->count;                                    \
+      const type* other = rank->world->value[from];                                                \
+      failed = failed || rank->world->size[from] != count;                                         \
+      for (int i = 0; i < count && !failed; ++i)                                                   \
+      {                                                                                            \
+        const type last = r == 0 ? other[i] : result[i];                                           \
+        const int take = reduction == MCOR_LEAST ? other[i] < last : other[i] > last;              \
+        result[i] = r > 0 && reduction == MCOR_SUM_OF ? last + other[i] : take ? other[i] : last;  \
+      }                                                                                            \
+    }                                                                                              \
+    failed = wait_for_all(rank->world) || failed;                                                  \
+    if (!failed)                                                                                   \
+    {                                                                                              \
+      memcpy(values, result, (size_t)count * sizeof *result);                                      \
+    }                                                                                              \
+    free(result);                                                                                  \
+    return failed;                                                                                 \
   }
-  failed = wait_for_all(rank->world) || failed;
-  if (!failed)
-  {
-    memcpy(values, result, (size_t)count * sizeof *result);
-  }
-  free(result);
-  return failed;
-}
-
-static int reduce_counts(void* user, mcor_reduction reduction, int64_t* values, int count)
-{
-  core_rank* rank = user;
-  int64_t* result = malloc((size_t)count * sizeof *result);
-  int failed = !result || show(rank, values, count);
-  for (int r = 0; r < rank->world->count && !failed; ++r)
-  {
-    const int64_t* other = rank->world->value[r];
-    failed = failed || rank->world->size[r] != count;
-    for (int i = 0; i < count && !failed; ++i)
-    {
-      const int64_t last = r == 0 ? 0 : result[i];
-      const int take = reduction == MCOR_LEAST ? other[i] < last : other[i] > last;
-      result[i] = reduction == MCOR_SUM_OF ? last + other[i] : r == 0 || take ? other[i] : last;
-    }
-  }
-  failed = wait_for_all(rank->world) || failed;
-  if (!failed)
-  {
-    memcpy(values, result, (size_t)count * sizeof *result);
-  }
-  free(result);
-  return failed;
-}
+RANKS_REDUCE(reduce_doubles, double)
+RANKS_REDUCE(reduce_counts, int64_t)
 
 static int gather(void* user, const void* records, int64_t count, size_t width, const void** all,
   int64_t* all_count)

@@ -96,16 +96,6 @@ class Project(unittest.TestCase):
             self.assertEqual((image.extent.tolist(), image.values.shape), ([0, 1, 0, 1], (16, 16)))
         self.assertEqual(repr(image), "<Projection: 16 x 16 pixels>")
 
-    def test_scalars_and_weights(self):
-        words = {**WHOLE, "smoothing_length": 0.2, "volume": 1 / 3000, "resolution": 9}
-        self.assertAlmostEqual(mc.project(POINTS, np.ones(3000), **words).values[4, 4], 1, delta=0.1)
-        weighted = mc.project(POINTS, POINTS[:, 0], weighted_by=M, **words).values
-        self.assertTrue((np.diff(weighted.mean(axis=0)) > 0).all())
-        by_mass = mc.project(POINTS, POINTS[:, 0], weighted_by=M, **{**words, "volume": M}).values
-        self.assertAlmostEqual(np.abs(by_mass - weighted).max(), 0, delta=1e-12)
-        vector = mc.project(POINTS, POINTS, scalar_component=1, **words).values
-        self.assertTrue((mc.project(POINTS, POINTS[:, 1], **words).values == vector).all())
-
 
 class OtherParticles(unittest.TestCase):
     def particles(self, x, columns):

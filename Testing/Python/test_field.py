@@ -62,7 +62,8 @@ class TestPeriod(unittest.TestCase):
         particles = make_vortex(12)
         size = particles_of([[0.0] * 3], BoxSize=numpy.ones(1)).GetPointData().GetArray("BoxSize")
         for filter_ in self.make_filters(particles):
-            expected = content(run(filter_, PeriodicBounds=(0, 1) * 3)[0])
+            plain, expected = (content(run(filter_, PeriodicBounds=bounds)[0]) for bounds in ((0,) * 6, (0, 1) * 3))
+            self.assertNotEqual(plain, expected)
             _, told = run(filter_, PeriodicBounds=(0,) * 6, DetectPeriod=1)
             self.assertRegex(filter_.GetErrorMessage(), says("NO_PERIOD"))
             self.assertTrue(told)

@@ -118,7 +118,14 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     arguments = Arguments(units.positions)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
     given.update(units.quantities(given), within=units.lengths(given["within"], "within"))
-    _find(arguments, given, units.options(options), wants, nothing, roles, source, attributes if named is None else named)
+    finder = Finder(arguments, source, attributes if named is None else named)
+    finder.add_sizes({**{role: given[role] for role in QUANTITIES}, **roles}, options.pop("estimate_smoothing_length", False))
+    finder.add_fluid(given["solid"], given["fluid"])
+    finder.add_choice(given["within"], given["only"])
+    finder.request["scalar_component"] = -1  # This means the magnitude.
+    finder.request.update((name, number(name, kind_of(name), options.pop(name))) for name in (
+        "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options)
+    finder.find(wants, units.options(options), nothing)
     if "flow" not in wants:
         arguments.set_attributes(attributes)
     return arguments
@@ -128,104 +135,114 @@ class Ranges(list):
     """Has pairs (name, value or (low, high)) in place of the dictionary `only`, of which several may have one name: then any counts."""
 
 
-def _find(arguments, given, options, wants, nothing, roles, source, attributes):
+class Finder:
     """Lets the core find volumes, fluid, particles that are left out, and the scalar among the arrays that are given, and those of a file
     (source: None, or its particles). Without a file, fluid and only name attributes."""
-    others, array_of = (source.arrays, source.array) if source else (attributes, functools.partial(_attribute, attributes))
-    named, names, values, ranges = {}, {}, {}, []
 
-    def add(name, array):
-        while name in named and named[name] is not array:
+    def __init__(self, arguments, source, attributes):
+        self.arguments, self.source = arguments, source
+        self.others = source.arrays if source else attributes
+        self.array_of = source.array if source else functools.partial(_attribute, attributes)
+        self.named, self.names, self.values, self.ranges, self.looks = {}, {}, {}, [], False
+        self.request = {"find": source is not None}
+
+    def add(self, name, array):
+        """Returns the name that the array has for the core, where each is different."""
+        while name in self.named and self.named[name] is not array:
             name += "'"
-        named[name] = array
+        self.named[name] = array
         return name
 
-    def take(keyword, name, kinds="fiub"):
-        array = as_array(without_unit(array_of(name)), f"array '{name}' of {keyword}")
-        if array.shape != (arguments.count,) or array.dtype.kind not in kinds:
+    def take(self, keyword, name, kinds="fiub"):
+        array = as_array(without_unit(self.array_of(name)), f"array '{name}' of {keyword}")
+        if array.shape != (self.arguments.count,) or array.dtype.kind not in kinds:
             raise InvalidArgument(f"{keyword} names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
                                   "have one number for each particle.")
         return array if array.dtype in ELEMENTS or array.dtype.kind not in "fiu" else contiguous(array, name)
 
-    request = {name: number(name, kind_of(name), options.pop(name)) for name in (
-        "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options}
-    request.setdefault("scalar_component", -1)  # This means the magnitude.
-    estimate = options.pop("estimate_smoothing_length", False)
-    request["lengths_by_neighbours"] = isinstance(estimate, str)
-    ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
-    request["estimate_smoothing_length"] = True if ratio else number("estimate_smoothing_length", "int", estimate)
-    request["compute_volumes"] = isinstance(given["volume"], str) and given["volume"] == "computed"
-    request["find"] = source is not None
-    for role, array in {**{role: given[role] for role in QUANTITIES}, **roles}.items():
-        words = role.replace("_", " ")
-        if role == "volume" and request["compute_volumes"] or array is None:
-            continue
-        if isinstance(array, str) and role == "scalar":
-            names[role] = array
-            continue
-        array = as_array(array, words)
-        if array.ndim == 0 and role in QUANTITIES:
-            values[role] = arguments.constant(array, words)
-        else:
-            names[role] = add(words, arguments.shaped(array, words))
-    for role in ("volume", "mass", "density") if source else ():
-        array = None if role in names or role in values else source.quantity(role)
-        if array is not None:
-            name = getattr(source, role)
-            add(name if is_most_usual(name, role) else role, arguments.shaped(np.broadcast_to(array, arguments.count), role))
-    solid, fluid, only = given["solid"], given["fluid"], given["only"]
-    if solid is not None and fluid is not None:
-        raise InvalidArgument("solid and fluid both tell which particles are fluid. Leave one of them out.")
-    if solid is not None:
-        names["fluid"], request["fluid_value"] = add("solid", arguments.marks(solid)), 0
-    elif fluid is not None and fluid != "auto":
-        name, request["fluid_value"] = parse_fluid(fluid)
-        names["fluid"] = add(name, take("fluid", name)) if isinstance(name, str) else add("fluid", arguments.marks(name, "fluid"))
-    request["find_fluid"] = isinstance(fluid, str) and fluid == "auto"
-    looks = "fluid" not in names and (source is not None or request["find_fluid"])
-    for name in others if looks else ():
-        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
-            add(name, np.ascontiguousarray(array_of(name)))
-    for name, wanted in only.items() if isinstance(only, Mapping) else only if isinstance(only, Ranges) else ():
-        is_text = isinstance(wanted, str)
-        array = take("only", name, "fiubUSO" if is_text else "fiub")
-        if is_text and array.dtype.kind in "USO":
-            ranges.append((add(f"{name}={wanted}", array.astype(str) == wanted), 1, 1))
-        else:
-            ranges.append((add(name, array), *parse_range(name, wanted)))
-    if only is not None and not isinstance(only, (Mapping, Ranges)):
-        only = as_array(only, "array of only")
-        if only.dtype != bool or only.shape != (arguments.count,):
-            raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {arguments.count} particles, not an "
-                                  f"array of {only.dtype} of the shape {only.shape}.")
-        ranges.append((add("only", only), 1, 1))
-    if given["within"] is not None:
-        request["within"] = parse_within(given["within"])
-    if not arguments.count and "smoothing_length" not in names:
-        values["smoothing_length"] = 1.0  # No particle needs it.
-    found = Found(arguments.positions, named, ["sizes", *wants, *["fluid"] * looks], names, values, ranges, **request)
-    arguments.kept += [found, named]
-    if found.error:
-        raise InvalidArgument(say("LENGTH_MISSING") if found.error.code == "NO_SMOOTHING_LENGTH" else found.error)
-    if found.unused:
-        warn(found.unused)
-    if found.unused_type:
-        warn(found.unused_type)
-    arguments.input, why = found.found.input, found.text("no_fluid")
-    if arguments.input.solid and arguments.count:
-        arguments.present = np.ctypeslib.as_array(arguments.input.solid, (arguments.count,)) != ABSENT
-    arguments.set_options(options)
-    if why and arguments.count:
-        if nothing is None:
-            raise InvalidData(say("NOTHING_WITHOUT_FLUID", why, "nothing to compute"))
-        warn(say("NOTHING_WITHOUT_FLUID", why, nothing))
-        arguments.input.count = 0
-    for is_needed, function, more, take_it in (
-            (found.found.needs_lengths, lib.mcor_find_smoothing_lengths, [ratio], lib.mcor_take_lengths),
-            (found.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
-        if is_needed and arguments.input.count:
-            arguments.kept.append(arguments.per_neighbours(found, function, *more))
-            take_it(ctypes.byref(found.found), arguments.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+    def add_sizes(self, given, estimate):
+        """given: {role: array, value or None}, of which the scalar may also be a name. estimate: as estimate_smoothing_length."""
+        self.ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
+        self.request.update(lengths_by_neighbours=bool(self.ratio), estimate_smoothing_length=bool(self.ratio) or number(
+            "estimate_smoothing_length", "int", estimate), compute_volumes=isinstance(given["volume"], str) and given["volume"] == "computed")
+        for role, array in given.items():
+            words = role.replace("_", " ")
+            if role == "volume" and self.request["compute_volumes"] or array is None:
+                continue
+            if isinstance(array, str) and role == "scalar":
+                self.names[role] = array
+                continue
+            array = as_array(array, words)
+            if array.ndim == 0 and role in QUANTITIES:
+                self.values[role] = self.arguments.constant(array, words)
+            else:
+                self.names[role] = self.add(words, self.arguments.shaped(array, words))
+        for role in ("volume", "mass", "density") if self.source else ():
+            array = None if role in self.names or role in self.values else self.source.quantity(role)
+            if array is not None:
+                name, array = getattr(self.source, role), array if np.ndim(array) else np.full(self.arguments.count, array)
+                self.add(name if is_most_usual(name, role) else role, self.arguments.shaped(array, role))
+        if not self.arguments.count and "smoothing_length" not in self.names:
+            self.values["smoothing_length"] = 1.0  # No particle needs it.
+
+    def add_fluid(self, solid, fluid):
+        is_auto = isinstance(fluid, str) and fluid == "auto"
+        if solid is not None and fluid is not None:
+            raise InvalidArgument("solid and fluid both tell which particles are fluid. Leave one of them out.")
+        if solid is not None:
+            self.names["fluid"], self.request["fluid_value"] = self.add("solid", self.arguments.marks(solid)), 0
+        elif fluid is not None and not is_auto:
+            name, self.request["fluid_value"] = parse_fluid(fluid)
+            self.names["fluid"] = self.add(name, self.take("fluid", name)) if isinstance(name, str) else self.add(
+                "fluid", self.arguments.marks(name, "fluid"))
+        self.request["find_fluid"] = is_auto
+        self.looks = "fluid" not in self.names and (self.source is not None or is_auto)
+        for name in self.others if self.looks else ():
+            if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
+                self.add(name, np.ascontiguousarray(self.array_of(name)))
+
+    def add_choice(self, within, only):
+        if within is not None:
+            self.request["within"] = parse_within(within)
+        if isinstance(only, (Mapping, Ranges)):
+            for name, wanted in only.items() if isinstance(only, Mapping) else only:
+                array = self.take("only", name, "fiubUSO" if isinstance(wanted, str) else "fiub")
+                if array.dtype.kind in "USO":
+                    self.ranges.append((self.add(f"{name}={wanted}", array.astype(str) == wanted), 1, 1))
+                else:
+                    self.ranges.append((self.add(name, array), *parse_range(name, wanted)))
+        elif only is not None:
+            only = as_array(only, "array of only")
+            if only.dtype != bool or only.shape != (self.arguments.count,):
+                raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.arguments.count} particles, not an "
+                                      f"array of {only.dtype} of the shape {only.shape}.")
+            self.ranges.append((self.add("only", only), 1, 1))
+
+    def find(self, wants, options, nothing):
+        """Sets the input and the options. nothing: what there is without fluid; None: that is an error."""
+        arguments = self.arguments
+        found = Found(arguments.positions, self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges,
+                      **self.request)
+        arguments.kept += [found, self.named]
+        if found.error:
+            raise InvalidArgument(say("LENGTH_MISSING") if found.error.code == "NO_SMOOTHING_LENGTH" else found.error)
+        for sentence in filter(None, (found.unused, found.unused_type)):
+            warn(sentence)
+        arguments.input, why = found.found.input, found.text("no_fluid")
+        if arguments.input.solid and arguments.count:
+            arguments.present = np.ctypeslib.as_array(arguments.input.solid, (arguments.count,)) != ABSENT
+        arguments.set_options(options)
+        if why and arguments.count:
+            if nothing is None:
+                raise InvalidData(say("NOTHING_WITHOUT_FLUID", why, "nothing to compute"))
+            warn(say("NOTHING_WITHOUT_FLUID", why, nothing))
+            arguments.input.count = 0
+        for is_needed, function, more, take_it in (
+                (found.found.needs_lengths, lib.mcor_find_smoothing_lengths, [self.ratio], lib.mcor_take_lengths),
+                (found.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
+            if is_needed and arguments.input.count:
+                arguments.kept.append(arguments.per_neighbours(found, function, *more))
+                take_it(ctypes.byref(found.found), arguments.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 
 
 def parse_fluid(fluid):

@@ -106,7 +106,7 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
     const realv y = MCOR_TILE(tile, y, i) - box.center[1];
     const realv z = MCOR_TILE(tile, z, i) - box.center[2];
     const realv weight = MCOR_TILE(tile, weight, i);
-#if MCOR_FIELD == 2
+#if MCOR_FIELD == MCOR_WEIGHT_SUM
     const realv c = weight;
 #else
     const realv c = weight * MCOR_FIELD_TERM(MCOR_TILE(tile, value, i), iso);
@@ -118,10 +118,10 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
     bound->low = MCOR_FMA(above, least, MCOR_FMA(below, greatest, bound->low));
     bound->high = MCOR_FMA(above, greatest, MCOR_FMA(below, least, bound->high));
     bound->size = MCOR_FMA(fabs(c), most, bound->size);
-#if MCOR_FIELD == 0
+#if MCOR_FIELD == MCOR_SHEPARD
     bound->size = MCOR_FMA(weight * (2 * fabs(iso)), most, bound->size);
 #endif
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
     const realv trim_weight = MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i);
     bound->weight = MCOR_FMA(trim_weight, greatest, bound->weight);
 #if MCOR_TENSOR
@@ -140,9 +140,9 @@ int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
   {
     return MCOR_EXAMINE;
   }
-  const real share = k / (1 - k), level = MCOR_FIELD == 0 ? (real)0 : iso;
+  const real share = k / (1 - k), level = MCOR_FIELD == MCOR_SHEPARD ? (real)0 : iso;
   const real margin = share * (mcor_lane_sum(bound->size) + fabs(level));
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
   const real weight = mcor_lane_sum(bound->weight);
   const real weight_size = MCOR_TENSOR ? mcor_lane_sum(bound->weight_size) : weight;
   if (weight + share * (weight_size + fabs(node_threshold)) < node_threshold)

@@ -28,7 +28,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether that proof is tried: by regions if a work-item evaluates whole bricks, else by bricks. */
-#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
+#define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
 /* Whether the particles of the tile that are close to any of 2 x 2 points, as many above each

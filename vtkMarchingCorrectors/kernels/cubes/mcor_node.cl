@@ -41,7 +41,7 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
     {
       const real weight = MCOR_EACH(tile, weight, i);
       const realv v = mcor_weight(distance[i - from], MCOR_EACH(tile, inv_h, i));
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
       sums->s = MCOR_FMA(weight * MCOR_EACH(tile, value, i), v, sums->s);
 #endif
       sums->w = MCOR_FMA(weight, v, sums->w);
@@ -82,8 +82,8 @@ void mcor_sums_store(
 {
   const real s = MCOR_GET(sums->s, lane), w = MCOR_GET(sums->w, lane);
   const real t = MCOR_SOLIDS ? MCOR_GET(sums->t, lane) : w;
-  const bool defined = MCOR_FIELD != 0 || w >= (real)MCOR_LEAST_NODE_WEIGHT;
-  *value = MCOR_FIELD == 2 ? w : MCOR_FIELD == 1 ? s : defined ? s / w : (real)0;
+  const bool defined = MCOR_FIELD != MCOR_SHEPARD || w >= (real)MCOR_LEAST_NODE_WEIGHT;
+  *value = MCOR_FIELD == MCOR_WEIGHT_SUM ? w : MCOR_FIELD == MCOR_SUM ? s : defined ? s / w : (real)0;
   *weight = defined ? t : (real)-1;
 }
 
@@ -105,7 +105,7 @@ ulong2 mcor_node_signs(
   for (int n = 0; n < 64; ++n)
   {
     a |= (ulong)(value[n] >= iso) << n;
-    v |= (ulong)(MCOR_FIELD == 2 || weight[n] >= node_threshold) << n;
+    v |= (ulong)(MCOR_FIELD == MCOR_WEIGHT_SUM || weight[n] >= node_threshold) << n;
   }
   return (ulong2)(a, v);
 }

@@ -105,7 +105,7 @@ void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], 
     {
       const int i = list[k];
       const realv v = mcor_group_weight(distance[k - begin], tile->inv_h[i]);
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
       s = MCOR_FMA(term[i], v, s);
 #endif
       w = MCOR_FMA(tile->weight[i], v, w);
@@ -134,7 +134,7 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
   for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
   {
     MCOR_ALIGNED real term[MCOR_TILE_SIZE + 16];
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
     for (int i = 0; i < tile->count; ++i)
     {
       term[i] = tile->weight[i] * tile->value[i];

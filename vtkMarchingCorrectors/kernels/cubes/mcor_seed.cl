@@ -14,7 +14,7 @@
 #if !MCOR_OF_LATTICE
 /* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the
  * least and the greatest of its values. */
-#define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
+#define MCOR_RANGE_DECIDES (MCOR_FIELD == MCOR_SHEPARD && !MCOR_TENSOR)
 
 /* Parameters on which a node's side depends. side_margin: greatest change by rounding of a mean
  * of values that are all on one side, as a share of each value; see mcor_side_margin in
@@ -126,7 +126,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   }
   if (bound.count == 0)
   {
-    const bool is_void = MCOR_FIELD == 0 || (MCOR_FIELD == 1 && limits->node_threshold > 0);
+    const bool is_void = MCOR_FIELD == MCOR_SHEPARD || (MCOR_FIELD == MCOR_SUM && limits->node_threshold > 0);
     return is_void ? MCOR_VOID : limits->iso <= 0 ? MCOR_ABOVE : MCOR_BELOW;
   }
   return mcor_bound_state(&bound, limits->iso, limits->node_threshold);

@@ -8,7 +8,7 @@
  *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
  *   MCOR_DOUBLE   real is double instead of float
  *   MCOR_W, MCOR_DW, MCOR_DDW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
- *   MCOR_FIELD    0 Shepard, 1 sum, 2 weight sum
+ *   MCOR_FIELD    the field, see below
  *   MCOR_SOLIDS   1: some particles are solid and count in the trimming weight only
  *
  * All lengths are in cubes of the virtual grid. A position is a fixed-point number, 2^-fix_bits
@@ -23,6 +23,11 @@
  * alone. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
+
+/* Values of MCOR_FIELD, as mcor_field in mcor.h numbers them. */
+#define MCOR_SHEPARD 0
+#define MCOR_SUM 1
+#define MCOR_WEIGHT_SUM 2
 
 /* Every device must give the same bits. Additions, multiplications and fma are exact to the last
  * bit everywhere, though fma is slow if it is no instruction. A compiler must not choose between

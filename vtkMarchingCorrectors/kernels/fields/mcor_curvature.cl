@@ -127,17 +127,17 @@ __kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* off
     {
       MCOR_REACH_FROM(at, &points, &reach, i, u);
       mcor_weight_hessian(u, MCOR_REACH(&reach, inv_h, i), &sum);
-#if MCOR_FIELD != 1
+#if MCOR_FIELD != MCOR_SUM
       mcor_bent_add(&w, MCOR_REACH(&reach, weight, i), &sum);
 #endif
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
       mcor_bent_add(&f, MCOR_REACH_TERM(&reach, i, iso), &sum);
 #endif
     }
   }
-#if MCOR_FIELD == 0
+#if MCOR_FIELD == MCOR_SHEPARD
   mcor_bent_divide(&f, &w);
-#elif MCOR_FIELD == 2
+#elif MCOR_FIELD == MCOR_WEIGHT_SUM
   f = w;
 #endif
   mcor_bend_of(&f, plane, &mean, &gauss);

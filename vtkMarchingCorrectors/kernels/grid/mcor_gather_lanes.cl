@@ -89,7 +89,7 @@ void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_
   MCOR_PACK_REAL(*mask, z, tile->z + count);
   MCOR_PACK_REAL(*mask, inv_h, tile->inv_h + count);
   MCOR_PACK_REAL(*mask, weight, tile->weight + count);
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
   MCOR_PACK_REAL(*mask, value, tile->value + count);
 #endif
 #if MCOR_SOLIDS
@@ -304,7 +304,7 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   mcor_reach_pack(&reach->masks, tile->z, reach->z);
   mcor_reach_pack(&reach->masks, tile->inv_h, reach->inv_h);
   mcor_reach_pack(&reach->masks, tile->weight, reach->weight);
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
   MCOR_ALIGNED real term[MCOR_TILE_SIZE + MCOR_LANES];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {

@@ -327,7 +327,7 @@ int mcor_query_particles(
 #endif
 
 /* A particle's term of the field is its weight times this. */
-#if MCOR_FIELD == 0
+#if MCOR_FIELD == MCOR_SHEPARD
 #define MCOR_FIELD_TERM(value, iso) ((value) - (iso)) /* both relative to A0 */
 #else
 #define MCOR_FIELD_TERM(value, iso) (value)

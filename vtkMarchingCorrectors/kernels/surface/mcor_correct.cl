@@ -52,7 +52,7 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 
 /* Limit of that accuracy by the rounding of a sum, relative to its value. A Shepard mean's terms
  * against the iso value vanish at the surface. */
-#define MCOR_SUM_ROUNDING (MCOR_FIELD == 0 ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
+#define MCOR_SUM_ROUNDING (MCOR_FIELD == MCOR_SHEPARD ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
 /* A bracket of this length is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
@@ -182,7 +182,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
      * kernel with negative lobes lets the weight pass 0. Between nodes of a positive weight, it is
      * this quantity that passes 0. */
     const realv side =
-      MCOR_FIELD == 0 && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
+      MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
     low = before ? *t : low;
     high = before ? high : *t;

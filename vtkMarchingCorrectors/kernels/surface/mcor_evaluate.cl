@@ -50,7 +50,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
         const realv k =
           mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
         MCOR_REACH_KEEP(reach, i, k);
-#if MCOR_FIELD != 2
+#if MCOR_FIELD != MCOR_WEIGHT_SUM
         mcor_quantity_add(MCOR_REACH_TERM(reach, i, iso), k, slope, along, &s);
 #endif
         mcor_quantity_add(MCOR_REACH(reach, weight, i), k, slope, along, &w);
@@ -60,7 +60,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       }
     }
   }
-#if MCOR_FIELD == 0
+#if MCOR_FIELD == MCOR_SHEPARD
   /* A void between fluid particles, kept valid by solids, has no value. A huge one makes the
    * iteration look for the void's border. */
   const fixv none = fabs(w.value) < (real)1e-12f;
@@ -71,7 +71,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
     at->field.gradient[a] = (s.gradient[a] - at->field.value * w.gradient[a]) * inv_w;
   }
 #else
-  at->field = MCOR_FIELD == 1 ? s : w;
+  at->field = MCOR_FIELD == MCOR_SUM ? s : w;
   at->field.value -= iso;
 #endif
   at->weight = MCOR_SOLIDS ? t : w;

@@ -25,9 +25,9 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   MCOR_ITEM(i, i < count);
   const real share = gradient[i].w - fluid_share * weight[i];
   real m = fluid_share <= 0 ? quantity[i]
-    : MCOR_FIELD == 2       ? share
+    : MCOR_FIELD == MCOR_WEIGHT_SUM       ? share
                             : fmin(quantity[i] - threshold, share);
-  if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
+  if (MCOR_FIELD == MCOR_SHEPARD && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
   {
     m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
   }
@@ -56,7 +56,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int a = is_inside ? low : high, b = is_inside ? high : low;
   real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);
   bool lacks = false;
-#if MCOR_FIELD == 0
+#if MCOR_FIELD == MCOR_SHEPARD
   const real fa = mcor_trim_fluid(weight, gradient, a), fb = mcor_trim_fluid(weight, gradient, b);
   if (!(fmin(fa, fb) > MCOR_LEAST_FLUID))
   {
@@ -133,10 +133,10 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
       share.gradient[a] -= limits->fluid_share * at->weight.gradient[a];
     }
     mcor_quantity_choose(
-      MCOR_FIELD == 2 ? (fixv)MCOR_TRUE : share.value < bound->value, &share, bound);
+      MCOR_FIELD == MCOR_WEIGHT_SUM ? (fixv)MCOR_TRUE : share.value < bound->value, &share, bound);
   }
   fluid.value -= MCOR_LEAST_FLUID;
-  if (MCOR_FIELD == 0)
+  if (MCOR_FIELD == MCOR_SHEPARD)
   {
     mcor_quantity_choose(limits->lacking && fluid.value < bound->value, &fluid, bound);
   }
@@ -233,7 +233,7 @@ fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* 
       fabs(at->field.value) <= limits->tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
     /* The fluid's own weight may be too low for a mean, though the weight equals the threshold. */
     const fixv lacks =
-      MCOR_FIELD == 0 && met && at->fluid.value < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
+      MCOR_FIELD == MCOR_SHEPARD && met && at->fluid.value < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
     limits->lacking = limits->lacking || lacks;
     done = done || (met && !lacks);
     if (i == limits->steps || !MCOR_ANY(!(done || failed)))
@@ -277,7 +277,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
     return linear;
   }
   mcor_trim_return(grid, query, limits->iso, start, linear, points, reach, at);
-  if (MCOR_FIELD != 0 || limits->steps == 0) /* in a preview */
+  if (MCOR_FIELD != MCOR_SHEPARD || limits->steps == 0) /* in a preview */
   {
     return linear;
   }

@@ -36,8 +36,8 @@ def make_tank(count):
 
 
 def show_profile(path, call):
-    """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase is what it spends outside
-    OpenCL's calls."""
+    """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase is what it spends outside OpenCL's
+    calls; reads and writes wait, too. Times of kernels and transfers are the device's."""
     totals = collections.defaultdict(lambda: collections.Counter(dict.fromkeys(("phase", "build"), 0)))
     kernels = collections.Counter()
     with open(path, newline="") as file:
@@ -54,9 +54,10 @@ def show_profile(path, call):
     print("\n| phase | ms | host, ms | launches | kernels, ms | waits | waits, ms | up, MB | up, ms | down, MB | down, ms |"
           "\n|---|---|---|---|---|---|---|---|---|---|---|")
     for name, of in totals.items():
+        waits, waited = [sum(of[command + key] for command in ("wait", "write", "read")) for key in (" count", "")]
         print(f"| {name} | {1e3 * of['phase']:.1f} | {1e3 * (of['phase'] - of['calls']):.1f} | {of['launch count']} | "
-              f"{1e3 * of['launch device']:.1f} | {of['wait count']} | {1e3 * of['wait']:.1f} | {1e-6 * of['write bytes']:.1f} | "
-              f"{1e3 * of['write']:.1f} | {1e-6 * of['read bytes']:.1f} | {1e3 * of['read']:.1f} |")
+              f"{1e3 * of['launch device']:.1f} | {waits} | {1e3 * waited:.1f} | {1e-6 * of['write bytes']:.1f} | "
+              f"{1e3 * of['write device']:.1f} | {1e-6 * of['read bytes']:.1f} | {1e3 * of['read device']:.1f} |")
     print("\nKernels, ms: " + ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in kernels.most_common(8)) + "\n", flush=True)
 
 

@@ -294,7 +294,10 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
     all.count = static_cast<int64_t>(masses.size());
     positions.push_back(0.0); // the core would take an empty array for a constant
     masses.push_back(0.0);
-    all.positions = { positions.data(), MCOR_FLOAT64, 3, 0.0, nullptr };
+    all.positions = {};
+    all.positions.data = positions.data();
+    all.positions.type = MCOR_FLOAT64;
+    all.positions.components = 3;
     all.mass.data = mass.data ? masses.data() : nullptr;
     all.mass.type = MCOR_FLOAT64;
     all.solid = solid.empty() ? nullptr : solid.data();

@@ -99,7 +99,8 @@ class DamagedFiles(CommandLineTest):
         data = (b"# vtk DataFile Version 3.0\ntitle 1 2 words\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTIME 1 1 double\n0.5\n"
                 b"POINTS 2 float\n0 0 0 1 0 0\nVERTICES 2 4\n1 0 1 1\n")
         self.run_with("small.vtk", data, lambda *_, source: self.run_good("--list-arrays", source))
-        for good, bad, why in ((b"1 double", b"1 dble", "its array 'time' has the type 'dble'"), (b"FieldData 1", b"FieldData 1x", "its FIELD"),
+        for good, bad, why in ((b"1 double", b"1 dble", "its array 'time' has .* '1 1 dble'"), (b"1 double", b"1{ double", "'1 1{ double'"),
+                               (b"1 0 1 1", b"1 0.5 1 1", "its vertices are no whole numbers"), (b"FieldData 1", b"FieldData 1x", "its FIELD"),
                                (b"VERTICES 2 4", b"VERTICES 20 40", "vertices is 40, more"), (b"POINTS 2", b"POINTS 20", "points is 20, more")):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 

@@ -178,6 +178,28 @@ std::vector<std::string> DeclaringWords(View line)
   return words;
 }
 
+bool AreDigits(View word)
+{
+  return !word.empty() && word.find_first_not_of("0123456789") == View::npos;
+}
+
+/// Whether so many whole numbers stand at the beginning of the text.
+bool BeginsWithNumbers(View text, double count)
+{
+  const char* const blanks = " \t\r\n";
+  std::size_t at = text.find_first_not_of(blanks);
+  for (double i = 0.0; i < count; ++i)
+  {
+    const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
+    if (at == View::npos || !AreDigits(text.substr(at, end - at)))
+    {
+      return false;
+    }
+    at = text.find_first_not_of(blanks, end);
+  }
+  return true;
+}
+
 /// Counts stand behind words at the beginning of a line, and those of attributes in a line before
 /// them. The arrays of a field have lines with a name, two counts and a type.
 void CheckLegacy(const std::string& file, View text)
@@ -196,6 +218,7 @@ void CheckLegacy(const std::string& file, View text)
   const double most = 8.0 * static_cast<double>(text.size());
   std::string section = "point_data"; // elements that have the attributes
   double elements = 0.0;              // values of each element
+  const bool isText = text.substr(0, 600).find("\nASCII") != View::npos;
   const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // any words
   for (std::size_t begin = text.find('\n', title), end = 0; begin < text.size(); begin = end + 1)
   {
@@ -212,13 +235,19 @@ void CheckLegacy(const std::string& file, View text)
     if (numbers.size() == 2 && cells.count(first))
     {
       CheckSize(file, room, first, numbers[1]);
+      const std::size_t next = text.find_first_not_of(" \t\r\n", end);
+      const bool isList = isText && next != View::npos && text[next] != 'O'; // of OFFSETS
+      if (isList && !BeginsWithNumbers(text.substr(end), numbers[1]))
+      {
+        FailToRead(file, "its " + first + " are no whole numbers; it may be damaged");
+      }
     }
     else if (first == "points" && !numbers.empty())
     {
       CheckSize(file, room, first, numbers[0], 3.0);
     }
     else if (first == "field" &&
-      (words.size() != 3 || words[2].find_first_not_of("0123456789") != std::string::npos))
+      (words.size() != 3 || !AreDigits(words[2])))
     {
       FailToRead(file, "the line of its FIELD has no number of arrays; it may be damaged");
     }
@@ -243,10 +272,11 @@ void CheckLegacy(const std::string& file, View text)
     }
     else if (words.size() == 4 && numbers.size() == 2 && Numbers(words[3]).empty())
     {
-      if (!types.count(words[3]))
+      if (!types.count(words[3]) || !AreDigits(words[1]) || !AreDigits(words[2]))
       {
         FailToRead(file,
-          "its array '" + words[0] + "' has the type '" + words[3] + "', which is not known");
+          "its array '" + words[0] + "' has the numbers and the type '" + words[1] + " " + words[2] +
+            " " + words[3] + "', which are not known");
       }
       CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
       CheckSize(file, most, first, numbers[1]);

@@ -112,6 +112,11 @@ class Project(CommandLineTest):
         self.project(*options, source="half.vtp")
         self.assertEqual((self.directory / "column_0001.vti").read_bytes(), self.image.read_bytes())
 
+    def test_given_in_vain(self):
+        for more in ([], ["--scalar", "Kind"]):
+            told = self.run_good(self.input, self.image, "--project", "z", "--volume", "Density", "--mass", "9", *more, says=".*").stderr
+            self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else "^$")
+
     def test_steps_without_fluid(self):
         """The image of a step without particles has its neighbour's pixels, whose values are 0, or no number in a mean."""
         files.write_vtp(self.directory / "none.vtp", [], {})
@@ -132,6 +137,8 @@ class Project(CommandLineTest):
         self.output = self.image
         self.refuse_all(2, [(["w"], "--project needs an axis, x, y or z, or a direction X,Y,Z, not 'w'"),
                             (["0,0,0"], "0,0,0"), (["1,2"], "1,2"),
+                            (["z", "--derive", "Velocity"], "--derive needs a --scalar that it makes"),
+                            (["z", "--derive", "Velocity", "--scalar", "Kind"], "--derive needs a --scalar that it makes"),
                             (["z", "--resolution", "1"], "--resolution"), (["z", "--times", "1"], "--times, --fps and --time-step need a film")], "--project")
         self.refuse_all(1, [(["--scalar", "Nope"], "no point array 'Nope' for the projection"),
                             (["--scalar", "Velocity", "--component", "3"], "no component 3"),

@@ -110,8 +110,8 @@ bool IsOfSteps(const Job& j)
 bool UsesDerived(const Job& j)
 {
   std::vector<std::string> asked = j.AttributeNames;
-  asked.push_back(j.Scalar);
-  const bool areAll = j.AttributeNames.empty() && !j.Has("--no-attributes");
+  asked.insert(asked.end(), { j.Scalar, j.Projection->GetWeightArrayName() });
+  const bool areAll = (j.Mode() & (CONTOUR | POINTS)) && j.AttributeNames.empty() && !j.Has("--no-attributes");
   return areAll ||
     std::any_of(asked.begin(), asked.end(),
       [](const std::string& name)
@@ -164,8 +164,9 @@ const std::vector<Rule> Rules = {
   { PROJECT, IF(!j.IsFilm() && (j.HasTimes() || j.Has("--time-step"))),
     "--times, --fps and --time-step need a film, whose OUTPUT is a .pvd file or has %04d in its "
     "name" },
-  { PROJECT, IF(j.Has("--derive") && !j.Has("--scalar")),
-    "--derive needs --scalar, which projects what is derived; add it, or leave out --derive" },
+  { PROJECT, IF(j.Has("--derive") && !UsesDerived(j)),
+    "--derive needs a --scalar that it makes, such as Divergence or Lambda2; give one, or leave out "
+    "--derive" },
   { PROJECT, IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
     "the output of --project is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
   { PROJECT, IF(j.IsFilm() && !IsOfSteps(j)),

@@ -399,7 +399,8 @@ static void mcor_find_sizes(mcor_finder* f)
   {
     found->input.volume.constant = r->particle_volume;
   }
-  if (!(r->wants & (MCOR_WANT_FLOW | MCOR_WANT_COLUMN | MCOR_WANT_LIST)))
+  const bool is_density = (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
+  if (!(r->wants & (MCOR_WANT_FLOW | MCOR_WANT_LIST)) && !is_density)
   {
     found->unused = mcor_describe_unused(r, given, used, found->views[MCOR_ROLE_VOLUME].name);
   }

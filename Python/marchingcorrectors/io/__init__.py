@@ -47,7 +47,8 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
         package = "vtk" if str(error.name).startswith("vtk") else str(error.name).partition(".")[0]
         if package == "marchingcorrectors":  # A script of the same name may hide a module of Python's.
             raise
-        raise FileError(f"{paths[0].name} needs the package {package}: pip install {package}.") from None
+        of_debian = " (of Debian's Python: apt install python3-h5py)" if package == "h5py" else ""
+        raise FileError(f"{paths[0].name} needs the package {package}: pip install {package}{of_debian}.") from None
     except MemoryError:
         raise FileError(f"{paths[0].name} asks for more memory than there is: it is damaged, or too large.") from None
     except Exception as error:  # For damaged files each library has its own exceptions.

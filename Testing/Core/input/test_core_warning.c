@@ -154,6 +154,17 @@ static void test_neighbours(void** state)
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is unusual here */
+  /* Where no neighbour is known, no kernel is. */
+  warning_call alone;
+  begin_call(&alone);
+  alone.input.smoothing_length = far_off;
+  alone.options.cube_size = 1;
+  CORE_SURFACE surface = core_extract(*state, &alone.input, &alone.options);
+  CORE_MESSAGE message =
+    mcor_describe_warning(MCOR_WARN_NEIGHBOURS, &alone.input, &alone.options, &surface);
+  assert_non_null(message.text);
+  assert_null(strstr(message.text, "wendland"));
+  particle_set_free(&alone.set);
 }
 
 /* Flattens the set to this height, measured by the fluid's extent. */

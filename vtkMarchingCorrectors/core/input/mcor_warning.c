@@ -91,7 +91,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
                        : "Perhaps the array holds the support radius (then use "
                          "{smoothing_length_is_support_radius}), or is not in the unit of the "
                          "positions.";
-  const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
+  const char* likely = spacing > 0 ? mcor_likely_kernel(kernel, near, few) : "";
   char times[100] = "no other particle is within that";
   if (spacing > 0)
   {

@@ -170,10 +170,11 @@ bool vtkSPHAlgorithm::vtkRun::SetPeriod()
   return true;
 }
 
-std::vector<double> vtkSPHAlgorithm::vtkRun::FindPeriod(std::string&)
+std::vector<double> vtkSPHAlgorithm::vtkRun::FindPeriod(std::string& problem)
 {
-  return vtkSPHBoundsOfPeriod(
-    vtkSPHFindPeriod(this->Own->GetFieldData()).Period, this->Own->GetBounds());
+  const vtkSPHPeriod found = vtkSPHFindPeriod(this->Own->GetFieldData());
+  problem = found.IsTilted() ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) : "";
+  return vtkSPHBoundsOfPeriod(found.Period, this->Own->GetBounds());
 }
 
 bool vtkSPHAlgorithm::vtkRun::Call(

@@ -61,12 +61,18 @@ class TestPeriod(unittest.TestCase):
 
         particles = make_vortex(12)
         size = particles_of([[0.0] * 3], BoxSize=numpy.ones(1)).GetPointData().GetArray("BoxSize")
+        cell = particles_of([[0.0] * 3], PeriodicBounds=numpy.array([1.0, 0, 0, 0.5, 1, 0, 0, 0, 1])).GetPointData().GetArray("PeriodicBounds")
         for filter_ in self.make_filters(particles):
             plain, expected = (content(run(filter_, PeriodicBounds=bounds)[0]) for bounds in ((0,) * 6, (0, 1) * 3))
             self.assertNotEqual(plain, expected)
             _, told = run(filter_, PeriodicBounds=(0,) * 6, DetectPeriod=1)
             self.assertRegex(filter_.GetErrorMessage(), says("NO_PERIOD"))
             self.assertTrue(told)
+            particles.GetFieldData().AddArray(cell)
+            filter_.Modified()
+            run(filter_)
+            self.assertRegex(filter_.GetErrorMessage(), says("CELL_TILTED"))
+            particles.GetFieldData().RemoveArray("PeriodicBounds")
             particles.GetFieldData().AddArray(size)
             filter_.Modified()
             found, told = run(filter_)

@@ -342,6 +342,13 @@ class Inputs(unittest.TestCase):
                          mc.free_surface(x, periodic=(0, 1.4, 0, 1.4, 0, 0), **words))
         with self.assertRaisesRegex(mc.InvalidArgument, "three lengths, 0 along"):
             mc.free_surface(x, periodic=(1, 2), **words)
+        tilted = pyvista.PolyData(x)
+        tilted.field_data["PeriodicBounds"] = [1.4, 0, 0, 0.5, 1.4, 0, 0, 0, 1.4]
+        for period, error in (("auto", says("CELL_TILTED")), ("all", 'it must be "auto"')):
+            with self.assertRaisesRegex(mc.InvalidArgument, error):
+                tilted.sph.free_surface(periodic=period, **words)
+        with self.assertWarnsRegex(mc.InputWarning, says("CELL_TILTED")):
+            tilted.sph.free_surface(**words)
 
 
 class Bars(unittest.TestCase):

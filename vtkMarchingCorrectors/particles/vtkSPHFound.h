@@ -34,6 +34,7 @@ struct vtkSPHPeriod
   std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
   std::string Array;          ///< the array that tells the period or, if there is none, a tilted
                               ///< cell
+  bool IsTilted() const { return this->Period.empty() && !this->Array.empty(); }
 };
 
 /** Finds the period in field data, see mcor_find_period. */

@@ -180,8 +180,10 @@ bool vtkSPHAlgorithm::vtkSharedRun::Begin(vtkPointSet* particles)
 std::vector<double> vtkSPHAlgorithm::vtkSharedRun::FindPeriod(std::string& problem)
 {
   vtkMultiProcessController* controller = this->Filter->Controller;
-  return vtkSPHBoundsOfPeriodDistributed(controller,
-    vtkSPHFindPeriodDistributed(controller, this->Own->GetFieldData(), problem).Period, this->Own);
+  const vtkSPHPeriod found =
+    vtkSPHFindPeriodDistributed(controller, this->Own->GetFieldData(), problem);
+  problem = problem.empty() && found.IsTilted() ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) : problem;
+  return vtkSPHBoundsOfPeriodDistributed(controller, found.Period, this->Own);
 }
 
 bool vtkSPHAlgorithm::vtkSharedRun::Measure(vtkSPHParticles& particles, bool forSamples)

@@ -107,7 +107,7 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
 {
   if (!problem.empty() || found.Period.empty())
   {
-    const bool isTilted = problem.empty() && !found.Array.empty();
+    const bool isTilted = problem.empty() && found.IsTilted();
     throw std::runtime_error(isTilted ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) + " Leave out --periodic."
         : problem.empty()             ? vtkSPHSay(MCOR_SAY(NO_PERIOD))
                                       : problem);

@@ -193,7 +193,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     form->addRow(QString::fromUtf8(property->GetXMLLabel()) + ":", value);
     this->Rows << qMakePair(property, value);
   }
-  // Queued, as the first update comes before ParaView no longer calls the filter new.
+  // The call is queued, because at the first update ParaView still calls the filter new.
   pqCoreUtilities::connect(
     proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()), Qt::QueuedConnection);
   for (const char* name : { "FluidArray", "SelectInputScalars" })
@@ -386,7 +386,7 @@ void pqSPHInUse::offerMore()
   }
 }
 
-// A number of 0 that means "not given" is shown as that, in grey, until a person clicks into its field.
+// A field whose 0 means "not given" shows these words, in grey, until a person clicks into it.
 void pqSPHInUse::showNotGiven()
 {
   QWidget* panel = this->parentWidget();

@@ -70,8 +70,8 @@ class Header:
         return values
 
     def read_struct(self, body):
-        """[(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
-        the one that follows."""
+        """Returns [(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
+        the next one."""
         fields, before, behind = [], "", []
         body = re.sub(r", @<?(\d+) ([^@;]*;)", r", \2 @<\1", body)  # This comment is in the midst of a declaration, and counts as behind it.
         for is_behind, number, declaration in re.findall(r"@(<?)(\d+)|([^@;]+) ;", body):

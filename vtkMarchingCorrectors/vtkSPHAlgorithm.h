@@ -549,8 +549,8 @@ protected:
   static void AskForAll(vtkInformation* input);
 
   /**
-   * Returns the class that Process() makes of a data object of this class, which is not
-   * composite.
+   * Returns the class of what Process() makes of a data object of class `inputClassName`, which is
+   * not composite.
    */
   virtual const char* GetOutputClassName(const char* inputClassName) { return inputClassName; }
 

@@ -283,7 +283,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
       }
       counts[Columns * column[0] + column[1]] += isIn ? 1 : 0;
     }
-    // Of those with nearly the most, the one nearest to the middle.
+    // Of the columns with nearly the most particles, the one nearest to the middle is best.
     const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
     const auto off = [](int c)
     { return std::abs(c / Columns - 0.5 * Columns) + std::abs(c % Columns - 0.5 * Columns); };

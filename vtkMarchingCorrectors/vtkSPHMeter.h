@@ -84,9 +84,9 @@ protected:
 
   ///@{
   /**
-   * Differences of filters: the word for one place ("gauge"); the consequence of no fluid, in
-   * words; the places of this process, whose second input is `more`, or null; the particle arrays
-   * that are needed.
+   * Each subclass gives its word for one place ("gauge"), its words for what happens without fluid,
+   * its places on this process, where the second input is `more` or null, and the particle arrays
+   * that it needs.
    */
   virtual const char* GetNoun() const = 0;
   virtual const char* GetConsequence() const = 0;

@@ -149,7 +149,7 @@ void MakeSlice(const double box[6], const double origin[3], const double normal[
   slice->SetPolys(quads);
 }
 
-/** Makes a line of so many points; arc_length is their distance from the first one. */
+/** Makes a line of `resolution` points, at least 2; arc_length is the distance from the first. */
 void MakeLine(const double from[3], const double to[3], int resolution, vtkPolyData* line)
 {
   const vtkIdType count = std::max(resolution, 2);

@@ -44,7 +44,7 @@ public:
   /** Forgets the data on the device, and the device itself, after a failure. */
   void Forget(mcor_status status);
 
-  /** Gives memory back. Between BeginRun() and EndRun() it is in use, so this waits for the end. */
+  /** Gives memory back; between BeginRun() and EndRun(), which use it, leaves this to EndRun(). */
   void Release();
   void BeginRun()
   {
@@ -180,7 +180,7 @@ public:
    * these came from: to this process's `home`, which may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
-  /** Says at which particles interpolated arrays are not finite, which all processes may not see. */
+  /** Lists the first particle of all processes at which each interpolated array is not finite. */
   virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
   /** Adds what each process has done to the statistics of the run. */
   virtual void AddShares() {}

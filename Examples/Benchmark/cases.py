@@ -420,9 +420,9 @@ class Model:
 
 
 def ranks(benchmark):
-    """Traffic of processes that share a surface, and what it would be on larger data: particles owned, copies of
-    others', bytes sent, nodes evaluated. Then a model, fitted to the first ones. Bytes are those of the particles that travel, all but one in as many as there
-    are ranks, and of their copies."""
+    """Writes what it costs processes to share a surface: particles owned, copies of others', bytes sent, nodes evaluated.
+    Fits a model to this, and writes what it says of larger data. Bytes are those of the copies, and of the particles that
+    travel, which are 1 - 1 / ranks of all."""
     out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
     for count in benchmark.sizes:
         path = benchmark.sets.get("tank", count)

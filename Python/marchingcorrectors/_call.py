@@ -108,8 +108,8 @@ def words_of_file(particles, given):
 
 
 def prepare(units, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
-    """The core's arguments. words: Keywords. named: what `fluid` and `only` may name, where that is more than the attributes.
-    wants: names of mcor_want; nothing: what there is without fluid; roles: arrays by their names in mcor_role."""
+    """Returns the core's arguments. words: Keywords. named: what `fluid` and `only` may name, if that is more than the attributes.
+    wants: names of mcor_want; nothing: the warning's words for no fluid, None: an error; roles: arrays by names in mcor_role."""
     options, attributes = dict(words), attributes or {}
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}

@@ -227,7 +227,7 @@ def _save_csv(path, surface):
 
 
 def _save_ply(path, surface):
-    """The bytes that the program writes: a vector has the properties NAME_x, NAME_y and NAME_z."""
+    """Writes the same bytes as the program: a vector has the properties NAME_x, NAME_y and NAME_z."""
     arrays, columns = surface.point_arrays(), {}  # {property: values} of the points
     normals = arrays.pop("Normals", None)
     named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], normals)]

@@ -98,7 +98,7 @@ class Film:
 
     def add(self, surface: Surface, time: float = 0.0, velocities: Optional[np.ndarray] = None,
             spray: Optional[Spray] = None) -> None:
-        """Adds the surface of a time, which is after those before.
+        """Adds the surface of one time, which must be later than all before.
 
         velocities: (points, 3); without them the array of the surface that is the velocity.
         spray: particles beside the surface.

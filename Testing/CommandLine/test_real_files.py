@@ -27,7 +27,7 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Refuses a run, even if an earlier one has left a surface."""
+        """Checks that a run is refused; the surface of an earlier run may be there."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):

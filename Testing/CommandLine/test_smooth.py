@@ -16,8 +16,8 @@ class Smooth(CommandLineTest):
         self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
 
     def test_factors_in_a_file(self):
-        """Lengths multiplied by the factors beforehand make the same surface, with the volumes of the original lengths and with cubes as
-        large."""
+        """Lengths that a file has multiplied by the factors make the same surface, if volumes and cubes are those of the original
+        lengths."""
         for computed in (True, False):
             arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (
                 "Mass", "Density", "Volume")}

@@ -121,7 +121,7 @@ int64_t* core_make_order(int64_t count, uint64_t seed);
 /* Calls mcor_widen if the options ask for it, then mcor_extract with its factors. */
 mcor_status core_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface);
-/* Does the same, and fails the test unless that succeeds. */
+/* Calls core_extract_widened, and fails the test unless that succeeds. */
 mcor_surface core_extract(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 

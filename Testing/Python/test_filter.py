@@ -413,7 +413,7 @@ class TestTold(FilterTest):
             self.assertRegex(str(extract), words + "\n")
 
     def test_mode(self):
-        """Nobody chose: the free surface, but for a gas that fills its bounds."""
+        """If nobody chooses, the free surface is made, but not for a gas that fills its bounds."""
         x = lattice(20, 12, 8)
         there = x[(x[:, 2] < 0.4) | (x[:, 0] < 1)]  # a dam
         varying = 0.13 * (1 + 0.3 * numpy.sin(x[:, 0]))

@@ -688,7 +688,7 @@ extern "C"
    * factor of 2. Reads positions, solids, smoothing lengths and densities, of valid form. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);
 
-  /* A usual number of neighbours, as `eta` below. */
+  /* The usual `eta` of mcor_find_smoothing_lengths, which sets the number of neighbours. */
 #define MCOR_USUAL_ETA 1.3
 
   /* Finds smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the
@@ -718,7 +718,7 @@ extern "C"
    * that share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
-  /* Warns of how long a run of so many cells may take. */
+  /* Warns of how long a run of `cells` cells may take. */
   mcor_message mcor_describe_estimate(double cells);
 
   /* Words for panels, with six digits: the smoothing length and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array

@@ -67,7 +67,7 @@ size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, s
 /* No word is longer; a name that stands in a slot is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
-/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. Arrays: in space, in a plane. */
+/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. [0]: in space, [1]: in a plane. */
 typedef struct mcor_kernel_row
 {
   const char *name, *norm_text, *support_text, *neighbours[2];
@@ -250,8 +250,8 @@ mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(
   const mcor_context* context); /* the most by which positions on the device are rounded, along each axis */
 
-/* mcor_reuse.c. Finds which results of the last call still hold; whether the caller's version means the same particles
- * as then. */
+/* mcor_reuse.c. mcor_check_reuse finds which results of the last call still hold; mcor_same_particles says whether,
+ * by the caller's version, the particles are the same. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);

@@ -34,7 +34,7 @@ typedef struct mcor_lattice
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
-/* The space of a call, all of it or a plane: what differs. Filled in where the plane is found. */
+/* What differs between a call in space and one in a plane. mcor_find_plane fills it in. */
 typedef struct mcor_space
 {
   int axes;             /* 3, or 2 */
@@ -100,7 +100,7 @@ typedef struct mcor_brick_data
 typedef struct mcor_bricks
 {
   mcor_buffer rungs; /* mcor_rung: where each level's blocks begin, and the end */
-  /* number of blocks of each level */
+  /* first_block: where each level's blocks begin; key >> block_shift: a key's bucket */
   int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2];
   mcor_buffer block_keys, block_buckets;                                /* by level, z, y, x */
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
@@ -163,7 +163,7 @@ typedef struct mcor_tree
   int period[MCOR_TREE_LEVEL_LIMIT + 2][3], period_first[MCOR_TREE_LEVEL_LIMIT + 2][3];
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   int leaf_count;
-  int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* number of blocks of each level */
+  int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* where each level's blocks begin */
   uint64_t* block_keys;                                    /* [block_count], ascending */
   cl_uint *leaves, *is_split;                              /* bits [block_count][16] */
 } mcor_tree;

@@ -41,7 +41,7 @@ std::string vtkSPHListNames(vtkPointSet* points);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
-/** Makes an array of this name, type and components for so many tuples. */
+/** Makes an array of `count` tuples that has this array's name, type and components. */
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
 
 /** Copies the tuples with these numbers, in this order, of all arrays, normals and ids, too. */
@@ -55,12 +55,12 @@ void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPoints> vtkSPHTakePoints(
   vtkPoints* from, vtkIdList* ids);
 
-/** Makes a vertex of each of so many points. */
+/** Makes a vertex of each point from 0 to count - 1. */
 vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
 /** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);
-/** Takes over a sentence of the core likewise, with its slots filled, see vtkSPHAlgorithm::SetWord(). */
+/** Does the same with a sentence of the core, and fills its slots, see vtkSPHAlgorithm::SetWord(). */
 std::string vtkSPHTakeText(mcor_message message);
 /** Fills the slots. */
 extern mcor_word vtkSPHWord;

@@ -34,7 +34,7 @@ void vtkSPHPrintValue(ostream& os, const T (&values)[N])
   }
 }
 
-/** `names`: names of the values, with a comma between them. */
+/** Prints each value behind its name. `names` has commas between the names. */
 template <typename... ValueT>
 void vtkSPHPrint(ostream& os, vtkIndent indent, const char* names, const ValueT&... values)
 {

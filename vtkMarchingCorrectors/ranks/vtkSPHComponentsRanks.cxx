@@ -28,8 +28,8 @@ namespace
 using Ids = std::vector<vtkIdType>;
 
 /**
- * Puts parts together on the first rank, with all arrays, by GlobalPointIds and GlobalCellIds,
- * which go; null on other ranks. Collective.
+ * Joins the parts on the first rank, with all arrays but GlobalPointIds and GlobalCellIds, which
+ * give the order; returns null on other ranks. Collective.
  */
 vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part)
 {

@@ -25,7 +25,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Returns the bytes of so many tuples; 0 if values do not lie side by side as bytes. */
+/** Returns the bytes of `tuples` tuples; 0 if values do not lie side by side as bytes. */
 std::size_t SizeOf(vtkAbstractArray* array, vtkIdType tuples)
 {
   const bool isPlain = vtkArrayDownCast<vtkDataArray>(array) && array->GetDataType() != VTK_BIT;

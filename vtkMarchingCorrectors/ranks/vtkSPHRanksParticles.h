@@ -41,7 +41,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
-/** Puts tuples, in their order, at these places among so many; the rest is 0. */
+/** Puts tuples, in their order, at these places of arrays of `count` tuples; the rest is 0. */
 vtkSPHRanksArrays vtkSPHPutTuples(
   const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count);
 

@@ -45,8 +45,8 @@ public:
   void Enter(double at[3]) const;
 
   /**
-   * Divides the work evenly. input: this rank's particles; work: of each of them; 0: it is needed
-   * nowhere; places: further work of this rank. Lists, for each rank, the particles whose
+   * Divides the work evenly. input: this rank's particles; work: of each particle; 0: nobody needs
+   * the particle; places: further work of this rank. Lists, for each rank, the particles whose
    * supports, or images of them, reach its box. Collective.
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,

@@ -19,8 +19,8 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 /**
- * Puts parts of a surface together on the first process, by GlobalPointIds and GlobalCellIds, which
- * go; null on the others. Collective.
+ * Joins the parts of a surface on the first process, without GlobalPointIds and GlobalCellIds,
+ * which give the order; returns null on the others. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);

@@ -141,8 +141,8 @@ struct Job
   GaugeGrid Grid;        ///< no other places then
   std::vector<Place> Fluxes;
   std::string FluxFile; ///< more such sections
-  std::string Derive;   ///< array whose gradient is computed for the particles, with quantities of
-                        ///< it
+  std::string Derive;   ///< array whose gradient, and what follows from it, is computed for the
+                        ///< particles
 
   std::string Scalar;
   /// A quantity is an array name or one value for all particles; the input decides which of the two
@@ -187,13 +187,13 @@ struct Option
 /// Lists every option, in the order of the help. An option without a name starts a group.
 const std::vector<Option>& AllOptions();
 
-/// NAME=x0,y0,z0:x1,y1,z1. Throws UsageError.
+/// Reads NAME=x0,y0,z0:x1,y1,z1. Throws UsageError.
 Place ToGauge(const std::string& option, const std::string& text);
 
-/// nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
+/// Reads nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
 GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 
-/// NAME=SECTION. Throws UsageError.
+/// Reads NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
 /// Places of the options, including those that files list, in the order of the options. Throws

@@ -76,7 +76,7 @@ void AddOnly(Job& job, Text option, Text text)
   SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
 }
 
-/// Returns times and ranges of times, ascending, each once.
+/// Reads times and ranges of times; returns all the times, ascending, each once.
 std::vector<double> ToTimes(Text option, Text text)
 {
   std::set<double> times;

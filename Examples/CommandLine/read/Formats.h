@@ -30,7 +30,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
 /// arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Returns the number in the first of these arrays that is there, likewise.
+/// Does the same for the number in the first of these arrays that the file has.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
@@ -48,7 +48,7 @@ struct CollectionEntry
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings);
 
-/// The files that are parts of one set of particles, from a .pvtp or .pvtu file.
+/// Returns the files that a .pvtp or .pvtu file lists as parts of one set of particles.
 std::vector<std::string> ReadPieces(const std::string& file);
 
 /// Reads particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between blanks with

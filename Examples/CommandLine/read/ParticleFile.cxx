@@ -290,7 +290,7 @@ bool IsList(const std::string& name)
   return format && format->Process.ListParts;
 }
 
-/// Lists the pieces of a list of pieces, or the file itself.
+/// Returns the files that a list of pieces names; for any other file, the file itself.
 std::vector<std::string> ListParts(const std::string& name)
 {
   const auto [file, step] = StepOf(name);

@@ -37,7 +37,7 @@ std::vector<double> ListTimes(const std::string& name);
 /// Returns the time between steps that all of these files store as `dt`; 0: they store none, or differ.
 double StoredTimeStep(const std::vector<std::string>& files);
 
-/// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
+/// Reads the particles that --walls names, as one set; null: none. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
 /// Opens these files, and those that hold their parts, before they are read, so that IsSource() knows

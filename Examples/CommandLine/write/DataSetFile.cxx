@@ -31,8 +31,8 @@
 namespace
 {
 
-/// VTK's writers put names into XML as they are: arrays and their components have names fit for it,
-/// as long as this lives.
+/// VTK's writers put names into XML as they are. As long as this lives, arrays and their components
+/// have names that are fit for XML.
 class NamesForXml
 {
 public:

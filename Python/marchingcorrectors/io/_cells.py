@@ -38,8 +38,8 @@ def tell_mesh(body, is_vertex):
 
 
 def take_vertices(file, body, types, offsets, points, cell_arrays):
-    """Where there are vertices and other cells, the points of the vertices: other points are a mesh's. Arrays of cells are
-    then those of the vertices' points, unless these have one of that name; also where each point has a vertex."""
+    """Takes only the vertices' points if there are other cells, too: other points are a mesh's. Arrays of cells become
+    arrays of these points, unless points have one of that name; also where each point has a vertex."""
     is_vertex, count = np.isin(types, VERTICES), len(body.points)
     body = tell_mesh(body, is_vertex)
     cell_of = find_vertices(types, offsets, points, count)

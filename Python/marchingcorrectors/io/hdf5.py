@@ -14,8 +14,8 @@ KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or 
 
 
 def get(group, place):
-    """A member of a group by its path, or None. No link is followed, and nothing that lies in other files is opened: a
-    file could name any of the reader's."""
+    """Returns a member of a group by its path, or None. No link is followed and no other file is opened, because a file
+    could name any file that its reader may open."""
     import h5py
 
     file = os.path.basename(group.file.filename)
@@ -97,7 +97,7 @@ def load(parts, name):
 
 
 def names_of(group, count):
-    """Lists arrays of numbers with so many rows."""
+    """Lists arrays of numbers with `count` rows."""
     check_claims([group])
     return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
 

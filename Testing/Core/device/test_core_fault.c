@@ -336,7 +336,7 @@ static void test_probe_and_derive(void** state)
   free(points);
 }
 
-/* The same with trimmed bands of a plane. */
+/* Lets calls fail while the trimmed bands of a plane are filled. */
 static void test_filled(void** state)
 {
   static const double isos[2] = { -1e9, 0.5 };
@@ -354,7 +354,7 @@ static void test_filled(void** state)
   sweep_room(*state, &filled, 23, 100);
 }
 
-/* The same with a box, a period and walls, each with the steps that only it has. */
+/* Lets calls fail with a box, a period and walls, each with the steps that only it has. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;

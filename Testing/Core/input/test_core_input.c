@@ -389,7 +389,7 @@ static void test_values_of_solids(void** state)
   }
 }
 
-/* Makes of each particle's scalar, above 0, a vector of that magnitude. */
+/* Makes a vector of each particle's scalar; its magnitude is unit * (scalar + 10). */
 static void make_vectors(bad_call* call, double unit)
 {
   for (int64_t i = 0; i < call->set.count; ++i)

@@ -44,7 +44,7 @@ void plane_check_lines(const plane_field* field, const mcor_surface* surface, in
 mcor_options plane_options(const double* iso);
 
 /* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length
- * 1.3 to 1.3 spread, volume 1. */
+ * from 1.3 to 1.3 * spread, volume 1. */
 particle_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed);
 
 #endif

@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gives the bunches that lean on a bunch another state. */
+/* Sets the state of all bunches that lean on bunch `first`. */
 static void mcor_drop_leaning(mcor_bunches* bunches, int32_t first, int state)
 {
   for (int32_t e = bunches->leans[first] ? -1 : bunches->star[first]; e >= 0;

@@ -101,8 +101,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
         MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* Evaluates, for uniform cubes, the bricks whose states require it, and then the bricks that
- * evaluated ones show to be needed; see mcor_seed.cl. */
+/* Evaluates, for uniform cubes, the bricks whose states require it. Then, round by round, it adds
+ * the bricks that the last round's nodes require; see mcor_seed.cl. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

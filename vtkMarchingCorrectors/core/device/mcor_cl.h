@@ -173,7 +173,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
-/* Sets the variant of the kernels from now on. Kernels that fit it are kept. */
+/* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 /* Begins to build a set of programs in threads of their own, in the order in which a run needs them,
  * where a driver compiles them and none of this build is there yet. */

@@ -12,11 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Least speed and density to which a section's accuracy is relative, as a share of the greatest
- * ones of all particles: means are exact to the rounding of those. */
+/* A section's accuracy is relative to its greatest speed and density, but at least to this share of
+ * the greatest of all particles, because these set how means are rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
-/* Room of sums above the largest one that means allow. Weights below 0, as M'4 has, make sums a
- * little larger. */
+/* A sum may become this many times area times the greatest speed and density. Weights below 0, as
+ * M'4 has, make sums a little larger than that product. */
 #define MCOR_FLUX_ROOM 8
 /* Cells treated together. */
 #define MCOR_FLUX_TOGETHER 4096

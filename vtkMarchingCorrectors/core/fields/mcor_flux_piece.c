@@ -15,8 +15,8 @@
 /* A parabola through the ends and the middle of an edge goes beyond them by at most an eighth of
  * its bend. If the level is nearer than four times that, it may cross the edge twice. */
 #define MCOR_FLUX_NEAR 0.5
-/* Weights bend by about 4 / h^2, so they differ from a line between two samples by an eighth of
- * that times the square of the distance. */
+/* Weights bend by about 4 / h^2. Between two samples they differ from a line by an eighth of the
+ * bend times the square of the distance. */
 #define MCOR_FLUX_BEND 0.125
 /* Rounds of mcor_solve_crossings, after which a crossing is known to 1e-5 of its edge. */
 #define MCOR_FLUX_SOLVE_ROUNDS 2

@@ -52,8 +52,8 @@ typedef struct mcor_probe_chunk
   bool valid[MCOR_CHUNK];
 } mcor_probe_chunk;
 
-/* Writes component c of the attributes on the device to the results, and its gradient. Its scale is
- * a power of 2, so dividing by it is exact. */
+/* Writes component c of the attributes on the device, and its gradient, to the results. The
+ * component's scale is a power of 2, so dividing by the scale is exact. */
 static void mcor_put_component(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
 {
   const mcor_context* context = job->run->context;

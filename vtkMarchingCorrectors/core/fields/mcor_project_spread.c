@@ -421,7 +421,7 @@ mcor_status mcor_spread_particles(mcor_project_job* job)
     mcor_is_plane(job->context), job->axes, least_pixel, &job->column));
   MCOR_TRY(mcor_count_splats(job, blocks));
   MCOR_TRY(mcor_spread_all(job, blocks));
-  /* Sums over all ranks, and makes the values of the sums. */
+  /* Adds the sums of all ranks, and computes the values from them. */
   const int64_t count = 2 * job->channels * (int64_t)pixels;
   const double* sums = job->sums;
   for (int64_t first = 0; first < count; first += MCOR_REDUCED_TOGETHER)

@@ -38,7 +38,7 @@ static mcor_status mcor_launch_scan(
     MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->scan_sums));
 }
 
-/* Scans likewise, and reads the total. */
+/* Scans as mcor_launch_scan does, and reads the total. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
   const int segments = mcor_segments(context, count);
@@ -123,7 +123,7 @@ mcor_status mcor_sort(
   return MCOR_OK;
 }
 
-/* Flags the first of each run of equal ones among sorted keys, and numbers the runs. */
+/* Flags the first key of each run of equal keys, which are sorted, and numbers the runs. */
 static mcor_status mcor_number_runs(
   mcor_context* context, const mcor_buffer* keys, int count, int* distinct_count)
 {
@@ -170,7 +170,7 @@ mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int c
   return MCOR_OK;
 }
 
-/* Most buckets for so many keys: so few more that memory stays linear, however sparse they are. */
+/* Most buckets for `keys` keys: memory stays linear in the keys, however sparse these are. */
 uint64_t mcor_most_buckets(int keys)
 {
   const uint64_t most = 4 * (uint64_t)keys + (1 << 20);

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Far particles that are left out: one in so many, and in any case so many. */
+/* Far particles are left out if they are at most one in MCOR_FAR_SHARE, or at most MCOR_FAR_FEW. */
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bounds of the fluid are divided into so many cells along their longest side. */
+/* How many cells divide the bounds of the fluid along their longest side. */
 #define MCOR_FILLING_CELLS 32
 /* The fluid fills its bounds if it reaches this share of the cells. */
 #define MCOR_FILLING_SHARE 0.98

@@ -325,7 +325,7 @@ static void mcor_find_variation(const mcor_named* a, int component, double* firs
   }
 }
 
-/* Ranks first say which arrays vary, each component by itself. */
+/* The ranks first agree which components of which arrays vary. */
 int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks)
 {
   int components = 0, best = -1, best_rank = -1;

@@ -61,7 +61,7 @@ static inline mcor_array mcor_positions_of(const mcor_input* input)
 
 #define MCOR_CHUNK 1024
 
-/* Returns the number of particles of the next chunk, if so many are left. */
+/* Returns how many of the `rest` particles that are left go into the next chunk. */
 static inline int mcor_chunk_of(int64_t rest)
 {
   return rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;

@@ -390,7 +390,7 @@ static void mcor_stage_chunk_at(
   }
 }
 
-/* Adds the staged images of a chunk's particles to `out`, which is staged whenever it is full. */
+/* Adds the images of a chunk's particles to `out`, and stages `out` whenever it is full. */
 static void mcor_stage_images(const mcor_staging* staging, mcor_stage_slice* slice,
   const mcor_stage_chunk* chunk, mcor_stage_chunk* out, int64_t* to)
 {

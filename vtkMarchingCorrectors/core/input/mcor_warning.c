@@ -28,8 +28,8 @@ typedef struct mcor_suspicion
 #define MCOR_MOST_RATIO_WENDLAND 2.6
 #define MCOR_LEAST_RATIO_QUINTIC 0.7
 
-/* Particles strewn at random lie as near to each other, but have fewer neighbours. These are
- * counted per cube of the kernel's support in smoothing lengths; sheets and drops have few. */
+/* Random particles have a neighbour as near, but fewer neighbours in all. The limits are numbers of
+ * neighbours per (support / smoothing length)^3; sheets and drops have few. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
@@ -103,7 +103,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
     why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
-/* Warns where less than so many steps of single precision lie between nearest particles. */
+/* Warns where fewer steps of single precision than this lie between nearest particles. */
 #define MCOR_COARSE_STEPS 8
 
 /* Returns the step between neighbouring numbers of single precision at x. */

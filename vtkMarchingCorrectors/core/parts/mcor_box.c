@@ -204,8 +204,8 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* Keeps, of the marched bricks' cells, those in the box and so many cells around it. Of leaves it
- * keeps all cells of the ring around it. */
+/* Keeps, of the marched bricks' cells, those in the box and in `ring` cells around it. With
+ * adaptive cubes, it keeps mcor_level_ring(ring) cells of each level around it. */
 static mcor_status mcor_clip(
   mcor_context* context, int ring, const mcor_buffer* cells, mcor_buffer* clipped)
 {

@@ -47,7 +47,7 @@ double mcor_reach_of(const mcor_reach_box* box, double length, int level);
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
-/* Returns false where all particles are needed. */
+/* Finds where particles are needed. Returns false if they are needed everywhere. */
 bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach);
 /* Converts a position to the device's units; with a period it is rounded as on the device, and
  * moved into the first period. */
@@ -61,8 +61,8 @@ int mcor_list_images(
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
 
-/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and so many more on
- * their lower and upper sides. */
+/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and `lower` cells more on each
+ * lower side, `upper` cells more on each upper side. */
 #define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
@@ -98,7 +98,7 @@ bool mcor_follows_cells(const mcor_context* context);
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
-/* Output: makes room for the keys and flags of so many more triangles of the surface. */
+/* Output: makes room for the keys and flags of `more` further triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
 mcor_status mcor_crop_surface(

@@ -41,7 +41,7 @@ typedef struct mcor_filling
   MCOR_LIST(mcor_fill_triangle) triangles;
 } mcor_filling;
 
-/* Before all else, if lines are to be filled: checks that they can be, and evaluates the nodes. */
+/* Runs first. If lines are to be filled, checks that they can be, and evaluates the nodes. */
 mcor_status mcor_begin_fill(mcor_context* context);
 /* mcor_take_lines keeps the lines of the iso value under way after trimming; mcor_number_lines
  * notes their points as soon as they are numbered. Both do nothing where lines are not filled. */

@@ -130,8 +130,8 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Counts the bands: notes which nodes are above this level. Where marching has evaluated a node
- * its answer is taken, since lines are made from that. */
+/* Adds 1 to the band of each node that is above this level. If marching has evaluated a node, its
+ * answer counts, because the lines are made from it. */
 mcor_status mcor_take_lines(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

@@ -146,7 +146,7 @@ static mcor_status mcor_cut_fill_side(
   return MCOR_OK;
 }
 
-/* Adds the polygon that has the border's part from corner i on. */
+/* Adds the polygon whose first corner is corner i of the border. */
 static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
 {
   const mcor_cap_corner* corners[MCOR_POLYGON_MOST];

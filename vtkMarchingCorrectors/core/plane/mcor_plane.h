@@ -62,7 +62,7 @@ void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
 
-/* Keeps of all cells those that are squares of the plane. */
+/* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
 /* mcor_plane_lines.c. Makes normals from lines where the gradient gives none; needs the lines of

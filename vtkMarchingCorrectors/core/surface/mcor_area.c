@@ -40,7 +40,7 @@ static inline void mcor_measure_triangle(
   *volume = mcor_dot(c[0], n) / 6;
 }
 
-/* Finds a power of two that leaves 53 bits for the sum of so many terms. */
+/* Finds a power of two that leaves 53 bits for the sum of `count` terms up to `most`. */
 static double mcor_exact_unit(double most, int64_t count)
 {
   const double bound = most * (double)count;

@@ -136,7 +136,7 @@ static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t 
   }
 }
 
-/* Keeps the owned triangles and the points that they use alone, in order. */
+/* Keeps only the owned triangles and the points that they use, in order. */
 mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
   const uint8_t* kept = context->box.kept;

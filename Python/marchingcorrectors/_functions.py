@@ -168,8 +168,12 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
 
     Returns a Surface, as isosurface() does.
 
-    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. The arguments that
-    are not listed here are those of isosurface().
+    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. All arguments are those of isosurface();
+    most people need some of the first ones.
+
+    fluid: ("Type", 0): where this array has another value, particles are solid.
+    smoothing_length: (particles,) or one value, L, unless a file has it.
+    outputs: further arrays of the surface, by their names below: outputs=("residual", "gradients").
 
     {options}
     """

@@ -708,7 +708,7 @@ class Picture(CommandLineTest):
         plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
         arrays = {name: [values[i] for i in plane] for name, values in self.arrays.items() if name in ("Radius", "SmoothingLength")}
         files.write_vtp(self.input, [self.points[i] for i in plane], arrays)
-        rows = self.picture("s.vtp", "--scalar", "Radius", "--iso=-1,0.2,0.3,0.4", "--filled")[2]
+        rows = self.picture("s.vtp", "--scalar", "Radius", "--iso=-1,0.2,0.3,0.6", "--filled")[2]
         steps = list(dict.fromkeys(row[1168] for row in rows if max(row[1168]) - min(row[1168]) > 40))
         self.assertEqual(len(steps), 4)
         self.assertEqual(sorted(steps, key=lambda color: color[1]), steps)

@@ -86,8 +86,16 @@ void ColorScale::Include(vtkDataSet* data)
     }
     CheckColorName(this->Name, names);
   }
+  vtkDataArray* begins = data->GetFieldData()->GetArray("IsoValues");
   double range[2];
-  array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
+  if (this->Name == "BandValue" && begins) // bands that are not there have their colours, too
+  {
+    begins->GetFiniteRange(range, 0);
+  }
+  else
+  {
+    array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
+  }
   if (this->IsGiven || !(range[0] <= range[1]))
   {
     return;

@@ -26,7 +26,8 @@ static mcor_status mcor_begin_building(
   const unsigned shape = MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE |
     MCOR_OUT_GAUSS_CURVATURE;
   int programs = 1 << MCOR_PROGRAM_GRID | 1 << MCOR_PROGRAM_BRICKS | 1 << MCOR_PROGRAM_NODES |
-    1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES | 1 << MCOR_PROGRAM_TRIM;
+    1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES;
+  programs |= options->field != MCOR_WEIGHT_SUM || has_solids ? 1 << MCOR_PROGRAM_TRIM : 0;
   programs |= mcor_needs_density(input) ? 1 << MCOR_PROGRAM_DENSITY : 0;
   programs |= input->attribute_count > 0 ? 1 << MCOR_PROGRAM_ATTRIBUTES : 0;
   programs |= options->topology == MCOR_TOPOLOGY_FIELD ? 1 << MCOR_PROGRAM_CHOICES : 0;

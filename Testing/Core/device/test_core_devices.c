@@ -61,10 +61,69 @@ static void test_no_such_place(void** state)
   assert_true(core_told(context, "PLACE_ILLEGAL|2"));
 }
 
+typedef struct building
+{
+  int told;
+  bool cancels;
+} building;
+
+static int on_progress(void* user, double fraction, const char* phase)
+{
+  building* b = user;
+  (void)fraction;
+  const bool is_building = strncmp(phase, MCOR_BUILDING, sizeof MCOR_BUILDING - 1) == 0;
+  const char* rest = phase + sizeof MCOR_BUILDING - 1;
+  int seconds;
+  assert_true(!is_building || !*rest || sscanf(rest, ", about %d s to come", &seconds) == 1);
+  b->told += is_building;
+  return is_building && b->cancels;
+}
+
+/* Programs that are built ahead serve the run, and it needs no others. A call may be cancelled, and a context freed, while they
+ * are built. */
+static void test_building_ahead(void** state)
+{
+  CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
+  const double iso = 2;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  CORE_SURFACE expected = core_extract(*state, &input, &options);
+  building b = { 0, true };
+  options.progress = on_progress;
+  options.progress_user = &b;
+  setenv("MCOR_THREADS", "2", 1); /* also where there is one processor */
+  for (int turn = 0; turn < 2; ++turn)
+  {
+    CORE_CONTEXT context = NULL;
+    b = (building){ 0, true };
+    CORE_OK(context, mcor_create_context("pocl", &context));
+    mcor_surface none;
+    CORE_FAILS(context, MCOR_CANCELLED, mcor_extract(context, &input, &options, &none), "CANCELLED_BUILDING");
+    assert_int_equal(b.told, 1);
+    if (turn == 0)
+    {
+      continue; /* the context is freed while its programs are built */
+    }
+    b.cancels = false;
+    CORE_SURFACE surface = core_extract(context, &input, &options);
+    assert_true(core_hash(&surface) == core_hash(&expected));
+    const int wanted = 1 << MCOR_PROGRAM_GRID | 1 << MCOR_PROGRAM_BRICKS | 1 << MCOR_PROGRAM_NODES |
+      1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES;
+    int built = 0;
+    for (int p = 0; p < MCOR_PROGRAM_COUNT; ++p)
+    {
+      built |= (context->cl.programs[p] != NULL) << p;
+    }
+    CORE_CHECK(built == wanted, "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
+  }
+  unsetenv("MCOR_THREADS");
+}
+
 int main(void)
 {
   setenv("POCL_DEVICES", "pthread pthread", 1);
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_turns_and_shares),
-    cmocka_unit_test(test_named_device), cmocka_unit_test(test_no_such_place) };
+    cmocka_unit_test(test_named_device), cmocka_unit_test(test_no_such_place),
+    cmocka_unit_test(test_building_ahead) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -546,8 +546,33 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-CORE_MAIN(core_set_up, core_tear_down, test_types, test_options, test_pairs, test_missing_arrays,
-  test_components, test_bad_elements, test_particles, test_lattice_limits, test_null_arguments,
-  test_empty_results, test_endless_range, test_values_of_solids, test_bad_attributes,
-  test_magnitudes, test_bad_products, test_computed_volumes, test_units_of_length, test_far_options,
-  test_outliers)
+/* Particles enough for several threads fill a cube, but for an octant in the second half of the list. */
+static void test_free_surface_comes_first(void** state)
+{
+  CORE_SET set = core_make_block(54, 0.2, 5, core_slope);
+  mcor_input input = core_input(&set);
+  input.volume = (mcor_array){ 0 };
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 0);
+  input.density = core_array(set.volume, 1); /* all 1: a liquid */
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 1);
+  set.smoothing_length[0] *= 1.01;
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 0);
+  input.solid = set.solid;
+  set.solid[set.count - 1] = 1;
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 1);
+  set.solid[set.count - 1] = MCOR_ABSENT;
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 0);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double* x = set.position + 3 * i;
+    set.solid[i] = x[0] > 0 && x[1] > 0 && x[2] > 0 && x[2] < 25 ? MCOR_ABSENT : 0;
+  }
+  assert_int_equal(mcor_has_free_surface(&input, NULL), 1);
+  (void)state;
+}
+
+CORE_MAIN(core_set_up, core_tear_down, test_free_surface_comes_first, test_types, test_options,
+  test_pairs, test_missing_arrays, test_components, test_bad_elements, test_particles,
+  test_lattice_limits, test_null_arguments, test_empty_results, test_endless_range,
+  test_values_of_solids, test_bad_attributes, test_magnitudes, test_bad_products,
+  test_computed_volumes, test_units_of_length, test_far_options, test_outliers)

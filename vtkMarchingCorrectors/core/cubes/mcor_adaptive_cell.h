@@ -6,25 +6,24 @@
 /* Marching Cubes in a cell with finer cells around it. This file is both included by the C core and
  * compiled as OpenCL C, after mcor_shared.h.
  *
- * A cell has 3 x 3 x 3 positions, half of its edge apart: node x + 3 y + 9 z. Its corners are
- * nodes; the middle of an edge is one where a finer cell touches the edge, which then is two
- * halves: the edge is split; the middle of a face is one where the cells across are finer, and then
- * its four edges are split as well. Bits of `split` say which middles are nodes, bits of `above`
- * which nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node; the
- * vertex of an edge that is not split has the slot of the lower half.
+ * A cell has 3 x 3 x 3 positions, half of its edge apart: number x + 3 y + 9 z. Its corners are
+ * nodes. If a finer cell touches an edge, the edge is split into two halves, and its middle is a
+ * node, too. If the cells across a face are finer, the face is split: its middle is a node, and its
+ * four edges are split as well. Bits of `split` say which middles are nodes, bits of `above` which
+ * nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node; the vertex of
+ * an edge that is not split has the slot of the lower half.
  *
- * A split face is four faces of one quarter, the sub-faces. On a sub-face, and on the ring of 4 to
- * 8 nodes around a face that is not split, every run of nodes above is cut off by one segment: as
- * in the case table, and the same from both sides. Segments join to loops. A loop is cut into
- * triangles such that no diagonal has both ends in one sub-face, in one whole face or on one edge
- * of the cell: there another cell could use the same side. That such a way always exists, but for
- * loops that lie in one whole face altogether, whose diagonals no other cell can have, was shown by
- * trying all cases; test_core_cell.c has cells side by side. Of the ways that there are, that with
- * the shortest diagonals is taken, vertices being in the middle of their edges; what lies flat in a
+ * A split face consists of four quarters, the sub-faces. On a sub-face, and on the ring of 4 to 8
+ * nodes around a face that is not split, one segment cuts off each run of nodes above, as in the
+ * case table; both cells at the face find the same segments. Segments form loops. A loop is cut
+ * into triangles such that no diagonal has both ends in one sub-face, in one whole face or on one
+ * edge of the cell, because another cell could have the same diagonal. A trial of all cases showed
+ * that this is always possible, except for loops that lie in one whole face; no other cell can have
+ * their diagonals. test_core_cell.c tests cells side by side. The triangles with the shortest
+ * diagonals are chosen, with vertices taken in the middle of their edges; a diagonal that lies in a
  * face counts as long.
  *
- * A loop of two vertices has no triangles: its segments are one line, where two faces that other
- * cells see meet without this one. */
+ * A loop of two vertices has no triangles: its two segments are the same line. */
 
 #define MCOR_ADAPTIVE_SLOTS 96     /* number of codes of slots; 48 occur */
 #define MCOR_ADAPTIVE_VERTICES 32  /* most vertices of a loop */
@@ -40,7 +39,7 @@
 #define MCOR_ADAPTIVE_FLAT 64 /* added to lengths of up to 48 */
 #define MCOR_ADAPTIVE_FORBIDDEN 8192
 
-/* The slot that follows each slot on its loop; 0xff: no vertex. */
+/* For each slot, the next slot of its loop; 0xff: no vertex. */
 typedef struct mcor_adaptive_links
 {
   MCOR_TYPE(uchar) next[MCOR_ADAPTIVE_SLOTS];
@@ -56,21 +55,21 @@ typedef struct mcor_adaptive_loop
   MCOR_TYPE(uint) facets[MCOR_ADAPTIVE_VERTICES];
 } mcor_adaptive_loop;
 
-/* Returns how far apart the numbers of nodes are that follow each other along an axis. */
+/* Returns the difference between the numbers of neighbouring positions along an axis. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_step(int axis)
 {
   return axis == 0 ? 1 : axis == 1 ? 3 : 9;
 }
 
-/* Returns the slot between two neighbouring nodes, half an edge or an edge apart. */
+/* Returns the slot between two nodes that are half an edge or an edge apart. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
 {
   const int lower = a < b ? a : b, step = a + b - 2 * lower;
   return (step < 3 ? 0 : step < 9 ? 1 : 2) << 5 | lower;
 }
 
-/* Cuts off each run of nodes above on a ring, counter-clockwise seen from outside. This
- * direction makes triangles face the nodes below. */
+/* Links the slots where a segment cuts off a run of nodes above. The ring is counter-clockwise,
+ * seen from outside, so that triangles face the nodes below. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   const int* ring, int count, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {
@@ -92,8 +91,8 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   }
 }
 
-/* Returns node i of the eight around a face, axis * 2 + side, counter-clockwise from its lowest
- * corner. */
+/* Returns node i of the eight around a face, counter-clockwise from its lowest corner. face: axis *
+ * 2 + side. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_node(int face, int i)
 {
   const int axis = face >> 1, side = face & 1;
@@ -178,13 +177,13 @@ MCOR_ADAPTIVE_FUNCTION MCOR_TYPE(uint)
   return facets;
 }
 
-/* Returns the cost of a diagonal. In a cell without finer cells around it, all allowed diagonals
- * cost the same: the first way found is taken, as in the case table. */
+/* Returns the cost of a diagonal. Without finer cells around the cell, all allowed diagonals cost
+ * the same: the first triangulation found is used, as in the case table. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, int a, int b)
 {
   const MCOR_TYPE(uint) common = loop->facets[a] & loop->facets[b], faces = common >> 24;
-  /* Both are in one sub-face or whole face, or on one edge, i.e. in two faces. */
+  /* Forbidden: both ends are in one sub-face or whole face, or on one edge, i.e. in two faces. */
   int cost = (common & 0xffffff) || (faces & (faces - 1)) ? MCOR_ADAPTIVE_FORBIDDEN : 0;
   if (split)
   {
@@ -198,13 +197,13 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   return cost;
 }
 
-/* Returns the place in `costs` of the part from vertex a to b > a. */
+/* Returns the index in `costs` of the loop's part from vertex a to vertex b > a. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
 {
   return b * (b - 1) / 2 + a;
 }
 
-/* Finds the third vertex of the triangle at side a-b of the part from a to b, and the part's
+/* Finds the third vertex of the triangle that has side a-b, in the part from a to b, and the part's
  * cost without that side. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
@@ -223,7 +222,7 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   return best;
 }
 
-/* Writes a loop's triangles, each before the triangles of the parts beside it. */
+/* Writes a loop's triangles. After each triangle follow those of the parts on its other sides. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
@@ -263,9 +262,9 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
   }
 }
 
-/* Cuts a cell into triangles. Writes them, three slots each, unless `triangles` is NULL; returns
- * their number. Adds its loops that lie in one face to *flat_loops. Without split edges they are
- * those of the case table. */
+/* Writes a cell's triangles, three slots each, unless `triangles` is NULL, and returns their
+ * number. Adds to *flat_loops the number of loops that lie in one face. Without split edges, the
+ * triangles are those of the case table. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
   MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, MCOR_TYPE(uchar) * triangles, int* flat_loops)
 {

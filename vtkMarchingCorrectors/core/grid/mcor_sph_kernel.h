@@ -3,16 +3,16 @@
 #ifndef mcor_sph_kernel_h
 #define mcor_sph_kernel_h
 
-/* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: a row of the table and
- * three functions each. CONTRIBUTING.md tells where else a kernel has its name.
+/* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: each has a row of the
+ * table and three functions. CONTRIBUTING.md says where else a kernel has to be named.
  *
  * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression
  * holds for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
- * w(|z|/h). All others must be positive and fall with q, for bounds rely on that, and may be off by
- * 96 units of rounding of themselves at most (mcor_bound.cl). Only operations that each device
- * rounds alike: no sine, no power, no exponential. */
+ * w(|z|/h). All others must be positive and fall with q, because bounds rely on this, and their
+ * rounding error is at most 96 units of rounding of w (mcor_bound.cl). They use only operations
+ * that every device rounds alike: no sine, no power, no exponential. */
 
-/* A row has what the core knows of a kernel, in the order of mcor_sph_kernel:
+/* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:
  *
  *   enumerator, name, support / h, norm, whether it is a tensor product,
  *   variance, variance in the plane: along an axis, in h^2, the integral of x^2 W
@@ -51,9 +51,9 @@ typedef double real, realv;
 
 #if defined(__OPENCL_VERSION__) || defined(MCOR_W_ON_HOST)
 
-/* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps, it has the value of one side. */
+/* w(q), and its derivatives w'(q) and w''(q). At a jump, w'' has the value of either side. */
 
-/* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this
+/* w = 1/4 a^3 - b^3 with a = max(2 - q, 0), b = max(1 - q, 0). Since a - b = 1 unless b = 0, this
  * is a c + b^2 with c = 1/4 a^2 - b^2, and its derivative is -3 c. */
 MCOR_OF_Q mcor_w_cubic(realv q)
 {
@@ -81,8 +81,8 @@ MCOR_OF_Q mcor_w_quadratic(realv q)
   return a * a;
 }
 
-/* The gradient is 0 where it has no direction: at 0, as far as positions of large supports are
- * rounded. */
+/* At q = 0 the gradient has no direction, so it is 0 there, and as near as positions of particles
+ * with large supports are rounded. */
 MCOR_OF_Q mcor_dw_quadratic(realv q)
 {
   return q < (real)1e-6 ? (realv)0 : (real)-2 * fmax((real)2 - q, (realv)0);
@@ -93,7 +93,7 @@ MCOR_OF_Q mcor_ddw_quadratic(realv q)
   return q < (real)2 ? (realv)2 : (realv)0;
 }
 
-/* Per axis; 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
+/* w along one axis: 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
 MCOR_OF_Q mcor_w_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
@@ -214,13 +214,13 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
     MCOR_FMA(q, MCOR_FMA(q, MCOR_FMA((real)-20, q, (real)-3.75), (real)3), (real)1);
 }
 
-/* w = s^6 with s = sin(x) / x, x = pi q / 2. As s is even and 0 at q = 2, s = t p(t) with
- * t = 1 - q^2 / 4, p(0) = 1/2, p'(0) = 3/8. p is so smooth that a polynomial does; sines are out,
- * because no two devices' sines have the same bits. The other coefficients are fitted to s / t from
- * t = 0 to 1, one after the other, each with the ones before it rounded, for the least relative
- * error. The error of w is below 5e-10 in single precision and 1e-16 in double, that of the slopes,
- * which are those of this polynomial, below 3e-9 and 1e-15. Rounding leaves w within 1.5e-6 and
- * 3e-15 of itself, as with the quintic spline. FIRST has the last two coefficients. */
+/* w = s^6 with s = sin(x) / x, x = pi q / 2. As s is even and 0 at q = 2, s = t p(t) with t = 1 -
+ * q^2 / 4, p(0) = 1/2, p'(0) = 3/8. p is so smooth that a polynomial is enough; sines cannot be
+ * used, because their bits differ between devices. The other coefficients are fitted to s / t from
+ * t = 0 to 1 for the least relative error, one after the other, with the earlier ones rounded. The
+ * error of w is below 5e-10 in single and 1e-16 in double precision; the slopes are the
+ * polynomial's, with errors below 3e-9 and 1e-15. Rounding adds relative errors of w up to 1.5e-6
+ * and 3e-15, as with the quintic spline. FIRST has the last two coefficients. */
 #if defined(MCOR_W_ON_HOST) || MCOR_DOUBLE
 #define MCOR_SINC(FIRST, NEXT)                                                                     \
   FIRST(1.518996494692584e-10, 5.733052293908227e-09)                                              \
@@ -245,7 +245,7 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
 #define MCOR_SINC_A(q) fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0)
 #define MCOR_SINC_FIRST(last, before) realv p = MCOR_FMA((real)last, t, (real)before);
 #define MCOR_SINC_NEXT(c) p = MCOR_FMA(p, t, (real)c);
-/* With d = p', too, and with e = p'' / 2. */
+/* _D also computes d = p'; _E also d = p' and e = p'' / 2. */
 #define MCOR_SINC_FIRST_D(last, before)                                                            \
   realv d = (realv)(real)last;                                                                     \
   MCOR_SINC_FIRST(last, before)
@@ -284,7 +284,7 @@ MCOR_OF_Q mcor_ddw_sinc6(realv q)
     MCOR_FMA((real)7.5 * q2, slope * slope, (real)3 * s * MCOR_FMA(q2, bend, -slope));
 }
 
-/* Lowest value of w: M'4 has a negative lobe, its minimum at q = 4/3. */
+/* The lowest value of w, and its q: M'4 has a negative lobe with its minimum at q = 4/3. */
 #define mcor_lowest_mprime4 ((real)-0.074074074074074074)
 #define mcor_turning_mprime4 ((real)1.3333333333333333)
 

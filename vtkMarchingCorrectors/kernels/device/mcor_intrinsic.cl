@@ -1,15 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extensions of compilers for CPUs, and their equals in plain OpenCL C for all others.
- * Nothing outside of this file depends on the compiler. */
+/* Extensions of compilers for CPUs, and the same functions in plain OpenCL C for all others. Only
+ * this file depends on the compiler. */
 
 #ifndef __has_builtin
 #define __has_builtin(name) 0
 #endif
 
-/* True if the compiler makes a CPU's instructions itself. A compiler that makes SPIR-V first may
- * know these built-in functions, too, but cannot express them there. */
+/* 1 if the compiler makes a CPU's instructions itself. One that makes SPIR-V first may know these
+ * built-in functions, too, but SPIR-V cannot express them. */
 #if (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || defined(__arm__) ||       \
   defined(__powerpc64__) || defined(__riscv)) &&                                                   \
   !defined(__SPIRV__)
@@ -42,12 +42,12 @@ typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 #endif
 #endif
 
-/* Makes a mask of the lanes of a group of particles that are kept, and packs these into an
- * array's next elements. The array needs room for MCOR_LANES elements. */
+/* MCOR_MASK makes a mask of the lanes to keep. MCOR_PACK_... write the values of these lanes,
+ * packed, to an array with room for MCOR_LANES elements. */
 #if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                    \
   __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)
-/* The vector unit packs by itself, which saves a third of a gather's time. */
+/* The vector unit has an instruction that packs, which saves a third of a gather's time. */
 typedef ushort mcor_mask;
 typedef realv __attribute__((aligned(4))) mcor_loose_realv;
 #define MCOR_MASK(keep, lanes)                                                                     \
@@ -80,7 +80,7 @@ void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
 #elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) && \
   __has_builtin(__builtin_ia32_movmskps256) && __has_builtin(__builtin_ia32_permvarsf256) &&       \
   __has_builtin(__builtin_ia32_pdep_di) && __has_builtin(__builtin_ia32_pext_di)
-/* The vector unit permutes: the numbers of the kept lanes come first. */
+/* The vector unit permutes. `kept` has the numbers of the kept lanes first. */
 typedef struct
 {
   int8 kept;

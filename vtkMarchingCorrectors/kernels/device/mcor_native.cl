@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL's built-in functions that kernels use, defined for the built-in device by Clang's own
- * operations: the results are those of OpenCL drivers, bit by bit (test_core_native.c). */
+/* The built-in functions of OpenCL that kernels use, made of Clang's operations for the built-in
+ * device. Their results have the same bits as those of OpenCL drivers (test_core_native.c). */
 
 #define MCOR_DEFINE __attribute__((overloadable, always_inline)) static inline
 
@@ -27,7 +27,7 @@
 #define MCOR_DEFINE_SIGN(T)                                                                        \
   MCOR_FUNCTION(T, sign, (T x), x > 0 ? (T)1 : x < 0 ? (T)-1 : x == 0 ? x : (T)0)
 
-/* These return the other argument if one is NaN. B: T, or a scalar for all lanes of T. */
+/* fmin and fmax return the other argument if one is NaN. B: T, or a scalar for all lanes of T. */
 #define MCOR_DEFINE_RANGE(T, B)                                                                    \
   MCOR_FUNCTION(T, fmin, (T a, B b), a < (T)b || (T)b != (T)b ? a : (T)b)                          \
   MCOR_FUNCTION(T, fmax, (T a, B b), a > (T)b || (T)b != (T)b ? a : (T)b)                          \
@@ -68,8 +68,8 @@ MCOR_FUNCTION(double, convert_double, (long x), (double)x)
 MCOR_DEFINE_ATOMICS(int, min, max)
 MCOR_DEFINE_ATOMICS(uint, umin, umax)
 
-/* Vectors R of n numbers T. Clang makes one instruction of such a loop; a loop with a choice
- * would become branches. */
+/* Functions of vectors R of n numbers T. Clang makes one instruction of such a loop, but branches
+ * of a loop that has a conditional. */
 #define MCOR_LANES_FUNCTION(n, R, name, parameters, value)                                         \
   MCOR_DEFINE R name parameters                                                                    \
   {                                                                                                \
@@ -101,7 +101,7 @@ MCOR_DEFINE_ATOMICS(uint, umin, umax)
   MCOR_DEFINE_MEMORY_IN(n, R, T, __global)                                                         \
   MCOR_DEFINE_MEMORY_IN(n, R, T, __private)
 
-/* Whether any, or all, of the n integers F of a mask I are below 0. */
+/* Defines `any` or `all`: whether any, or all, of the n integers F of a mask I are below 0. */
 #define MCOR_DEFINE_TOGETHER(n, I, F, name, first, operator)                                       \
   MCOR_DEFINE int name(I x)                                                                        \
   {                                                                                                \
@@ -113,7 +113,7 @@ MCOR_DEFINE_ATOMICS(uint, umin, umax)
     return r < 0;                                                                                  \
   }
 
-/* Vectors with masks I of integers F. */
+/* All functions of vectors R of n numbers T whose masks are vectors I of integers F. */
 #define MCOR_DEFINE_VECTOR(n, R, T, I, F)                                                          \
   MCOR_DEFINE_REALS(n, R, T)                                                                       \
   MCOR_DEFINE_INTEGER(I, F)                                                                        \

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Types, constants and bit tricks that all kernels share. Set by the host at build time:
+/* Types, constants and bit tricks that all kernels share. The host sets at build time:
  *
  *   MCOR_PROGRAM  which program this is, see MCOR_OF_LATTICE below and mcor_program.c
  *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
@@ -11,31 +11,30 @@
  *   MCOR_FIELD    the field, see below
  *   MCOR_SOLIDS   1: some particles are solid and count in the trimming weight only
  *
- * All lengths are in cubes of the virtual grid. A position is a fixed-point number, 2^-fix_bits
- * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
- * value does not depend on the brick it is evaluated in, nor on how far away the origin is. In a
- * periodic box whose periods no cube divides, the edges along x, y, z differ; then a cube, as a
- * length, is a little longer than the longest of them, and each is a whole number of fixed-point
+ * All lengths are in cubes of the virtual grid. A position is a fixed-point number, in units of
+ * 2^-fix_bits cubes from the lattice origin, so that a difference of two positions is exact: a
+ * node's value depends neither on the brick that evaluates it nor on its distance from the origin.
+ * In a periodic box whose periods no cube divides, the edges along x, y, z differ. Then the length
+ * "cube" is a little longer than the longest edge, and each edge is a whole number of fixed-point
  * units. Nodes, and offsets from them, are counted in edges. */
 
 /* Programs, see mcor_program.c. The lattice's program is compiled once for all SPH kernels and
- * fields, with and without solids: of the host's settings, it uses MCOR_LANES and MCOR_DOUBLE
- * alone. */
+ * fields, with and without solids: its only settings are MCOR_LANES and MCOR_DOUBLE. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
 
-/* Values of MCOR_FIELD, as mcor_field in mcor.h numbers them. */
+/* Values of MCOR_FIELD, the same as in mcor_field in mcor.h. */
 #define MCOR_SHEPARD 0
 #define MCOR_SUM 1
 #define MCOR_WEIGHT_SUM 2
 
-/* Every device must give the same bits. Additions, multiplications and fma are exact to the last
- * bit everywhere, though fma is slow if it is no instruction. A compiler must not choose between
- * them. */
+/* Every device must give the same bits. Additions, multiplications and fma are rounded alike
+ * everywhere, so a compiler must not choose between them. (fma is slow on a device without an
+ * instruction for it.) */
 #pragma OPENCL FP_CONTRACT OFF
 
-/* Marks functions that are called in several places, and seldom for one particle. Otherwise a
- * compiler for CPUs makes a copy for each call in each kernel, which delays the first surface. */
+/* MCOR_ONE_COPY marks functions with several callers that are seldom called for a single particle.
+ * Otherwise a compiler for CPUs copies them into each caller, which delays the first surface. */
 #if MCOR_LANES == 1
 #define MCOR_INLINE
 #define MCOR_ONE_COPY
@@ -43,7 +42,7 @@
 #define MCOR_ONE_COPY __attribute__((noinline))
 #define MCOR_INLINE __attribute__((always_inline))
 #ifdef POCL_DEVICE_ADDRESS_BITS
-/* PoCL makes three functions of a kernel, and would inline all of it into each. */
+/* PoCL makes three functions of a kernel, and would inline the whole kernel into each. */
 #define __kernel __kernel MCOR_ONE_COPY
 #endif
 #endif
@@ -105,7 +104,7 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 /* a * b + c, rounded once, in each lane; for loops over particles. */
 #define MCOR_FMA(a, b, c) fma((realv)(a), (realv)(b), (realv)(c))
 
-/* 0, 1, ... MCOR_LANES - 1. */
+/* Returns 0, 1, ... MCOR_LANES - 1. */
 fixv mcor_lane_index(void)
 {
 #if MCOR_LANES == 1
@@ -140,14 +139,14 @@ real mcor_lane_sum(realv v)
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL
 
-/* Masks of the lowest nodes along an axis. */
+/* Returns the mask of the lowest nodes along an axis. */
 ulong mcor_lowest(int axis)
 {
   return axis == 0 ? MCOR_LOW_X : axis == 1 ? MCOR_LOW_Y : MCOR_LOW_Z;
 }
 
-/* Returns the mask whose bit n is bit n + 1 along an axis. next: the neighbour brick's mask
- * there. */
+/* Returns the mask in which each node has the bit of the next node along an axis. next: the mask of
+ * the next brick. */
 ulong mcor_from_next(int axis, ulong m, ulong next)
 {
   const ulong low = mcor_lowest(axis);
@@ -155,8 +154,8 @@ ulong mcor_from_next(int axis, ulong m, ulong next)
   return (m >> step & ~(low << 3 * step)) | (next & low) << 3 * step;
 }
 
-/* Returns the mask whose bit n is bit n - 1 along an axis. last: the neighbour brick's mask
- * there. */
+/* Returns the mask in which each node has the bit of the last node along an axis. last: the mask of
+ * the last brick. */
 ulong mcor_from_last(int axis, ulong m, ulong last)
 {
   const ulong low = mcor_lowest(axis);
@@ -170,8 +169,8 @@ int4 mcor_place_of(int n)
   return (int4)(n & 3, n >> 2 & 3, n >> 4, 0);
 }
 
-/* Returns the step to neighbour d of the 7 up from a cell or brick (bits x, y, z; 0 is itself), and
- * to d of the 27 around it. */
+/* Return the step from a cell or brick: mcor_up to neighbour d up from it (bits x, y, z; 0 is the
+ * brick itself), mcor_around to number d of the 27 around it. */
 int4 mcor_up(int d)
 {
   return (int4)(d & 1, d >> 1 & 1, d >> 2, 0);
@@ -206,9 +205,9 @@ MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, u
   return low;
 }
 
-/* Returns the cell of x along an axis. It is monotone in x, so the cells of lo and hi enclose
- * the cells of everything in between. Every period is divided alike, so sums, whose order is
- * that of the cells, are the same a period away. */
+/* Returns the cell of x along an axis. The cell is monotone in x, so the cells of two positions
+ * enclose the cells of all positions between. Every period is divided alike, so sums, which follow
+ * the order of the cells, are the same a period away. */
 MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
   const fix period = (fix)level->period[axis];
@@ -216,7 +215,7 @@ MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x
   {
     return (int)floor((float)x * level->inv_cell[axis]);
   }
-  /* Most periods are removed at once, the rest one by one, so rounding does not matter. */
+  /* Removes most periods at once, the rest one by one, so rounding does not matter. */
   fix rest = x - (fix)level->side[axis];
   const int most = (int)((float)rest / (float)period) - 1, periods = max(most, -1);
   const int cells = level->period_cells[axis];
@@ -228,10 +227,10 @@ MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x
   return rest < 0 ? -1 : cell + min((int)((float)rest * level->inv_cell[axis]), cells - 1);
 }
 
-/* Returns the cell along an axis of a particle of the level. */
+/* Returns a particle's cell along an axis, in the particle's level. */
 MCOR_INLINE int mcor_cell_of_particle(__global const mcor_level* level, int axis, fix x)
 {
-  /* Returns the cell without clamping. */
+  /* the cell before clamping */
   const int cell = level->period[axis] == 0 ? (int)((float)x * level->inv_cell[axis])
                                             : mcor_cell_of(level, axis, x);
   return clamp(cell, 0, level->cells[axis] - 1);

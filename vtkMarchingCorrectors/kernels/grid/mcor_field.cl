@@ -4,13 +4,12 @@
 /* A particle's contribution to the SPH field at a point. */
 
 /* Roots. CPU vector units take longer for a square root and a division than for the rest of a
- * kernel sum. From an integer guess y, whose error e = 1 - x y^2 is below 0.07,
+ * kernel sum. So the root is made from an integer guess y, whose error e = 1 - x y^2 is below 0.07:
  *
  *   1 / sqrt(x) = y / sqrt(1 - e) = y (1 + e p(e))
  *
- * with p a minimax polynomial (2.4e-8) gives results to about 1 ulp. They are the same on every
- * device; those of OpenCL's rsqrt need not be. In double precision the root is exact to the last
- * bit. */
+ * with p a minimax polynomial (error 2.4e-8). The result is off by about 1 ulp, and the same on
+ * every device, unlike OpenCL's rsqrt. In double precision the root is exact to the last bit. */
 #if !MCOR_DOUBLE
 realv mcor_rsqrt_guess(realv x)
 {
@@ -53,11 +52,12 @@ realv mcor_square(realv x, realv y, realv z)
   return MCOR_FMA(z, z, MCOR_FMA(y, y, x * x));
 }
 
-/* W / norm * h^3 at offset (dx, dy, dz). It is made in two steps, so that MCOR_STEP particles
- * can take turns: a chain of both is longer than a CPU can look ahead. */
+/* W / norm * h^3 at offset (dx, dy, dz) is made in two steps, mcor_distance and mcor_weight.
+ * MCOR_STEP particles make the first step, then all make the second, because a CPU cannot look
+ * ahead over both. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
-/* Returns the weight itself, in place of a distance, for a tensor kernel. */
+/* Returns the distance; for a tensor kernel, the weight itself. */
 realv mcor_distance(realv dx, realv dy, realv dz, realv inv_h)
 {
 #if MCOR_TENSOR
@@ -76,7 +76,8 @@ realv mcor_weight(realv distance, realv inv_h)
 #endif
 }
 
-/* W / norm * h^3 and its gradient with respect to the offset d, again in two steps. */
+/* W / norm * h^3 and its gradient with respect to the offset d are also made in two steps,
+ * mcor_length_of and mcor_weight_gradient. */
 typedef struct
 {
   realv r2, inv_r;
@@ -93,7 +94,8 @@ mcor_length mcor_length_of(const realv d[3])
   return length;
 }
 
-/* The gradient is slope * along. Summing a common factor costs less than summing a vector. */
+/* Returns the weight. Its gradient is slope * along; the caller can multiply the slope by other
+ * factors, which costs less than multiplying a vector. */
 realv mcor_weight_gradient(
   const realv d[3], const mcor_length* length, realv inv_h, realv* slope, realv along[3])
 {
@@ -106,8 +108,8 @@ realv mcor_weight_gradient(
   along[2] = sign(d[2]) * MCOR_DW(q[2]) * w[0] * w[1] * inv_h;
   return w[0] * w[1] * w[2];
 #else
-  /* 1 / r is finite at r = 0, so the gradient is 0 there. The slope of the quadratic kernel is
-   * not 0 at 0; its gradient there is 0 by definition. */
+  /* inv_r is finite at r = 0, so the gradient is 0 there; with the quadratic kernel by definition,
+   * because its slope is not 0 at 0. */
   const realv per_r = length->inv_r * inv_h, q = length->r2 * per_r;
   *slope = MCOR_DW(q) * per_r;
   along[0] = d[0];

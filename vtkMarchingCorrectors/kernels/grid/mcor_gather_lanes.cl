@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles for MCOR_LANES points at once, in the form for CPUs; mcor_query.cl has the interface
- * at its end. */
+/* Gathers particles for MCOR_LANES points at once, in the form for CPUs; the end of mcor_query.cl
+ * describes the interface. */
 
 /* Most particles that one gather collects before they are evaluated. */
 #define MCOR_TILE_SIZE 1024
 
-/* Alignment of arrays that are read MCOR_LANES elements at a time: no access touches two cache
- * lines. */
+/* Alignment of arrays that are read MCOR_LANES elements at a time, so that no access touches two
+ * cache lines. */
 #define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
 
 /* Copies of the particles that reach a query's box, MCOR_TILE_SIZE at a time. */
@@ -16,9 +16,9 @@ typedef struct
 {
   int count;
   bool complete;  /* the tile holds all particles of the query */
-  bool delivered; /* this loop has no particles left to gather */
+  bool delivered; /* no particles are left to gather */
   MCOR_ALIGNED int list[MCOR_TILE_SIZE + 16];
-  /* Position from the query's origin, in cubes. */
+  /* positions, in cubes from the query's origin */
   MCOR_ALIGNED real x[MCOR_TILE_SIZE + 16], y[MCOR_TILE_SIZE + 16], z[MCOR_TILE_SIZE + 16];
   real inv_h[MCOR_TILE_SIZE + 16], weight[MCOR_TILE_SIZE + 16], value[MCOR_TILE_SIZE + 16];
 #if MCOR_SOLIDS
@@ -26,7 +26,8 @@ typedef struct
 #endif
 } mcor_tile;
 
-/* Reads particles i, i + 1, ... of a tile, one in each lane; particle i in all lanes; its index. */
+/* MCOR_TILE reads particles i, i + 1, ... of a tile, one in each lane; MCOR_EACH particle i for all
+ * lanes; MCOR_INDEX particle i's index. */
 #define MCOR_TILE(tile, name, i) MCOR_LOAD(i, (tile)->name)
 #define MCOR_EACH(tile, name, i) ((tile)->name[i])
 #define MCOR_INDEX(tile, i) ((tile)->list[i])
@@ -44,7 +45,7 @@ void mcor_tile_init(mcor_tile* tile)
 }
 
 /* Whether particles at (x, y, z) are within `share` of their support from a box. The margin covers
- * rounding: a particle kept in vain adds exactly 0. */
+ * rounding; a particle that is kept without need adds exactly 0. */
 fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box, realv share)
 {
   const realv dx = fmax(fabs(x - box->center[0]) - box->half_size[0], (realv)0);
@@ -58,14 +59,15 @@ fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box,
 #endif
 }
 
-/* Returns which of particles i, i + 1, ... of a tile are within their share of support from a box. */
+/* Returns which of a tile's particles i, i + 1, ... are within `share` of their support from a
+ * box. */
 fixv mcor_tile_near(const mcor_tile* tile, int i, const mcor_span* box, realv share)
 {
   return mcor_near_box(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
     MCOR_TILE(tile, inv_h, i), box, share);
 }
 
-/* Lists the places in the tile of the particles within their share of support from a box. Returns
+/* Lists the places in the tile of the particles within `share` of their support from a box. Returns
  * their number. */
 int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int* list)
 {
@@ -97,8 +99,7 @@ void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_
 #endif
 }
 
-/* Fills the lanes beyond the end, which loads of MCOR_LANES particles see, with particles
- * without weight. */
+/* Appends particles without weight, because loads of MCOR_LANES particles read beyond the end. */
 void mcor_tile_pad(mcor_tile* tile)
 {
   real* const arrays[] = { tile->x, tile->y, tile->z, tile->inv_h, tile->weight, tile->value,
@@ -115,7 +116,7 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
   const real unit = grid->unit;
   const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
   const mcor_span box = query->box;
-  /* Particles count within their own support, or within the query's radius. */
+  /* own: a particle counts within its own support; else it counts within the query's radius. */
   const bool own = query->radius < 0;
   const realv reach = own ? -query->radius : (real)1;
   const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
@@ -168,8 +169,8 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return true;
 }
 
-/* Fills a tile, but not its list, from a complete tile of a query with the same origin and a box
- * that encloses this one's. */
+/* Fills a tile, but not its list, from a complete tile of a query that has the same origin and a
+ * box that encloses the box of `query`. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
   const mcor_span box = query->box;
@@ -194,7 +195,7 @@ void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile*
 typedef struct
 {
   mcor_tile tile;
-  realv w[MCOR_TILE_SIZE]; /* of each particle in each lane, as last evaluated */
+  realv w[MCOR_TILE_SIZE]; /* w of each particle in each lane, from the last evaluation */
 } mcor_reach;
 
 #define MCOR_REACH_COUNT(reach) ((reach)->tile.count)
@@ -210,7 +211,7 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 #else
 #define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE_SIZE + 16))
 
-/* Finds which particles of a tile reach each part: one mask for MCOR_LANES of them. */
+/* Which particles of a tile reach each part: one mask for MCOR_LANES particles. */
 typedef struct
 {
   mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];
@@ -220,7 +221,7 @@ typedef struct
 typedef struct
 {
   mcor_tile tile;
-  realv w[MCOR_TILE_SIZE]; /* of each particle in each lane, as last evaluated */
+  realv w[MCOR_TILE_SIZE]; /* w of each particle in each lane, from the last evaluation */
   mcor_reach_masks masks;
   MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE];
   real inv_h[MCOR_REACH_SIZE], weight[MCOR_REACH_SIZE];
@@ -259,8 +260,8 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   }
 }
 
-/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. The
- * ends of shorter lists become 0, which is no weight. */
+/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Shorter
+ * lists are filled up with 0, i.e. no weight. */
 void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
 {
   MCOR_ALIGNED real packed[MCOR_PARTS][MCOR_TILE_SIZE + 2 * MCOR_LANES];
@@ -322,7 +323,7 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 
 #define MCOR_REACH_KEEP(reach, i, weight) ((reach)->w[i] = (weight))
 
-/* Values of an attribute at the particles of a tile. */
+/* Reads an attribute's values at the particles of a tile. */
 void mcor_tile_values(const mcor_tile* tile, __global const real* attribute, real* values)
 {
   for (int i = 0; i < tile->count; ++i)
@@ -331,7 +332,7 @@ void mcor_tile_values(const mcor_tile* tile, __global const real* attribute, rea
   }
 }
 
-/* Values of an attribute at the particles of a reach, to be read by MCOR_VALUE. */
+/* Loads an attribute's values at the particles of a reach; MCOR_VALUE reads them. */
 #if MCOR_PARTS == 1
 #define MCOR_VALUE(values, i) (values)[i]
 void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
@@ -365,9 +366,10 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds sum w_i A_i over the particles of a reach for the first `step` attributes, a constant, of
- * which `count` are there. One loop does all sums, because each sum alone would wait for its last
- * addition. weight: w_i in each lane; made, and added to *weight_sum, if `make`, a constant. */
+/* Adds w_i A_i over the particles of a reach to `step` sums, of which the first `count` have
+ * attributes. One loop makes all sums, because each sum alone would wait for its last addition.
+ * weight: w_i in each lane; if `make`, computes it, and adds it to *weight_sum. `step` and `make`
+ * are constants. */
 #define MCOR_ATTRIBUTE_STEP 4
 __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,

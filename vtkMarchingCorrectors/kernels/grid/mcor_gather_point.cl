@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles for one point per work-item, in the form for GPUs. They are read in place, a row of
- * search cells at a time; nothing is copied. mcor_query.cl has the interface at its end. */
+/* Reads the particles for one point per work-item, in the form for GPUs: in place, a row of search
+ * cells at a time, without copies. The end of mcor_query.cl describes the interface. */
 
 /* Particles of a row that may reach the query's box. */
 typedef struct
@@ -58,7 +58,7 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return some || first;
 }
 
-/* Not called: no tile is complete. */
+/* Is never called, because no tile is complete. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
   mcor_tile_init(tile);

@@ -11,7 +11,7 @@ __kernel void mcor_grid_key(const int count, const int is_simple, __global const
   __global const fix* z, __global ulong* keys)
 {
   const int begin = get_global_id(0) * MCOR_BATCH, end = min(begin + MCOR_BATCH, count);
-  if (is_simple) /* what does not change is read once, so that compilers vectorise the loop */
+  if (is_simple) /* constants are read before the loop, so that compilers vectorise it */
   {
     const mcor_level level = levels[0];
     const uint row = level.cells[0], layer = level.cells[1];
@@ -54,8 +54,8 @@ __kernel void mcor_grid_count(const int count, __global const ulong* keys, __glo
   __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
     __global const real *size
 
-/* Compares two particles of one search cell: by position, then by size and kind. Particles equal
- * in all of this differ in their scalar at most, see mcor_grid_order_value. */
+/* Compares two particles of one search cell by position, smoothing length, size and kind. If all
+ * are equal, the particles differ at most in their scalar, see mcor_grid_order_value. */
 bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
   return x[i] != x[j]                ? x[i] < x[j]
@@ -73,8 +73,8 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 #define MCOR_LOAD_OWN MCOR_CAT(vload, MCOR_LANES)
 #define MCOR_STORE_OWN MCOR_CAT(vstore, MCOR_LANES)
 
-/* Sorts a cell by x, unless two of its particles share it: then returns false. A particle's place
- * is the number of particles before it, which is counted for several at once. */
+/* Sorts a cell's particles by x. Returns false if two of them have the same x. A particle's place
+ * is the number of particles before it, counted for MCOR_LANES particles at once. */
 bool mcor_grid_rank(
   const fix* own, const int* item, int cell, int end, __global int* order, __global fix* px)
 {
@@ -100,7 +100,8 @@ bool mcor_grid_rank(
 }
 #endif
 
-/* Sorts the particles of each of several whole cells. keys, order, px: from the first cell on. */
+/* Sorts the particles within each of several whole cells. keys, order and px point to the first
+ * particle of the first cell. */
 void mcor_grid_insert(
   __global const ulong* keys, MCOR_PARTICLES, __global int* order, __global fix* px, int count)
 {
@@ -112,7 +113,7 @@ void mcor_grid_insert(
     own[i] = x[item[i]];
   }
 #if MCOR_LANES > 1
-  MCOR_STORE_OWN((fixv)0, 0, own + count); /* the last vector's other lanes, which nobody reads */
+  MCOR_STORE_OWN((fixv)0, 0, own + count); /* fills the last vector; nobody uses these lanes */
 #endif
   for (int cell = 0, end; cell < count; cell = end)
   {
@@ -144,8 +145,8 @@ void mcor_grid_insert(
   }
 }
 
-/* Returns the end of the whole cells from `first` on that begin before `end` and that insertion
- * sort has room for; `first` itself if the first cell is too large. */
+/* Returns the end of the whole cells from `first` on that begin before `end` and together fit into
+ * an insertion sort; `first` if the first cell is too large. */
 int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int count)
 {
   const int limit = min(first + MCOR_INSERTION_LIMIT, count);
@@ -164,9 +165,9 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
   return last;
 }
 
-/* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order,
- * and their order. Sorts the particles of these cells, so that their order no longer depends on the
- * input; writes it, and x in this order. Leaves out cells with more than MCOR_INSERTION_LIMIT
+/* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order.
+ * Sorts the particles within these cells, so that their order no longer depends on the input;
+ * writes `order`, and px in this order. Leaves out cells with more than MCOR_INSERTION_LIMIT
  * particles, which mcor_grid_sort_runs and mcor_grid_merge have sorted. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_PARTICLES,
   __global int* order, __global fix* px)
@@ -185,7 +186,7 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
 }
 
-/* One work-item = one particle. Turns its volume into its weights. norm: of the SPH kernel. */
+/* One work-item = one particle. Turns its volume into its weights. norm: the SPH kernel's norm. */
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {
@@ -193,14 +194,14 @@ __kernel void mcor_grid_weigh(const int count, const real norm, __global const r
   const real size = trim_weight[i];
   const real w = fabs(size) * norm * inv_h[i] * inv_h[i] * inv_h[i];
   trim_weight[i] = w;
-  weight[i] = size < 0 ? (real)0 : w; /* the same array where there are no solids */
+  weight[i] = size < 0 ? (real)0 : w; /* without solids, weight and trim_weight are one array */
 }
 
 /* Groups of more than MCOR_INSERTION_LIMIT particles with one key are sorted by all work-items
- * together: runs of MCOR_SORTED_RUN first, then pairs of runs are merged into runs twice as
- * long. A group is a cell, or (by_value) the particles at one position. The latter are sorted by
- * their scalar, so that not even they make a result depend on the order of the input; then by
- * the order before it, so that no trace of an earlier scalar stays. */
+ * together: runs of MCOR_SORTED_RUN first, then pairs of runs are merged into runs twice as long. A
+ * group is a cell, or (by_value) the particles at one position. Particles at one position are
+ * sorted by their scalar, so that results never depend on the order of the input; with equal
+ * scalars, by their number before, so that no earlier scalar matters. */
 #define MCOR_SORT_PARAMS                                                                           \
   const int count, __global const ulong *keys, MCOR_PARTICLES, const int by_value,                 \
     __global const real *value
@@ -217,7 +218,7 @@ bool mcor_sort_before(MCOR_SORT_PARAMS, int i, int j)
                   : mcor_grid_before(x, y, z, inv_h, size, i, j);
 }
 
-/* Whether place i may belong to a group of more than MCOR_INSERTION_LIMIT. */
+/* Whether place i may belong to a group of more than MCOR_INSERTION_LIMIT particles. */
 bool mcor_sort_is_large(__global const ulong* keys, int i, int count)
 {
   const int step = MCOR_INSERTION_LIMIT / 2;
@@ -255,9 +256,9 @@ __kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
   }
 }
 
-/* One work-item = one batch of sorted particles. Reads an order with sorted runs of a width.
- * Writes the place of each particle in the order with runs of twice that width: its place in its
- * own run, plus the number of particles of the other run before it. */
+/* One work-item = one batch of sorted particles. Reads an order whose runs of `width` particles are
+ * sorted. Writes each particle to its place in the run of twice that width: its place in its own
+ * run, plus the number of particles of the other run before it. */
 __kernel void mcor_grid_merge(
   MCOR_SORT_PARAMS, const int width, __global const int* order, __global int* merged)
 {
@@ -282,7 +283,7 @@ __kernel void mcor_grid_merge(
     while (low < high)
     {
       const int middle = low + (high - low) / 2;
-      /* With equal keys, the first run comes first. */
+      /* Of equal particles, the first run's come first. */
       const bool before = is_first ? mcor_sort_before(MCOR_SORT_ARGS, order[middle], order[i])
                                    : !mcor_sort_before(MCOR_SORT_ARGS, order[i], order[middle]);
       low = before ? middle + 1 : low;
@@ -301,7 +302,7 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   out[(long)out_row * count + i] = in[order[i]];
 }
 
-/* Whether sorted particles i and j differ in their scalar at most. Mostly x decides. */
+/* MCOR_SAME: whether sorted particles i and j differ at most in their scalar. Mostly x decides. */
 #define MCOR_COINCIDENT_PARAMS                                                                     \
   __global const fix *px, __global const fix *py, __global const fix *pz,                          \
     __global const real *inv_h, __global const real *weight, __global const real *trim_weight
@@ -313,8 +314,8 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle, if it is the first of several at one position. Sorts
- * these; if they are more than MCOR_INSERTION_LIMIT, reports so instead. */
+/* One work-item = one sorted particle, if it is the first of several at one position. Sorts these;
+ * if there are more than MCOR_INSERTION_LIMIT, sets `many`. */
 __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __global real* value,
   __global int* order, __global int* many)
 {
@@ -345,7 +346,7 @@ __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __g
   }
 }
 
-/* One work-item = one sorted particle. Writes 1 if it differs from the one before it in more
+/* One work-item = one sorted particle. Writes 1 if it differs from the particle before it in more
  * than the scalar. */
 __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __global int* flags)
 {
@@ -353,8 +354,8 @@ __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __
   flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
 }
 
-/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that it shares with
- * those coincident with it. */
+/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that coincident
+ * particles share. */
 __kernel void mcor_grid_fill_places(
   const int count, __global const int* scanned, __global ulong* keys)
 {
@@ -370,11 +371,11 @@ typedef struct
 {
   realv mass;                /* m_k w(q) */
   realv size;                /* (h_k / h_j)^d w(q), d: dimensions */
-  realv fluid[3], solids[3]; /* (h_k / h_j)^d grad w(q), of fluid and of solids */
+  realv fluid[3], solids[3]; /* (h_k / h_j)^d grad w(q) over fluid, over solids */
 } mcor_density_sums;
 
-/* Greatest ratio of smoothing lengths: beyond it a neighbour outweighs all others, and the cube
- * of the ratio is near the limit of single precision. */
+/* Greatest ratio of smoothing lengths that is used. Beyond it one neighbour outweighs all others,
+ * and the ratio's cube is near the limit of single precision. */
 #define MCOR_LARGEST_RATIO ((real)1e10f)
 
 #define MCOR_DENSITY_PULL(side)                                                                    \
@@ -382,8 +383,8 @@ typedef struct
   side[1] = MCOR_FMA(pull, along[1], side[1]);                                                     \
   side[2] = MCOR_FMA(pull, along[2], side[2]);
 
-/* Adds particle k to particles at x. scale: 1 / h_j, in the unit of positions. inside: lanes
- * whose query the tile belongs to. */
+/* Adds particle k to the sums of particles at x. scale: 1 / h_j, in the unit of positions. inside:
+ * the lanes that the tile was gathered for. */
 void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, const fixv x[3],
   realv scale, realv inv_h, fixv inside, int plane, mcor_density_sums* sums)
 {
@@ -410,9 +411,9 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 #endif
 }
 
-/* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up
- * for the side without neighbours. one_sided: 5/3 variance. Solids fill that side, but no more
- * than it: their part of g is added times the share, from 0 to 1, that makes |g| least. */
+/* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up for a
+ * side without neighbours. one_sided: 5/3 variance. Solids fill that side, but never more: their
+ * part of g is multiplied by the share, from 0 to 1, that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;
@@ -434,9 +435,9 @@ realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
   return MCOR_FMA((realv)one_sided, mcor_square(g[0], g[1], g[2]), (realv)1);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
- * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j, times
- * mcor_density_factor for fluid. */
+/* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (all 1 for a number
+ * density). Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j;
+ * for fluid, times mcor_density_factor. */
 __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int plane,
   const real one_sided, __global const real* mass, __global real* density)
 {
@@ -478,14 +479,14 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int 
   MCOR_STORE(result, begin, density);
 }
 
-/* Least density, as a factor of what a particle itself adds to it. Below it, a computed volume
- * would be huge, or negative, which kernels with negative lobes can cause. */
+/* Least density, as a share of what the particle itself adds to it. A lower density, which kernels
+ * with negative lobes can cause, would make the volume huge or negative. */
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
 /* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled
- * h)^3: V = m / (sum m W), so norm and unscaled h^3 cancel. Writes to `without` the first
- * particle whose density is too low. A particle whose support does not even nearly reach the box
- * in which the field is evaluated, in cubes, may lack neighbours; it is not reported. */
+ * h)^3. As V = m / (sum m W), norm and unscaled h^3 cancel. Writes to `without` the first particle
+ * whose density is too low. Does not report particles whose support stays clear of the box (low,
+ * high; in cubes) in which the field is evaluated: they may lack neighbours. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const real* density, const real unit, __global const fix* px, __global const fix* py,
   __global const fix* pz, __global const real* inv_h, const real low_x, const real low_y,

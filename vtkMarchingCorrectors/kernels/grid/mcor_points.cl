@@ -1,23 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that
- * reach them.
+/* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that reach
+ * them.
  *
- * Many more particles reach some point of a group than reach one given point. If packing is
- * cheap, a group therefore consists of MCOR_PARTS parts of points close together, each with its
- * own list of particles. The lists are gone through at the same time: lane l of a vector belongs
- * to part l % MCOR_PARTS. Every sum adds its particles in the order of the search grid, whatever
- * the groups are. */
+ * Many more particles reach some point of a group than reach one given point. If packing is cheap,
+ * a group therefore consists of MCOR_PARTS parts. The points of a part are close together, and each
+ * part has its own list of particles. All lists are read at the same time: lane l of a vector
+ * belongs to part l % MCOR_PARTS. Every sum adds its particles in the order of the search grid,
+ * whatever the groups are. */
 
-/* Greatest distance between nodes of a group, in cubes, summed over the three axes; along one:
- * MCOR_GROUP_EDGE. */
+/* Greatest distance between nodes of a group, in cubes, summed over the three axes; MCOR_GROUP_EDGE
+ * is the limit along each axis. */
 #define MCOR_GROUP_EDGES 12
 
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
 #if !MCOR_OF_LATTICE
-/* Points: a lattice node, and an offset from it. */
+/* Points, each given by a lattice node and an offset from it. */
 typedef struct
 {
   int index[MCOR_LANES]; /* number of each lane's point; -1 if a lane repeats another one */
@@ -30,19 +30,19 @@ typedef struct
 /* State of a walk through successive points. A part holds up to MCOR_PART points of one brick. */
 typedef struct
 {
-  int part, size; /* part of the last point in the group, and the number of points in it so far */
+  int part, size; /* part of the group's last point, and the part's number of points so far */
   int4 low, high; /* box of the group's nodes */
 } mcor_grouping;
 
-/* Whether nodes this far apart may share one gather of particles, which is to stay small. */
+/* Whether nodes this far apart may be in one group; its gather of particles has to stay small. */
 bool mcor_group_fits(int4 extent)
 {
   return extent.x + extent.y + extent.z <= MCOR_GROUP_EDGES &&
     max(extent.x, max(extent.y, extent.z)) <= MCOR_GROUP_EDGE;
 }
 
-/* Takes the next point, at `node`. before: the node of the point before it. Returns false if it
- * does not fit the group; the caller then starts a new one. */
+/* Adds the next point, at `node`, to the group. before: the last point's node. Returns false if the
+ * point does not fit; the caller then starts a new group. */
 bool mcor_group_add(mcor_grouping* grouping, int4 before, int4 node)
 {
   const int4 low = min(grouping->low, node), high = max(grouping->high, node);
@@ -67,7 +67,7 @@ mcor_grouping mcor_group_start(int4 node)
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = MCOR_GROUPED_POINTS points, of `count` from `first`. Writes 1 where a group
+/* One work-item = MCOR_GROUPED_POINTS points, of `count` from `first` on. Writes 1 where a group
  * starts. */
 __kernel void mcor_group_count(
   const int first, const int count, __global const int4* all_nodes, __global int* flags)
@@ -87,8 +87,8 @@ __kernel void mcor_group_count(
 }
 
 #else
-/* Gives the points of a group to lanes, and loads their nodes. from: the point to load in each
- * lane. */
+/* Gives the points of a group to lanes, and loads their nodes. from: the point of each lane, also
+ * of lanes that repeat another one. */
 void mcor_points_load(const mcor_grid* grid, __global const int4* node, int begin, int end,
   mcor_points* points, int from[MCOR_LANES])
 {
@@ -121,7 +121,7 @@ void mcor_points_load(const mcor_grid* grid, __global const int4* node, int begi
 }
 
 /* Fits the query, and the boxes of the parts, to points with offsets between low and high. The
- * query's origin is a node in the middle. */
+ * query's origin is a node in their middle. */
 void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv high[3],
   mcor_points* points, mcor_query* query)
 {
@@ -168,8 +168,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* Turns an offset in edges into cubes. If edges differ along the axes, a particle's position is
- * rounded to a fixed-point number again, so that its distance from itself is 0. */
+/* Turns an offset in edges into cubes. If edges differ along the axes, an offset close to a
+ * fixed-point number is rounded to it, so that a particle's distance from itself is 0. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
   const real at = offset * grid->edge[axis], units = at * grid->units,
@@ -178,7 +178,7 @@ real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
   return near ? whole * grid->unit : at;
 }
 
-/* Loads the group of points from `begin` to before `end`, and their offsets. */
+/* Loads points `begin` to `end` - 1, a group, with their offsets. */
 void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, mcor_points* points)
 {
@@ -203,7 +203,7 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_points_bound(grid, low, high, points, query);
 }
 
-/* Parameters and first lines of kernels of which one work-item = one group of points. */
+/* Parameters and first lines of the kernels whose work-items are groups of points. */
 #define MCOR_GROUP_PARAMS                                                                          \
   MCOR_GRID_PARAMS, const int group_count, __global const int *groups, __global const int4 *node
 #define MCOR_GROUP_ITEM(margin)                                                                    \
@@ -215,7 +215,8 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, margin, &points, &query); \
   mcor_tile_init(&reach.tile)
 
-/* Finds the points' nodes from the query's origin, as the particles of a tile count from it. */
+/* Finds the points' nodes relative to the query's origin, from which a tile's particles count,
+ * too. */
 void mcor_points_relative(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
 {
@@ -224,10 +225,9 @@ void mcor_points_relative(
   at[2] = MCOR_CONVERT_REALV(points->z - query->origin[2]) * grid->unit;
 }
 
-/* Finds the offsets of the points from a particle at (x, y, z). at: made by
- * mcor_points_relative. The terms in parentheses are exact if the particle reaches the point,
- * see MCOR_POINT_EXTENT. So the distance depends on particle and point alone, not on the query's
- * origin. */
+/* Finds the offsets of the points from a particle at (x, y, z). at: made by mcor_points_relative.
+ * The terms in parentheses are exact if the particle reaches the point, see MCOR_POINT_EXTENT, so
+ * the distance does not depend on the query's origin. */
 void mcor_points_from(
   const realv at[3], const mcor_points* points, realv x, realv y, realv z, realv d[3])
 {
@@ -236,7 +236,7 @@ void mcor_points_from(
   d[2] = (at[2] - z) + points->oz;
 }
 
-/* Finds the offsets from particle i of a reach. */
+/* Finds the offsets of the points from particle i of a reach. */
 #define MCOR_REACH_FROM(at, points, reach, i, d)                                                   \
   mcor_points_from(                                                                                \
     at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d)

@@ -3,10 +3,10 @@
 
 /* The search grid [III-A]: rows of particles that may reach a box.
  *
- * The search grid has one level for each factor of 2 of support radius that occurs, so a
- * particle costs work only where its own support reaches. Particles are sorted by (level, z, y,
- * x) cell, and within a cell by position, x first, so a row of cells is sorted by x. The
- * particles alone fix the order of every sum. */
+ * The search grid has a level for each power of 2 of the support radii, so a particle costs work
+ * only where its own support reaches. Particles are sorted by (level, z, y, x) of their cells, and
+ * within a cell by position, x first, so a row of cells is sorted by x. The order of every sum
+ * depends on the particles alone. */
 
 #define MCOR_GRID_PARAMS                                                                           \
   const int particle_count, const int level_count, const int bucket_shift, const real unit,        \
@@ -21,17 +21,18 @@
 typedef struct
 {
   int particle_count, level_count, bucket_shift;
-  /* Kernels count in cubes, or in the cells of a level of adaptive cubes, which are view_edge cubes
-   * long. unit, units: a fixed-point unit in these, and the inverse. All are powers of two. */
+  /* The unit of length is a cube, or the cell of a level of adaptive cubes, which is view_edge
+   * cubes long. unit: a fixed-point unit in this unit; units: its inverse. All are powers of
+   * two. */
   real unit, units, view_edge;
   real edge[3]; /* length of an edge, at most 1 */
   fix step[3];  /* length of an edge, from node to node, in fixed-point units */
   __global const mcor_level* levels;
-  /* The first particle of each cell if bucket_shift is 0; else the first of the cells that have
-   * particles with a key of at least bucket << bucket_shift. */
+  /* bucket_shift 0: the first particle of each cell. Else, for each bucket, the index in cell_keys
+   * of the first key that is at least bucket << bucket_shift. */
   __global const int* buckets;
-  __global const ulong* cell_keys; /* of the cells that have particles, sorted */
-  __global const int* cell_begins; /* the first particle of each; behind all, particle_count */
+  __global const ulong* cell_keys; /* keys of the cells that have particles, sorted */
+  __global const int* cell_begins; /* each such cell's first particle; then particle_count */
   __global const fix *px, *py, *pz;
   __global const real* inv_h;       /* 1 / (h scale * smoothing length), in cubes */
   __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
@@ -59,28 +60,29 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
   return grid->cell_begins[mcor_find_key(grid->cell_keys, low, grid->buckets[bucket + 1], key)];
 }
 
-/* A box, in cubes from a query's origin. */
+/* A box, in cubes relative to a query's origin. */
 typedef struct
 {
   real center[3], half_size[3];
 } mcor_span;
 
-/* All particles that may reach the box [low, high], row by row of search cells. */
+/* A walk over the particles that may reach the box [low, high], row by row of search cells. */
 typedef struct
 {
   fix low[3], high[3];
   fix origin[3]; /* positions in a tile count from here */
   mcor_span box; /* the same box */
-  float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
-  /* The current level, in fixed-point units: its cells; where the first one begins; how far
-   * rounding may have moved that; reach; squared distance of row z. */
+  float radius; /* cubes; -s: s times each particle's own support */
+  /* Of the current level, in fixed-point units. cell_size: edges of a cell; first_cell: where cell
+   * 0 begins; slack: its rounding error; reach2: squared reach; z2: squared distance of rows at
+   * z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
-  bool has_many_rows; /* rows in reach, see MCOR_MANY_ROWS */
+  bool has_many_rows; /* more rows are in reach than MCOR_MANY_ROWS */
   int begin, end;     /* remaining particles of the current row */
 } mcor_query;
 
-/* Limits a distance to the lattice's extent, so that positions that far beyond it do not
+/* Limits a distance to the lattice's extent, so that a position less or plus the distance cannot
  * overflow. */
 fix mcor_query_reach(float distance)
 {
@@ -88,11 +90,11 @@ fix mcor_query_reach(float distance)
   return distance < (float)most ? (fix)distance : most;
 }
 
-/* With more rows than this, a query skips the empty ones at once. If smoothing lengths differ
- * much, nearly all are empty: particles of most levels are elsewhere. */
+/* With more rows than this, a query skips runs of empty rows. If smoothing lengths differ much,
+ * nearly all rows are empty, because most levels have their particles elsewhere. */
 #define MCOR_MANY_ROWS(grid) ((grid)->level_count > 1 ? 3 : 64)
 
-/* Returns x + reach, or the greatest number if that overflows: a lattice may be nearly as long. */
+/* Returns x + reach, or the greatest number if the sum overflows. */
 fix mcor_query_beyond(fix x, fix reach)
 {
   const fix most = (((fix)1 << (MCOR_DOUBLE ? 62 : 30)) - 1) * 2 + 1;
@@ -123,7 +125,7 @@ bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int next)
         min(mcor_cell_of(level, a, mcor_query_beyond(query->high[a], reach)), level->cells[a] - 1);
       some = some && query->first[a] <= query->last[a];
     }
-    query->y = query->last[1]; /* as if the row before the first one had just ended */
+    query->y = query->last[1]; /* as if a row before the first had ended */
     query->z = query->first[2] - 1;
     query->has_many_rows =
       (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) >
@@ -147,8 +149,8 @@ void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin
   }
 }
 
-/* Returns the squared distance between the box and a cell along an axis, less the distance by
- * which rounding may have moved a particle across the cell's face. */
+/* Returns the squared distance between the box and a cell along an axis. The distance is shortened
+ * by how far rounding may have moved a particle across the cell's face. */
 float mcor_query_distance2(const mcor_query* query, int axis, int cell)
 {
   const float low = (float)query->low[axis], high = (float)query->high[axis];
@@ -190,7 +192,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Moves to just before the row, or the plane of rows, that has the level's next particle. */
+/* Moves to the row before the one with the level's next particle, or to the end of the plane of
+ * rows before it. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -237,9 +240,8 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to the first of the sorted particles [begin, end), up to where x
- * descends. It does so at the end of a row if the next one has particles further left. Returns
- * their number, and the least of their inv_h. */
+/* Fits the query's box to sorted particles from `begin` on, up to `end` or to where x descends, as
+ * it may at the end of a row. Returns their number, and in *coarsest the least of their inv_h. */
 int mcor_query_particles(
   const mcor_grid* grid, mcor_query* query, int begin, int end, real* coarsest)
 {
@@ -283,8 +285,8 @@ int mcor_query_particles(
   return count;
 }
 
-/* The particles of a query are gone through by tiles. The host embeds one of two files that define
- * tiles: mcor_gather_lanes.cl (copies of particles, packed, for MCOR_LANES points at once) or
+/* A query's particles are read tile by tile. The host embeds one of two files that define tiles:
+ * mcor_gather_lanes.cl (packed copies of particles, for MCOR_LANES points at once) or
  * mcor_gather_point.cl (the particles themselves, for one point). Both define
  *
  *   mcor_tile tile;                  particles that may reach the query's box, maybe more: one that
@@ -293,20 +295,20 @@ int mcor_query_particles(
  *     for (int i = 0; i < tile.count; ++i)
  *       ... MCOR_EACH(&tile, x, i), MCOR_INDEX(&tile, i) ...
  *
- * MCOR_EACH is an element, for all lanes; MCOR_TILE that of particles i, i + 1, ..., one for each
- * lane; MCOR_INDEX the place in the sorted arrays. The elements are x, y, z (from the query's
- * origin, in cubes; of particles that reach points of a group, and of those that reach nodes of a
- * brick, exact: MCOR_POINT_EXTENT), inv_h, weight, trim_weight (to be read as MCOR_TRIM_WEIGHT) and
- * value.
+ * MCOR_EACH is an element of particle i, for all lanes; MCOR_TILE has the elements of particles i,
+ * i + 1, ..., one for each lane; MCOR_INDEX is the place in the sorted arrays. The elements are x,
+ * y, z (from the query's origin, in cubes; exact for particles that reach points of a group or
+ * nodes of a brick, see MCOR_POINT_EXTENT), inv_h, weight, trim_weight (to be read as
+ * MCOR_TRIM_WEIGHT) and value.
  *
- * The loop may be repeated. A `complete` tile holds all of its query and is not gathered again;
- * mcor_tile_narrow(&wide, &query, &tile) fills a tile, but for MCOR_INDEX, from a complete one of a
- * query with the same origin and a box that holds this one's.
+ * The loop may be repeated. A `complete` tile holds all particles of its query and is not gathered
+ * again. mcor_tile_narrow(&wide, &query, &tile) fills a tile, but not its MCOR_INDEX, from a
+ * complete tile of a query that has the same origin and a box that encloses the box of `query`.
  *
  * mcor_list_lanes(chosen, count, lanes) lists which of the first `count` lanes are chosen, and
- * returns how many.
+ * returns their number.
  *
- * For points (mcor_points.cl), whose lanes may see different particles at a time:
+ * For points (mcor_points.cl), whose lanes may read different particles at a time:
  *
  *   mcor_reach reach;
  *   mcor_tile_init(&reach.tile);
@@ -316,10 +318,10 @@ int mcor_query_particles(
  *       MCOR_REACH_KEEP(&reach, i, w);    the kernel's value, for mcor_attribute_sums
  *
  * mcor_attribute_sums(grid, &query, &points, iso, &reach, evaluated, ...) adds weights, and weights
- * times attributes, of the particles; evaluated: the weights that were kept last hold.
+ * times attributes, of the particles; evaluated: the weights that were kept last may be used.
  *
  * mcor_values_load(&reach, arrays, &values) makes sorted arrays readable at the particles of a
- * reach: MCOR_VALUE_OF(&values, &reach, c, i) is that of arrays[c] at particle i. */
+ * reach: MCOR_VALUE_OF(&values, &reach, c, i) is the value of arrays[c] at particle i. */
 #if MCOR_SOLIDS
 #define MCOR_TRIM_WEIGHT trim_weight
 #else

@@ -26,8 +26,8 @@ __kernel void mcor_scan_sum(
 }
 
 #if MCOR_LANES > 1
-/* One work-item in all, because a CPU has few segments. Reads the segment sums. Writes their
- * exclusive prefix sums. */
+/* The first work-item does all, because a CPU has few segments. Reads the segment sums. Writes
+ * their exclusive prefix sums. */
 __kernel void mcor_scan_top(const int segments, __global long* sums)
 {
   long sum = 0;
@@ -39,7 +39,8 @@ __kernel void mcor_scan_top(const int segments, __global long* sums)
   }
 }
 #else
-/* One work-item = a 64th of the segment sums; one work-group of 64 scans them all. */
+/* One work-item = a 64th of the segment sums; one work-group of 64 scans them all. Writes their
+ * exclusive prefix sums. */
 __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
   const int segments, __global long* sums)
 {
@@ -69,9 +70,9 @@ __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
 
 #endif
 
-/* One work-item = one segment. Reads counts, and the scanned segment sums if there are several.
- * Replaces the counts by their exclusive prefix sums. Writes the total to element `count`, and
- * behind the segment sums. */
+/* One work-item = one segment. Reads counts, and, if there are several segments, the scanned
+ * segment sums. Replaces the counts by their exclusive prefix sums. Writes the total to element
+ * `count`, and behind the segment sums. */
 __kernel void mcor_scan_fill(
   __global int* counts, const int count, const int segments, __global long* sums)
 {
@@ -91,7 +92,7 @@ __kernel void mcor_scan_fill(
   }
 }
 
-/* One work-item = one segment. Reads the keys of the segment. Writes how often each digit occurs. */
+/* One work-item = one segment. Reads the segment's keys. Writes how often each digit occurs. */
 __kernel void mcor_sort_count(__global const ulong* keys, const int count, const int segments,
   const int shift, const int bits, __global int* histogram)
 {
@@ -113,8 +114,8 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
   }
 }
 
-/* One work-item = one segment. Reads keys, values (in the first round the value of key i is i)
- * and the scanned histogram. Writes both in the order of the digit; equal digits keep their
+/* One work-item = one segment. Reads keys, values (in the first round the value of key i is i) and
+ * the scanned histogram. Writes keys and values in the order of the digit; equal digits keep their
  * order. in_bits, out_bits: bits of values stored below their keys in one number; 0: values are
  * stored separately. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
@@ -143,7 +144,7 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   }
 }
 
-/* One work-item = one sorted key. Writes 1 if the key differs from the one before it. */
+/* One work-item = one sorted key. Writes 1 if the key differs from the key before it. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {
   MCOR_ITEM(i, i < count);
@@ -151,7 +152,7 @@ __kernel void mcor_unique_count(__global const ulong* keys, const int count, __g
 }
 
 /* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
- * for every key (at its original position `values`) the index of its distinct key. */
+ * to index_of[values[i]], for key i, the index of its distinct key. */
 __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* values,
   const int count, __global const int* scanned, __global ulong* distinct, __global int* index_of)
 {
@@ -166,7 +167,7 @@ __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* v
 }
 
 /* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
- * the index of its first; behind all, the count. */
+ * the index of its first occurrence; then the count. */
 __kernel void mcor_run_fill(__global const ulong* keys, const int count,
   __global const int* scanned, __global ulong* distinct, __global int* begins)
 {
@@ -185,7 +186,7 @@ __kernel void mcor_run_fill(__global const ulong* keys, const int count,
 #define MCOR_ITEM_BUCKETS MCOR_ITEM_BUCKETS_OF(MCOR_LANES)
 
 /* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index
- * of the first key that is not below it: bucket b begins at key b << shift. */
+ * of the first key that is not below its first key. Bucket b begins at key b << shift. */
 __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, const int shift,
   const int bucket_count, __global int* buckets)
 {
@@ -202,8 +203,8 @@ __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, cons
   }
 }
 
-/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last
- * entry is the end. */
+/* One work-item = one point. Reads the scanned flags. Writes where each group starts, and in the
+ * last entry where the last group ends. */
 __kernel void mcor_group_fill(
   const int first, const int count, __global const int* scanned, __global int* groups)
 {

@@ -343,7 +343,8 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* A context's first run with a kernel compiles, and says so; a later run does not. */
+/* A context's first run with a kernel has a driver build programs, and says so; a later run does not. The built-in device's
+ * are built ahead: nothing is said. */
 static void test_build(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -360,7 +361,8 @@ static void test_build(void** state)
     options.sph_kernel = run == 2 ? MCOR_QUADRATIC : MCOR_CUBIC_SPLINE;
     told = 0;
     CORE_SURFACE surface = core_extract(context, &input, &options);
-    CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == (run != 1),
+    const bool tells = run != 1 && strcmp(context->cl.platform_name, "built in") != 0;
+    CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == tells,
       run, surface.statistics.build_seconds, told);
   }
 }

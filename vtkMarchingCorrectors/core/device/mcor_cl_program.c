@@ -54,7 +54,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_ask(context, true));
+  MCOR_TRY(mcor_ask(context, !mcor_is_native(cl)));
   const double begin = mcor_seconds();
   char options[512];
   mcor_program_options(cl, number, options, sizeof options);

@@ -248,15 +248,12 @@ int vtkSPHAlgorithm::RequestData(
   this->Warned.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
-  this->Gather = nullptr;
+  this->SumShared = nullptr;
   if (this->IsShared())
   {
-    this->Gather = [this](const std::vector<double>& mine)
-    {
-      auto all = vtkRun::Make(this)->Gather(mine);
-      all.erase(all.begin() + this->Controller->GetLocalProcessId());
-      return all;
-    };
+    this->SumShared = [this](vtkPointSet* points, const mcor_input& mine,
+                        const mcor_options& options, double ratio, double* values)
+    { return vtkRun::Make(this)->SumNeighbors(points, mine, options, ratio, values); };
   }
   vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);
   vtkDataObject* particles = this->TakeVertices(all);

@@ -31,19 +31,13 @@
 #ifndef vtkSPHAlgorithm_h
 #define vtkSPHAlgorithm_h
 
-#include "vtkDataArray.h"                // For members
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
-#include "vtkSmartPointer.h" // For members
+#include "vtkSPHParticlesChoice.h" // For superclass
 
-#include <cstddef>    // For sizes
-#include <cstdint>    // For members
-#include <functional> // For members
-#include <map>        // For members
-#include <memory>     // For the device state
+#include <cstddef> // For sizes
+#include <memory>  // For the device state
 #include <set>
-#include <string> // For members
-#include <vector> // For members
 
 struct mcor_options;
 
@@ -91,74 +85,6 @@ public:
   vtkSPHMemberMacro(type name[6] = { x0, x1, y0, y1, z0, z1 }) vtkSetVector6Macro(name, type);     \
   vtkGetVector6Macro(name, type)
 ///@}
-
-#ifndef __VTK_WRAP__
-/** A range in which the values of a point array must be, see vtkSPHAlgorithm::AddOnly(). */
-struct vtkSPHOnly
-{
-  std::string Name;
-  double Low, High;
-};
-
-/**
- * Sends the numbers `mine` to the other processes that share a run, and returns theirs; empty:
- * there is no other.
- */
-using vtkSPHGather =
-  std::function<std::vector<std::vector<double>>(const std::vector<double>& mine)>;
-
-/**
- * Arrays that were computed from neighbours, by name, and the data that they were computed from.
- */
-using vtkSPHMade =
-  std::map<std::string, std::pair<std::vector<std::uint64_t>, vtkSmartPointer<vtkDataArray>>>;
-
-/**
- * The description of particles, see the setters of vtkSPHAlgorithm. A run has a copy, because an
- * observer may change the filter meanwhile.
- */
-struct vtkSPHParticlesChoice
-{
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  vtkTypeBool EstimateSmoothingLength = 0;
-  int SmoothingLengthEstimate = 0;
-  double NeighborRatio = 1.3;
-  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  double ParticleVolume = 0.0;
-  vtkTypeBool ComputeVolumes = 0;
-  vtkTypeBool DetectArrays = 1;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
-  vtkTypeBool DetectFluid = 0;
-  std::string UnusedType; ///< a sentence: no fluid was chosen, and yet an array seems to tell it
-  vtkTypeBool IgnoreSolids = 0; ///< each filter has a setter of this, or another one that decides
-                                ///< it
-  int Kernel = 0;
-  int Dimension = 0;
-  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  vtkTypeBool DetectPeriod = 0;
-  vtkSPHGather Gather;
-  std::shared_ptr<vtkSPHMade> Made = std::make_shared<vtkSPHMade>();
-  std::vector<std::string> ExcludedArrays;
-  double Within[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  std::vector<vtkSPHOnly> Only;
-
-  /** Whether the fluid array is a block of composite data, "Block: NAME". */
-  bool IsBlock() const { return this->FluidArrayName.compare(0, 7, "Block: ") == 0; }
-};
-
-/**
- * Turns ranges, each a least and a greatest value, into those of all processes that share a run;
- * empty: the process is alone.
- */
-using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
-#endif
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm
   : public vtkPolyDataAlgorithm

@@ -89,13 +89,6 @@ private:
   bool ReleaseAfterRun = false;
 };
 
-/** Whether the core computes the particles' volumes. */
-inline bool vtkSPHComputesVolumes(const mcor_input& input)
-{
-  return !mcor_is_given(&input.volume) &&
-    !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
-}
-
 /** A result of the core, which is freed at the end. */
 template <typename ResultT, void (*Free)(ResultT*)>
 struct vtkSPHOwned : ResultT
@@ -139,6 +132,12 @@ public:
   virtual std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine)
   {
     return { mine };
+  }
+  /** Sums over neighbours, which other processes may have, see vtkSPHSumShared. */
+  virtual std::string SumNeighbors(
+    vtkPointSet*, const mcor_input&, const mcor_options&, double, double*)
+  {
+    return "";
   }
   /** Returns false, after an error, if a process has a problem. */
   virtual bool Agree(const std::string& problem);

@@ -386,16 +386,16 @@ extern "C"
      * without particles has count 0, and data that are not NULL where the other ranks have data.)
      * The result is, to the last bit, that of all particles in one input, except for not_finite,
      * the lowest number that such a particle has on its rank. mcor_extract needs these globals;
-     * each cell must be in the box of exactly one rank. Other functions do not read ranks. Borrowed
-     * until return. */
+     * each cell must be in the box of exactly one rank. Functions that do not mention ranks do not
+     * read them. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
-    /* What progress reports while the device's programs are built, which may take a minute; if that
-     * is known, ", about 5 s to come" follows. */
+    /* What progress reports while a driver builds programs, which may take a minute; if that is
+     * known, ", about 5 s to come" follows. The built-in device's are built ahead. */
 #define MCOR_BUILDING "building the OpenCL program (first time only)"
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
@@ -697,14 +697,17 @@ extern "C"
    * included. `count`: the particles that get a length are the first ones; the others, such as
    * those of other ranks, are neighbours only. 0 for particles that play no part. None is longer
    * than the extent of all. Reads the positions and solids of the input, and of the options
-   * sph_kernel, dimension and periodic. Not with M'4, whose sum does not grow with h. *why:
-   * why it failed; no message if it did not. */
+   * sph_kernel, dimension, periodic and ranks. Not with M'4, whose sum does not grow with h. *why:
+   * why it failed; no message if it did not.
+   * Ranks: each particle is among the first ones of one rank, which may lack some of its neighbours.
+   * The length is then too long; it is that of one process, to the last bit, where all particles and
+   * images within 1.25 times its support radius are there. */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
     double eta, int64_t count, double* lengths, mcor_message* why);
 
   /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles,
    * unit of mass / L^d. Reads positions, masses, solids, and smoothing lengths [count] of the
-   * input, and the same options. */
+   * input, and the same options. Ranks must have all particles within the support radii. */
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
     int64_t count, double* densities, mcor_message* why);
 

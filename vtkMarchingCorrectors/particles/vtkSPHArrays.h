@@ -8,8 +8,8 @@
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkMarchingCorrectorsModule.h"
 #include "vtkNew.h"
-#include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
 #include "vtkTypeInt64Array.h"
@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -220,6 +221,19 @@ private:
 
 /** Returns an element of the core's array, or the constant that stands for it. */
 double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
+
+/** Whether the core computes the particles' volumes. */
+inline bool vtkSPHComputesVolumes(const mcor_input& input)
+{
+  return !mcor_is_given(&input.volume) &&
+    !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
+}
+
+/**
+ * Turns ranges, each a least and a greatest value, into those of all processes that share a run;
+ * empty: the process is alone.
+ */
+using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
 
 /** Returns the scalar to contour at a particle. */
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);

@@ -5,36 +5,10 @@
 #include "mcor.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
-#include "vtkPointData.h"
-#include "vtkSPHArrays.h"
-#include "vtkSPHParticles.h"
 
 #include <deque>
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
-{
-  vtkSPHParticlesChoice choice;
-  choice.DetectFluid = 1;
-  vtkSPHParticles list(choice, particles);
-  vtkSPHWanted wanted;
-  wanted.Wants |= MCOR_WANT_LIST | MCOR_WANT_FLUID;
-  list.Collect(wanted);
-  vtkSPHFound found;
-  found.SmoothingLength = list.NameFor(MCOR_ROLE_SMOOTHING_LENGTH);
-  found.Volume = list.NameFor(MCOR_ROLE_VOLUME);
-  found.Mass = list.NameFor(MCOR_ROLE_MASS);
-  found.Density = list.NameFor(MCOR_ROLE_DENSITY);
-  found.Velocity = list.NameFor(MCOR_ROLE_VELOCITY);
-  if (found.Velocity == "Velocity" && !particles->GetPointData()->HasArray("Velocity"))
-  {
-    found.Velocity = "vx, vy, vz as Velocity";
-  }
-  found.Fluid = list.NameFor(MCOR_ROLE_FLUID);
-  found.FluidValue = list.Found.fluid_value;
-  return found;
-}
-
 vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
 {
   vtkSPHPeriod found;

@@ -95,7 +95,7 @@ bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* rank
   request.particle_volume = f.ParticleVolume;
   request.estimate_smoothing_length = f.EstimateSmoothingLength;
   request.lengths_by_neighbours =
-    f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS ? 1 : 0;
+    f.SmoothingLengthEstimate; // 1: vtkSPHAlgorithm::ESTIMATE_NEIGHBORS
   request.smoothing_length_is_support_radius = f.SmoothingLengthIsSupportRadius;
   request.fluid_value = f.FluidValue;
   request.find_fluid = f.DetectFluid;
@@ -137,7 +137,25 @@ bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* rank
     this->Error = mcor_says_text(MCOR_SAYS_HOST_MEMORY);
   }
   this->Unused = Filled(this->Found.unused);
-  if (!this->Error.empty() || !this->ComputeNeeded())
+  this->Lengths = this->Densities = nullptr;
+  if (this->Error.empty() && this->Found.needs_lengths)
+  {
+    this->Lengths = this->SumNeighbors("SmoothingLength", f.NeighborRatio);
+    if (this->Lengths)
+    {
+      mcor_take_lengths(&this->Found, static_cast<const double*>(vtkSPHView(this->Lengths).data));
+    }
+  }
+  if (this->Error.empty() && this->Found.needs_densities)
+  {
+    this->Densities = this->SumNeighbors("Density", 0.0);
+    if (this->Densities)
+    {
+      mcor_take_densities(
+        &this->Found, static_cast<const double*>(vtkSPHView(this->Densities).data));
+    }
+  }
+  if (!this->Error.empty())
   {
     return false;
   }
@@ -159,37 +177,6 @@ bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* rank
     this->FromNearest.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
   }
   this->ParticlesSignature = this->Sign();
-  return true;
-}
-
-// Sums over neighbours what the core still needs.
-bool vtkSPHParticles::ComputeNeeded()
-{
-  this->Lengths = this->Densities = nullptr;
-  const std::int64_t count = this->Core.count;
-  if (this->Found.needs_lengths)
-  {
-    const double ratio = this->Description.NeighborRatio;
-    this->Lengths = this->Compute("SmoothingLength",
-      [=](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
-      { return mcor_find_smoothing_lengths(&all, &options, ratio, count, values, why); });
-    if (!this->Lengths)
-    {
-      return false;
-    }
-    mcor_take_lengths(&this->Found, static_cast<const double*>(vtkSPHView(this->Lengths).data));
-  }
-  if (this->Found.needs_densities)
-  {
-    this->Densities = this->Compute("Density",
-      [=](const mcor_input& all, const mcor_options& options, double* values, mcor_message* why)
-      { return mcor_sum_densities(&all, &options, count, values, why); });
-    if (!this->Densities)
-    {
-      return false;
-    }
-    mcor_take_densities(&this->Found, static_cast<const double*>(vtkSPHView(this->Densities).data));
-  }
   return true;
 }
 
@@ -245,10 +232,19 @@ bool vtkSPHParticles::IsMade(const char* name)
   return name && std::strncmp(name, MadeName, std::strlen(MadeName)) == 0;
 }
 
-// Neighbours may be other processes' particles, so every process gets all particles. Particles that
-// another process sent bring their values.
-vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
-  const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call)
+std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
+  std::int64_t count, double* values)
+{
+  mcor_message why;
+  const mcor_status status = ratio > 0.0
+    ? mcor_find_smoothing_lengths(&input, &options, ratio, count, values, &why)
+    : mcor_sum_densities(&input, &options, count, values, &why);
+  const std::string problem = vtkSPHTakeText(why);
+  return status == MCOR_CANCELLED ? "" : problem;
+}
+
+// Particles that another process sent bring their values.
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, double ratio)
 {
   vtkPointData* arrays = this->Points->GetPointData();
   vtkNew<vtkDoubleArray> array;
@@ -258,50 +254,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
     array->SetName(name);
     return array.GetPointer();
   }
-  mcor_options options = this->OwnOptions();
-  mcor_input all = this->Core;
-  const mcor_array& mass = all.mass = this->Found.views[MCOR_ROLE_MASS];
-  std::vector<double> positions, masses;
-  std::vector<std::uint8_t> solid;
-  if (this->Description.Gather)
-  {
-    const double* p = options.periodic;
-    std::vector<double> mine = { p[1] - p[0], p[3] - p[2], p[5] - p[4] };
-    for (vtkIdType i = 0; i < this->Core.count; ++i)
-    {
-      double x[3];
-      this->Points->GetPoint(i, x);
-      mine.insert(mine.end(), x, x + 3);
-      mine.push_back(vtkSPHValueOf(mass, i));
-      mine.push_back(this->Core.solid ? this->Core.solid[i] : 0);
-    }
-    std::vector<std::vector<double>> ranks = this->Description.Gather(mine);
-    ranks.insert(ranks.begin(), std::move(mine)); // this process' own field data come first
-    for (const std::vector<double>& rank : ranks)
-    {
-      for (size_t a = 0; a < 3; ++a) // only one rank may have the field data that tell the period
-      {
-        options.periodic[2 * a + 1] =
-          std::max(options.periodic[2 * a + 1], options.periodic[2 * a] + rank[a]);
-      }
-      for (size_t i = 3; i + 4 < rank.size(); i += 5)
-      {
-        positions.insert(positions.end(), &rank[i], &rank[i] + 3);
-        masses.push_back(rank[i + 3]);
-        solid.push_back(static_cast<std::uint8_t>(rank[i + 4]));
-      }
-    }
-    all.count = static_cast<int64_t>(masses.size());
-    positions.push_back(0.0); // the core would take an empty array for a constant
-    masses.push_back(0.0);
-    all.positions = {};
-    all.positions.data = positions.data();
-    all.positions.type = MCOR_FLOAT64;
-    all.positions.components = 3;
-    all.mass.data = mass.data ? masses.data() : nullptr;
-    all.mass.type = MCOR_FLOAT64;
-    all.solid = solid.empty() ? nullptr : solid.data();
-  }
+  const mcor_options options = this->OwnOptions();
   std::vector<std::uint64_t> signature = this->Sign();
   for (const double number : { this->Description.NeighborRatio, 1.0 * options.dimension,
          options.periodic[0], options.periodic[1], options.periodic[2], options.periodic[3],
@@ -310,20 +263,24 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
     vtkSPHSign(signature, number);
   }
   auto& made = (*this->Description.Made)[name];
-  if (made.first == signature && !this->Description.Gather)
+  const vtkSPHSumShared& share = this->Description.SumShared;
+  if (made.first == signature && !share)
   {
     return made.second;
   }
+  mcor_input input = this->Core;
+  input.mass = this->Found.views[MCOR_ROLE_MASS];
   array->SetName(name);
   array->SetNumberOfValues(this->Points->GetNumberOfPoints());
-  mcor_message why;
-  if (call(all, options, array->GetPointer(0), &why) != MCOR_OK)
+  double* values = array->GetPointer(0);
+  this->Error = share ? share(this->Points, input, options, ratio, values)
+                      : vtkSPHSumNeighbors(input, options, ratio, input.count, values);
+  if (!this->Error.empty())
   {
-    this->Error = vtkSPHTakeText(why);
     return nullptr;
   }
   made = { signature, array.GetPointer() };
-  if (this->Description.Gather)
+  if (share)
   {
     vtkNew<vtkDoubleArray> sent;
     sent->ShallowCopy(array);
@@ -397,6 +354,29 @@ void vtkSPHChoose(
   }
 }
 
+vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
+{
+  vtkSPHParticlesChoice choice;
+  choice.DetectFluid = 1;
+  vtkSPHParticles list(choice, particles);
+  vtkSPHWanted wanted;
+  wanted.Wants |= MCOR_WANT_LIST | MCOR_WANT_FLUID;
+  list.Collect(wanted);
+  vtkSPHFound found;
+  found.SmoothingLength = list.NameFor(MCOR_ROLE_SMOOTHING_LENGTH);
+  found.Volume = list.NameFor(MCOR_ROLE_VOLUME);
+  found.Mass = list.NameFor(MCOR_ROLE_MASS);
+  found.Density = list.NameFor(MCOR_ROLE_DENSITY);
+  found.Velocity = list.NameFor(MCOR_ROLE_VELOCITY);
+  if (found.Velocity == "Velocity" && !particles->GetPointData()->HasArray("Velocity"))
+  {
+    found.Velocity = "vx, vy, vz as Velocity";
+  }
+  found.Fluid = list.NameFor(MCOR_ROLE_FLUID);
+  found.FluidValue = list.Found.fluid_value;
+  return found;
+}
+
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
 {
   vtkSPHParticlesChoice bare = choice;
@@ -430,9 +410,8 @@ std::vector<std::string> vtkSPHParticles::ListLeftOut(
   {
     if (notFinite[i] >= 0)
     {
-      sentences.push_back(
-        vtkSPHSay(MCOR_SAY(ARRAY_LEFT_OUT), this->Interpolated[i].Name.c_str(),
-          static_cast<long long>(notFinite[i]), place.c_str()));
+      sentences.push_back(vtkSPHSay(MCOR_SAY(ARRAY_LEFT_OUT), this->Interpolated[i].Name.c_str(),
+        static_cast<long long>(notFinite[i]), place.c_str()));
     }
   }
   return sentences;

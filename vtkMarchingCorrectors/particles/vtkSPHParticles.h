@@ -11,12 +11,11 @@
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointSet.h"
-#include "vtkSPHAlgorithm.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHParticlesChoice.h"
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,6 +60,14 @@ std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPoin
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);
+
+/**
+ * Sums over neighbours by the core: smoothing lengths, if `ratio` is above 0, else densities, of the
+ * first `count` particles. Returns an empty text, or why that failed; also an empty one if another
+ * rank failed.
+ */
+std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
+  std::int64_t count, double* values);
 
 class vtkSPHParticles
 {
@@ -118,11 +125,9 @@ public:
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Fills an array of this name by the core's function, unless it was filled for the same
-   * particles. Returns null, and sets Error, if that fails. */
-  vtkSmartPointer<vtkDataArray> Compute(const char* name,
-    const std::function<int(const mcor_input&, const mcor_options&, double*, mcor_message*)>& call);
-  bool ComputeNeeded();
+  /** Fills an array of this name, unless it was filled for the same particles, see
+   * vtkSPHSumNeighbors(). Returns null, and sets Error, if that fails. */
+  vtkSmartPointer<vtkDataArray> SumNeighbors(const char* name, double ratio);
   vtkSmartPointer<vtkAbstractArray> ArrayOf(int index) const;
   std::vector<std::uint64_t> Sign() const;
 

@@ -32,7 +32,6 @@
 
 #include "vtkDIYUtilities.h"
 #include "vtkMPIController.h"
-#include "vtkSPHAlgorithm.h"
 #include "vtkSPHRanksWait.h"
 #include "vtkType.h"
 
@@ -87,13 +86,21 @@ public:
     GREATEST = vtkCommunicator::MAX_OP,
     SUM = vtkCommunicator::SUM_OP
   };
+  /** Returns false, and changes nothing, if a rank has stopped. */
   template <typename T>
-  void Reduce(Operation operation, T* values, int count)
+  bool Reduce(Operation operation, T* values, int count)
   {
+    if (!vtkSPHAwaitRanks(this->Controller))
+    {
+      return false;
+    }
     const std::vector<T> own(values, values + count);
-    vtkSPHAwaitRanks(this->Controller);
     this->Controller->AllReduce(own.data(), values, count, operation);
+    return true;
   }
+
+  /** Comes in place of further exchanges: the others' next one does nothing, and says so. */
+  bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
   /**
    * Merges ranges, each a least and a greatest value; an empty range is infinite the wrong way
@@ -114,16 +121,19 @@ public:
     negateGreatest();
   }
 
-  /** Gathers one value from each rank, in the order of ranks. */
+  /** Gathers one value from each rank, in the order of ranks; none if a rank has stopped. */
   template <typename T>
   std::vector<T> Gather(const T& mine)
   {
     diy::MemoryBuffer buffer;
     diy::save(buffer, mine);
     std::vector<std::vector<char>> all;
-    vtkSPHAwaitRanks(this->Controller);
-    diy::mpi::all_gather(this->Communicator, buffer.buffer, all);
     std::vector<T> values;
+    if (!vtkSPHAwaitRanks(this->Controller))
+    {
+      return values;
+    }
+    diy::mpi::all_gather(this->Communicator, buffer.buffer, all);
     for (std::vector<char>& theirs : all)
     {
       buffer.buffer.swap(theirs);

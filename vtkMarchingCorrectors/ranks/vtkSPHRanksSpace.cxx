@@ -4,7 +4,6 @@
 
 #include "vtkDataSet.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHRun.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,13 +141,13 @@ vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& i
       totals[2 * count + owner] += place.Work;
     }
     const double most = std::max(place.Reach, widest);
-    this->FindReached(place.At, most, found);
+    this->FindReached(place.At, most + this->Margin, found);
     for (const int rank : found)
     {
       const double reach = std::max(place.Reach, radii[Index(rank)]);
       if (reach < most)
       {
-        this->FindReached(place.At, reach, own);
+        this->FindReached(place.At, reach + this->Margin, own);
         if (std::find(own.begin(), own.end(), rank) == own.end())
         {
           continue;
@@ -183,7 +182,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   {
     if (place.Particle >= 0)
     {
-      this->FindReached(place.At, place.Reach, found);
+      this->FindReached(place.At, place.Reach + this->Margin, found);
       for (const int rank : found)
       {
         radii[Index(rank)] = std::max(radii[Index(rank)], place.Reach);
@@ -319,11 +318,8 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
-// Finds the ranks whose boxes, or images of them, a particle at a place in the first period
-// reaches, and the least margin.
-void vtkSPHRanksSpace::FindReached(const double at[3], double reach, std::vector<int>& found) const
+void vtkSPHRanksSpace::FindReached(const double at[3], double radius, std::vector<int>& found) const
 {
-  const double radius = reach + this->Margin;
   const int owner = this->Holds(at) ? this->FindOwner(at) : -1;
   bool isWithin = owner >= 0; // the usual case
   int last[3], images = 1;

@@ -39,6 +39,8 @@ public:
   /** Reads the options and globals, those of all particles, again in Share(). */
   vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
 
+  double First[3] = { 0.0, 0.0, 0.0 }; ///< where the first period begins
+  double Length[3] = { 0.0, 0.0, 0.0 }; ///< lengths of the periods; 0: open
   bool IsPeriodic(int axis) const { return this->Length[axis] > 0.0; }
 
   /** Moves a place into the first period, which begins at a node of the lattice. */
@@ -51,6 +53,15 @@ public:
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
     const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places);
+
+  /** Divides the work at these places among the ranks' boxes. Collective. */
+  void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places);
+
+  /**
+   * Finds the ranks whose boxes, or images of them, a sphere around a place in the first period
+   * reaches.
+   */
+  void FindReached(const double at[3], double radius, std::vector<int>& found) const;
 
   bool IsShared() const { return !this->Boxes.empty(); }
 
@@ -75,17 +86,14 @@ private:
 
   double ReachOf(const mcor_input& input, std::int64_t i) const;
   bool Holds(const double at[3]) const;
-  void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places);
   void Cut(Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box);
   std::vector<double> FindRadii(
     vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
-  void FindReached(const double at[3], double reach, std::vector<int>& found) const;
   void FindOverlaps(const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const;
 
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;
   double Margin = 0.0; ///< the least by which a support may miss a box that needs the particle
-  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< lengths of the periods; 0: open
   vtkSPHRanksBox Whole = {};
   struct Plane
   {

@@ -30,16 +30,16 @@ VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* particles);
 
 /**
- * Returns when all ranks have called it. With every message a rank hears of twice as many
- * others.
+ * Returns when all ranks have called it: whether all of them go on. With every message a rank hears
+ * of twice as many others.
  */
-inline void vtkSPHAwaitRanks(vtkMPIController* controller)
+inline bool vtkSPHAwaitRanks(vtkMPIController* controller, bool goesOn = true)
 {
   constexpr int tag = 1719;
   const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
   for (int step = 1; step < count; step *= 2)
   {
-    const int sent = 0;
+    const int sent = goesOn ? 1 : 0;
     int received;
     vtkMPICommunicator::Request sending, receiving;
     controller->NoBlockReceive(&received, 1, (rank - step + count) % count, tag, receiving);
@@ -52,7 +52,9 @@ inline void vtkSPHAwaitRanks(vtkMPIController* controller)
         std::this_thread::sleep_for(pause);
       }
     }
+    goesOn = goesOn && received != 0;
   }
+  return goesOn;
 }
 VTK_ABI_NAMESPACE_END
 

@@ -51,7 +51,7 @@ public:
   {
     if (!this->Stopped)
     {
-      this->AllGoOn(!failed);
+      this->Stopped = !this->Ranks.Stop(failed) && !failed;
     }
   }
 
@@ -59,46 +59,36 @@ public:
   bool Stopped = false; ///< this rank was told that another one failed
 
 private:
-  /**
-   * Every callback, and the end, begins with this call. So all ranks meet here equally often until
-   * one has failed, and never after that.
-   */
-  bool AllGoOn(bool self)
-  {
-    std::int64_t goesOn = self ? 1 : 0;
-    this->Ranks.Reduce(vtkSPHRanks::LEAST, &goesOn, 1);
-    this->Stopped = self && goesOn == 0;
-    return goesOn != 0;
-  }
-
   template <typename T>
   static int Reduce(void* user, mcor_reduction reduction, T* values, int count)
   {
     auto* self = static_cast<Callbacks*>(user);
     const vtkSPHRanks::Operation operations[] = { vtkSPHRanks::LEAST, vtkSPHRanks::GREATEST,
       vtkSPHRanks::SUM };
-    if (!self->AllGoOn(true))
-    {
-      return 1;
-    }
-    self->Ranks.Reduce(operations[reduction], values, count);
-    return 0;
+    self->Stopped = self->Stopped || !self->Ranks.Reduce(operations[reduction], values, count);
+    return self->Stopped ? 1 : 0;
   }
 
   static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
     const void** all, std::int64_t* allCount)
   {
     auto* self = static_cast<Callbacks*>(user);
-    if (!self->AllGoOn(true))
-    {
-      return 1;
-    }
     const auto* first = static_cast<const char*>(records);
     const std::size_t size = first ? static_cast<std::size_t>(count) * width : 0;
-    self->Gathered = self->Ranks.Join(std::vector<char>(first, first + size));
+    std::vector<std::vector<char>> theirs;
+    if (!self->Stopped)
+    {
+      theirs = self->Ranks.Gather(std::vector<char>(first, first + size));
+    }
+    self->Stopped = theirs.empty();
+    self->Gathered.clear();
+    for (const std::vector<char>& each : theirs)
+    {
+      self->Gathered.insert(self->Gathered.end(), each.begin(), each.end());
+    }
     *all = self->Gathered.data();
     *allCount = static_cast<std::int64_t>(self->Gathered.size() / width);
-    return 0;
+    return self->Stopped ? 1 : 0;
   }
 
   vtkSPHRanks& Ranks;

@@ -43,6 +43,8 @@ public:
   {
     return this->Ranks.Gather(mine);
   }
+  std::string SumNeighbors(vtkPointSet* points, const mcor_input& mine,
+    const mcor_options& options, double ratio, double* values) override;
   bool Agree(const std::string& problem) override;
   bool Begin(vtkPointSet* particles) override;
   bool Measure(vtkSPHParticles& particles, bool forSamples) override;

@@ -5,7 +5,7 @@
 #define vtkMarchingCorrectorsOutput_h
 
 #include "mcor.h"
-#include "vtkSPHAlgorithm.h"
+#include "vtkSPHArrays.h"
 
 #include <string>
 #include <vector>

@@ -83,7 +83,8 @@ const char* const StatisticNames[] = {
 #define STATISTIC(how, when, member, name) name,
 #include "mcor_statistics.def"
   "SmoothingLengthRange", "ScalarRange", "Points", "Triangles", "Lines", "Pieces", "RankParticles",
-  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds"
+  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds",
+  "RankNeighbors"
 };
 
 /// Returns the numbers of an array; none if the run has no such array.

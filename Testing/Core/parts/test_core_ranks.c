@@ -384,6 +384,112 @@ static void lines_of_parts(void** state)
   }
 }
 
+typedef struct rank_sums
+{
+  const particle_set* set;
+  const mcor_options* options;
+  const double* whole; /* lengths of one process */
+  int64_t wrong[CORE_MOST_RANKS], held[CORE_MOST_RANKS];
+} rank_sums;
+
+/* Solves for the particles of a slab alone, then with all that the resulting supports reach, 1.25 times as far. */
+static void sum_on_rank(core_rank* rank, void* data)
+{
+  rank_sums* job = data;
+  mcor_message why;
+  const int64_t count = job->set->count;
+  mcor_options options = *job->options;
+  options.ranks = &rank->ranks;
+  double *at = oracle_allocate(3 * count, sizeof *at),
+         *lengths = oracle_allocate(count, sizeof *lengths);
+  int64_t *number = oracle_allocate(count, sizeof *number), own = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const int slab = (int)(job->set->position[3 * i] / 1.5 * rank->world->count);
+    if ((slab < rank->world->count ? slab : rank->world->count - 1) == rank->number)
+    {
+      memcpy(at + 3 * own, job->set->position + 3 * i, 3 * sizeof *at);
+      number[own++] = i;
+    }
+  }
+  mcor_input input = { .count = own, .positions = core_array(at, 3) };
+  int failed = mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why) != MCOR_OK;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    int is_near = 0;
+    for (int64_t k = 0; k < own && number[k] != i && !is_near; ++k)
+    {
+      double square = 0;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double period = options.periodic[2 * a + 1] - options.periodic[2 * a],
+                     d = job->set->position[3 * i + a] - at[3 * k + a],
+                     least = period > 0 ? d - period * round(d / period) : d;
+        square += least * least;
+      }
+      is_near = sqrt(square) < 1.25 * 2 * lengths[k];
+    }
+    for (int64_t k = 0; k < own && is_near; ++k)
+    {
+      is_near = number[k] != i;
+    }
+    if (is_near)
+    {
+      memcpy(at + 3 * input.count++, job->set->position + 3 * i, 3 * sizeof *at);
+    }
+  }
+  failed |= mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why) != MCOR_OK;
+  job->held[rank->number] = input.count;
+  job->wrong[rank->number] = failed;
+  for (int64_t k = 0; k < own; ++k)
+  {
+    job->wrong[rank->number] += lengths[k] != job->whole[number[k]];
+  }
+  free(at);
+  free(lengths);
+  free(number);
+}
+
+/* Ranks that have all particles around their own find the lengths by neighbours of one process, to the last bit. */
+static void lengths_by_neighbours(void** state)
+{
+  (void)state;
+  enum
+  {
+    N = 3000
+  };
+  for (int periodic = 0; periodic < 2; ++periodic)
+  {
+    mcor_message why;
+    double whole[N];
+    uint64_t seed = 7;
+    CORE_SET set = particle_set_make(N);
+    for (int i = 0; i < 3 * N; ++i) /* clusters, so that lengths vary by a factor of 100 */
+    {
+      set.position[i] = 0.5 + 0.3 * (i / 3 % 3) + pow(0.1, i / 3 % 3) * (random_unit(&seed) - 0.5);
+    }
+    mcor_options options = core_options(NULL);
+    for (int a = 0; a < 3 && periodic; ++a)
+    {
+      options.periodic[2 * a] = -0.1;
+      options.periodic[2 * a + 1] = 1.4;
+    }
+    const mcor_input input = { .count = N, .positions = core_array(set.position, 3) };
+    assert_int_equal(
+      mcor_find_smoothing_lengths(&input, &options, 1.3, N, whole, &why), MCOR_OK);
+    for (int ranks = 2; ranks <= 3; ++ranks)
+    {
+      rank_sums job = { .set = &set, .options = &options, .whole = whole };
+      core_world world;
+      core_run_ranks(ranks, sum_on_rank, &job, &world);
+      for (int r = 0; r < ranks; ++r)
+      {
+        CORE_CHECK(job.wrong[r] == 0 && (periodic || job.held[r] < N), r, job.wrong[r], job.held[r]);
+      }
+    }
+  }
+}
+
 int main(int argc, char** argv)
 {
   if (argc > 1)
@@ -392,6 +498,7 @@ int main(int argc, char** argv)
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
     cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
-    cmocka_unit_test(parts_of_a_band), cmocka_unit_test(lines_of_parts) };
+    cmocka_unit_test(parts_of_a_band), cmocka_unit_test(lines_of_parts),
+    cmocka_unit_test(lengths_by_neighbours) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -5,7 +5,8 @@
  * lengths by neighbours, and densities from masses. They run on the host, in double precision. A
  * tree of boxes over particles along a Morton curve finds neighbours, because smoothing lengths are
  * unknown, or vary by any factor. Each sum goes along the curve, so it depends neither on the order
- * of the input nor on threads. */
+ * of the input nor on threads, nor on particles outside the support. So a rank finds the bits of one
+ * process as soon as it has all particles that its sums reach. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
@@ -23,7 +24,7 @@
 /* The extent goes at most this many widths of the particles' middle half beyond that half.
  * Otherwise one particle far away would leave no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
-#define MCOR_WIDTH_SAMPLE 4096 /* about how many particles a leaf has */
+#define MCOR_WIDTH_SAMPLE 4096 /* positions */
 
 typedef struct mcor_neighbour
 {
@@ -102,34 +103,108 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   return order == 0 ? memcmp(p, q, offsetof(mcor_neighbour, place)) : order;
 }
 
-/* Quartiles are those of the particles with the least hashes, whatever the order of the input. */
+typedef struct mcor_hashed
+{
+  uint64_t hash;
+  double x[3];
+} mcor_hashed;
+
+static int mcor_compare_hashed(const void* a, const void* b)
+{
+  const mcor_hashed *p = a, *q = b;
+  return p->hash != q->hash ? (p->hash < q->hash ? -1 : 1) : memcmp(p->x, q->x, sizeof p->x);
+}
+
+/* Keeps the positions with the least hashes, each once, in order. Returns how many these are. */
+static int64_t mcor_keep_least(mcor_hashed* sample, int64_t count)
+{
+  int64_t kept = 0;
+  qsort(sample, (size_t)count, sizeof *sample, mcor_compare_hashed);
+  for (int64_t i = 0; i < count && kept < MCOR_WIDTH_SAMPLE; ++i)
+  {
+    if (kept == 0 || mcor_compare_hashed(&sample[kept - 1], &sample[i]) != 0)
+    {
+      sample[kept++] = sample[i];
+    }
+  }
+  return kept;
+}
+
+/* Finds the bounds of all ranks' particles, and the positions with the least hashes among them: the
+ * same with any order, and with any copies of other ranks' particles. *sample: to be freed. */
+static mcor_status mcor_sample_extent(mcor_context* context, const mcor_neighbour_job* job,
+  double low[3], double high[3], mcor_hashed** sample, int64_t* count)
+{
+  enum
+  {
+    ROOM = 4 * MCOR_WIDTH_SAMPLE
+  };
+  int64_t n = 0, all_count = 0;
+  uint64_t last = UINT64_MAX;
+  const void* all = NULL;
+  mcor_hashed* own = *sample = malloc(ROOM * sizeof *own);
+  MCOR_TRY(mcor_allocated(context, own != NULL));
+  for (int a = 0; a < 3; ++a)
+  {
+    low[a] = INFINITY;
+    high[a] = -INFINITY;
+  }
+  for (int64_t i = 0; i < job->count; ++i)
+  {
+    const double* x = job->sorted[i].x;
+    const mcor_hashed hashed = { mcor_hash_position(x), { x[0], x[1], x[2] } };
+    for (int a = 0; a < 3; ++a)
+    {
+      low[a] = fmin(low[a], x[a]);
+      high[a] = fmax(high[a], x[a]);
+    }
+    if (hashed.hash <= last)
+    {
+      own[n++] = hashed;
+    }
+    if (n == ROOM)
+    {
+      n = mcor_keep_least(own, n);
+      last = n == MCOR_WIDTH_SAMPLE ? own[n - 1].hash : last;
+    }
+  }
+  *count = mcor_keep_least(own, n);
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 3));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 3));
+  MCOR_TRY(mcor_gather_records(context, own, *count, sizeof *own, &all, &all_count));
+  if (context->run.options->ranks)
+  {
+    *sample = malloc((size_t)all_count * sizeof *own + 1);
+    if (*sample)
+    {
+      memcpy(*sample, all, (size_t)all_count * sizeof *own);
+      *count = mcor_keep_least(*sample, all_count);
+    }
+    free(own);
+  }
+  return mcor_allocated(context, *sample != NULL);
+}
+
 static mcor_status mcor_measure_extent(
   mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
 {
-  double quarter[3][2], width = 0;
-  const uint64_t share = UINT64_MAX / (uint64_t)(job->count / MCOR_WIDTH_SAMPLE + 1);
-  double* values = malloc((size_t)job->count * sizeof *values + 1);
-  MCOR_TRY(mcor_allocated(context, values != NULL));
-  for (int a = 0; a < 3; ++a)
+  double width = 0, quarter[3][2], values[MCOR_WIDTH_SAMPLE];
+  mcor_hashed* sample = NULL;
+  int64_t n = 0;
+  const mcor_status status = mcor_sample_extent(context, job, low, high, &sample, &n);
+  for (int a = 0; a < 3 && status == MCOR_OK; ++a)
   {
-    int64_t n = 0;
-    low[a] = INFINITY;
-    high[a] = -INFINITY;
-    for (int64_t i = 0; i < job->count; ++i)
+    for (int64_t i = 0; i < n; ++i)
     {
-      const double* x = job->sorted[i].x;
-      low[a] = fmin(low[a], x[a]);
-      high[a] = fmax(high[a], x[a]);
-      values[n] = x[a];
-      n += mcor_hash_position(x) <= share;
+      values[i] = sample[i].x[a];
     }
     qsort(values, (size_t)n, sizeof *values, mcor_compare_doubles);
     quarter[a][0] = n > 0 ? values[n / 4] : 0;
     quarter[a][1] = n > 0 ? values[n - 1 - n / 4] : 0;
     width = fmax(width, quarter[a][1] - quarter[a][0]);
   }
-  free(values);
-  for (int a = 0; a < 3; ++a)
+  free(sample);
+  for (int a = 0; a < 3 && n > 0 && status == MCOR_OK; ++a)
   {
     if (width > 0)
     {
@@ -138,7 +213,7 @@ static mcor_status mcor_measure_extent(
     }
     job->extent = fmax(job->extent, fmax(high[a] - low[a], job->period[a]));
   }
-  return MCOR_OK;
+  return status;
 }
 
 static mcor_status mcor_sort_neighbours(mcor_context* context, mcor_neighbour_job* job)
@@ -275,11 +350,21 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
+/* Returns the step at or below h, or so many steps further. There are four steps in each power of 2. */
+static double mcor_length_step(double h, int further)
+{
+  int exponent;
+  const int eighths = (int)(8 * frexp(h, &exponent)), number = 4 * exponent + eighths + further;
+  const int quarter = (number % 4 + 4) % 4;
+  return ldexp(4 + quarter, (number - quarter) / 4 - 4);
+}
+
 /* Solves for the smoothing length at a place by false position, and by bisection where that does
- * not help. */
+ * not help, between two steps: these do not depend on the first guess, nor does the result. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
+  const double least = MCOR_LENGTH_ERROR * job->extent;
   /* The first guess is about the distance of near particles: some places before and behind along
    * the curve, the nearer of the two, because the curve jumps. */
   double guess = job->extent;
@@ -290,20 +375,20 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
     const double r = sqrt(mcor_dot(d, d));
     guess = r > 0 ? fmin(guess, r) : guess;
   }
-  double high = fmax(guess, MCOR_LENGTH_ERROR * job->extent), low = high;
+  double high = mcor_length_step(fmax(guess, least), 0), low = high;
   double above = mcor_sum_at(job, x, high, list) - job->eta, below = above;
   while (above < 0 && high < job->extent)
   {
     low = high;
     below = above;
-    high = fmin(1.25 * high, job->extent);
+    high = fmin(mcor_length_step(high, 1), job->extent);
     above = mcor_sum_at(job, x, high, list) - job->eta;
   }
-  while (below >= 0 && low > MCOR_LENGTH_ERROR * job->extent)
+  while (below >= 0 && low > least)
   {
     high = low;
     above = below;
-    low *= 0.8;
+    low = mcor_length_step(low, -1);
     below = mcor_sum_at(job, x, low, list) - job->eta;
   }
   if (above <= 0 || below >= 0) /* the longest length does not suffice, or too many particles are at
@@ -366,7 +451,7 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
   {
     job->period[a] = fmax(job->options->periodic[2 * a + 1] - job->options->periodic[2 * a], 0);
   }
-  job->sorted = malloc((size_t)input->count * sizeof *job->sorted);
+  job->sorted = malloc((size_t)input->count * sizeof *job->sorted + 1);
   job->box = malloc(2 * (size_t)job->leaves * sizeof *job->box);
   MCOR_TRY(mcor_allocated(context, job->sorted && job->box));
   for (int64_t i = 0; i < job->wanted; ++i)
@@ -421,7 +506,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
     MCOR_FAIL_IF(
       i >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(SUMMAND_ILLEGAL), names[k], (long long)i);
   }
-  job->axes = mcor_find_dimension(input, NULL, job->options->dimension);
+  job->axes = mcor_find_dimension(input, job->options->ranks, job->options->dimension);
   job->support = mcor_support_factor(kernel);
   job->norm =
     mcor_kernel_of(kernel)->norm * (job->axes == 2 ? mcor_kernel_of(kernel)->plane_factor : 1);
@@ -444,9 +529,10 @@ static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor
   {
     return MCOR_OUT_OF_CAPACITY;
   }
+  context->run.options = job->options;
   mcor_status status = mcor_check_neighbours(context, eta, job);
   int slices = 0;
-  if (status == MCOR_OK && job->input->count > 0)
+  if (status == MCOR_OK && (job->input->count > 0 || job->options->ranks))
   {
     status = mcor_load_neighbours(context, job);
     MCOR_THEN(status, mcor_parallel_run(NULL, job->count, 256, mcor_sum_slice, job, &slices));

@@ -6,7 +6,6 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -103,21 +102,24 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 #undef WANT
 }
 
-void vtkMarchingCorrectors::FillChoice(
-  vtkMarchingCorrectorsChoice& choice, vtkRun& run)
+std::unique_ptr<vtkSPHParticles> vtkMarchingCorrectors::MakeInput(
+  vtkRun& run, const mcor_options& options, unsigned wants)
 {
+  vtkSPHWanted wanted;
   if (!this->DrawsFreeSurface) // a free surface contours no array, so not all values need be read
   {
-    choice.Scalar = this->FindRequest(0, run.Own);
-    choice.ScalarDot = this->FindRequest(1, run.Own);
+    wanted.Scalar = this->FindRequest(0, run.Own);
+    wanted.ScalarDot = this->FindRequest(1, run.Own);
   }
-  static_cast<vtkSPHParticlesChoice&>(choice) =
-    run.Choose(this->DrawsFreeSurface ? nullptr : &choice.Scalar);
-  choice.ScalarComponent = this->ScalarComponent;
-  choice.FreeSurface = this->DrawsFreeSurface;
-  choice.InterpolateAttributes = this->InterpolateAttributes != 0;
-  choice.ComputeScalars = this->ComputeScalars != 0;
-  choice.Filled = this->Filled != 0;
+  const vtkSPHParticlesChoice choice =
+    run.Choose(this->DrawsFreeSurface ? nullptr : &wanted.Scalar);
+  wanted.Wants = wants;
+  wanted.ScalarComponent = this->ScalarComponent;
+  wanted.Taken = vtkMarchingCorrectorsOutput::ComputedArrays(options);
+  wanted.FreeSurface = this->DrawsFreeSurface;
+  wanted.HasIsoValues = this->ComputeScalars != 0;
+  wanted.Filled = this->Filled != 0;
+  return std::make_unique<vtkSPHParticles>(choice, run.Own, wanted);
 }
 
 // Where nobody chose what to contour, the particles tell.
@@ -133,12 +135,8 @@ void vtkMarchingCorrectors::ChooseMode(vtkRun& run)
   }
   vtkSPHParticles particles(run.Choose(), run.Own);
   particles.Collect();
-  run.CallAside(
-    [&](const mcor_ranks* ranks)
-    {
-      this->DrawsFreeSurface = particles.HasFreeSurface(ranks);
-      return true;
-    });
+  this->DrawsFreeSurface =
+    run.Ask([&](const mcor_ranks* ranks) { return particles.HasFreeSurface(ranks); });
 }
 
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
@@ -163,12 +161,11 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   this->ChooseMode(*run);
-  vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
-  this->FillChoice(choice, *run);
-  choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(run->Options);
-  vtkMarchingCorrectorsInput input(choice, run->Own);
-  if (!this->Take(*run, input))
+  const unsigned attributes = this->InterpolateAttributes ? MCOR_WANT_ATTRIBUTES : 0;
+  const auto input =
+    this->MakeInput(*run, run->Options, MCOR_WANT_SIZES | MCOR_WANT_SCALAR | attributes);
+  if (!this->Take(*run, *input))
   {
     return;
   }
@@ -176,25 +173,24 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   if (run->IsShared())
   {
     this->ContourDistributed(
-      static_cast<vtkSharedRun&>(*run), choice, input, vtkPolyData::SafeDownCast(output));
+      static_cast<vtkSharedRun&>(*run), *input, vtkPolyData::SafeDownCast(output));
     return;
   }
 #endif
-  this->Extract(*run, input, vtkPolyData::SafeDownCast(output));
+  this->Extract(*run, *input, vtkPolyData::SafeDownCast(output));
 }
 
 // Returns whether the particles have all that is needed, and fluid among them. Sets the run's iso
 // values to those that are numbers, as an empty row of a panel's list is NaN, or to a usual one.
-bool vtkMarchingCorrectors::Take(vtkRun& run, vtkMarchingCorrectorsInput& input)
+bool vtkMarchingCorrectors::Take(vtkRun& run, vtkSPHParticles& input)
 {
-  const auto collect = [&input](vtkSPHParticles&) { return input.Collect(); };
-  if (!run.Accept(input, collect, "no surface") || !run.HasFluid ||
+  if (!run.Accept(input, "no surface") || !run.HasFluid ||
     !(run.IsShared() || run.Measure(input, false)))
   {
     this->SetUsedNames(&input, false); // no volumes were used
     return false;
   }
-  const bool isFree = input.Choice.FreeSurface;
+  const bool isFree = input.Wanted.FreeSurface;
   vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
   std::vector<double>& list = run.IsoValues;
   std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
@@ -222,18 +218,15 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
     return false;
   }
   this->ChooseMode(*run);
-  vtkMarchingCorrectorsChoice choice;
   this->FillOptions(run->Options);
-  this->FillChoice(choice, *run);
-  choice.InterpolateAttributes = false;
-  vtkMarchingCorrectorsInput input(choice, run->Own);
+  const auto input = this->MakeInput(*run, run->Options, MCOR_WANT_SIZES | MCOR_WANT_SCALAR);
   vtkNew<vtkPointData> found;
   mcor_statistics statistics = {};
-  if (!this->Take(*run, input) || !this->FindWidening(*run, input, found, statistics))
+  if (!this->Take(*run, *input) || !this->FindWidening(*run, *input, found, statistics))
   {
     return false;
   }
-  const mcor_input& core = input.Core;
+  const mcor_input& core = input->Core;
   vtkDataArray* const factors = found->GetArray("Widening");
   const double unit = core.smoothing_length_is_support_radius && !core.estimate_smoothing_length
     ? 1.0 / mcor_support_factor(run->Options.sph_kernel)
@@ -259,7 +252,7 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
 // If processes share the run, the one that owns a particle's place finds its factor, which then
 // travels to where the particle came from.
 bool vtkMarchingCorrectors::FindWidening(
-  vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found, mcor_statistics& statistics)
+  vtkRun& run, vtkSPHParticles& mine, vtkPointData* found, mcor_statistics& statistics)
 {
   const std::unique_ptr<vtkRun> sums = vtkRun::Make(this);
   sums->Own = run.Own;
@@ -270,8 +263,7 @@ bool vtkMarchingCorrectors::FindWidening(
     return false;
   }
   std::fill_n(sums->Options.box, sums->IsShared() ? 6 : 0, 0.0);
-  vtkSPHParticles* input =
-    sums->Share(mine, [](vtkSPHParticles& near) { return near.Collect(); });
+  vtkSPHParticles* input = sums->Share(mine);
   vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
   if (!input ||
     !sums->Call(*input,
@@ -328,7 +320,7 @@ std::vector<double> ListFactorOptions(const mcor_options& o)
 }
 
 // Gives the input the factors of its smoothing lengths. Those of the last run serve if they hold.
-bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput& input)
+bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkSPHParticles& input)
 {
   vtkInternals& kept = *this->Internals;
   std::vector<std::uint64_t> signature = input.ParticlesSignature;
@@ -355,7 +347,7 @@ bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput
 
 // A progress observer may change this filter's settings, so they are copied first.
 void vtkMarchingCorrectors::Extract(
-  vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output)
+  vtkRun& run, vtkSPHParticles& input, vtkPolyData* output)
 {
   const int precision = this->OutputPointsPrecision;
   mcor_options& options = run.Options;
@@ -385,7 +377,7 @@ void vtkMarchingCorrectors::Extract(
   builder.BuildMesh(output, precision);
 }
 
-void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
+void vtkMarchingCorrectors::WarnOf(const vtkSPHParticles& input,
   const mcor_surface& surface, const mcor_input& core, const mcor_options& options,
   double largestFloat)
 {
@@ -440,25 +432,24 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
     this->ChooseMode(run);
     mcor_options options;
     this->FillOptions(options);
-    vtkMarchingCorrectorsChoice choice;
-    this->FillChoice(choice, run);
-    choice.InterpolateAttributes = false;
+    const auto contoured = this->MakeInput(run, options, MCOR_WANT_SCALAR);
     vtkSPHRequest fittest;
     run.Choose(&fittest);
     next.Array = next.Array.empty() ? fittest.Name : next.Array;
-    vtkMarchingCorrectorsInput contoured(choice, particles);
     double range[2], value;
-    if (!choice.FreeSurface && contoured.Collect(MCOR_WANT_SCALAR) &&
-      mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
+    if (!this->DrawsFreeSurface && contoured->Collect() &&
+      mcor_find_iso_value(&contoured->Core, nullptr, range, &value))
     {
       const bool isFirst = std::isnan(next.IsoValue);
       next.ScalarRange[0] = isFirst ? range[0] : std::min(next.ScalarRange[0], range[0]);
       next.ScalarRange[1] = isFirst ? range[1] : std::max(next.ScalarRange[1], range[1]);
       next.IsoValue = isFirst ? value : next.IsoValue;
-      next.Components = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
+      next.Components = contoured->Core.scalar_dot.data ? 1 : contoured->Core.scalar.components;
     }
-    choice.FreeSurface = true;
-    vtkMarchingCorrectorsInput input(choice, particles);
+    vtkSPHWanted sizes = contoured->Wanted;
+    sizes.Wants = MCOR_WANT_SIZES | MCOR_WANT_SCALAR;
+    sizes.FreeSurface = true;
+    vtkSPHParticles input(contoured->Description, particles, sizes);
     const bool isUsable = input.Collect();
     next.Fluid = input.DescribeFluid();
     if (isUsable)
@@ -474,7 +465,7 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
   return next;
 }
 
-void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
+void vtkMarchingCorrectors::Summarize(const vtkSPHParticles& input,
   const mcor_options& options, const mcor_statistics& statistics)
 {
   if (options.field != MCOR_WEIGHT_SUM)
@@ -488,7 +479,7 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
     isoValues << (i ? ", " : "") << options.iso_values[i];
   }
   this->UsedIsoValues = isoValues.str();
-  this->IsoValueArrayName = options.outputs & MCOR_OUT_ISO_VALUE ? input.IsoValueName : "";
+  this->IsoValueArrayName = options.outputs & MCOR_OUT_ISO_VALUE ? std::string(input.Found.iso_value_name) : "";
   this->UsedSmoothingLength =
     vtkSPHTakeText(mcor_describe_smoothing_length(&input.Core, &statistics));
   this->UsedCubeSize = statistics.cube_size;

@@ -81,9 +81,7 @@ struct mcor_statistics;
 struct mcor_surface;
 
 VTK_ABI_NAMESPACE_BEGIN
-class vtkMarchingCorrectorsInput;
 class vtkPointSet;
-struct vtkMarchingCorrectorsChoice;
 
 class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
@@ -515,20 +513,21 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
-  void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
-    vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
-  bool TakeWidening(vtkRun& run, vtkMarchingCorrectorsInput& input);
+  void ContourDistributed(vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output);
+  bool TakeWidening(vtkRun& run, vtkSPHParticles& input);
   /** Finds the arrays of FindWidening() for this process's particles, and their statistics. */
-  bool FindWidening(vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
+  bool FindWidening(vtkRun& run, vtkSPHParticles& mine, vtkPointData* found,
     mcor_statistics& statistics);
-  void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input, mcor_options options,
+  void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,
     mcor_surface& surface, vtkPolyData* output);
   /** largestFloat: the largest coordinate of all ranks' points, see vtkMarchingCorrectorsOutput. */
-  void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
+  void WarnOf(const vtkSPHParticles& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
-  bool Take(vtkRun& run, vtkMarchingCorrectorsInput& input);
-  void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
-  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkRun& run);
+  bool Take(vtkRun& run, vtkSPHParticles& input);
+  void Extract(vtkRun& run, vtkSPHParticles& input, vtkPolyData* output);
+  /** Makes the input with what `wants` names, bits of mcor_want, from the run's own particles. */
+  std::unique_ptr<vtkSPHParticles> MakeInput(
+    vtkRun& run, const mcor_options& options, unsigned wants);
   void FillOptions(mcor_options& options);
   void ChooseMode(vtkRun& run);
   /** What the next update would find. */
@@ -542,7 +541,7 @@ private:
   };
   vtkAhead& LookAhead();
   void WarnOfHugeRun();
-  void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
+  void Summarize(const vtkSPHParticles& input, const mcor_options& options,
     const mcor_statistics& statistics);
 
   vtkAhead Next;

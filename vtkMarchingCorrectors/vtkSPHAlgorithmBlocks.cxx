@@ -392,17 +392,11 @@ int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
 {
   const auto run = vtkRun::Make(this);
   run->Begin(particles);
-  vtkSPHParticles mine(run->Choose(), run->Own);
   vtkSPHWanted wanted;
   wanted.Wants = 0;
-  mine.Collect(wanted);
-  int found = 0;
-  run->CallAside(
-    [&](const mcor_ranks* ranks)
-    {
-      found = mcor_find_dimension(&mine.Core, ranks, this->Dimension);
-      return true;
-    });
-  return found;
+  vtkSPHParticles mine(run->Choose(), run->Own, wanted);
+  mine.Collect();
+  return run->Ask([&](const mcor_ranks* ranks)
+    { return mcor_find_dimension(&mine.Core, ranks, this->Dimension); });
 }
 VTK_ABI_NAMESPACE_END

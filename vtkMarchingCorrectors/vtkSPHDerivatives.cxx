@@ -144,9 +144,9 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   vtkSPHWanted sizesAndArray;
   sizesAndArray.Wants |= MCOR_WANT_ARRAY;
   sizesAndArray.Scalar = this->FindRequest(0, run->Own);
-  vtkSPHParticles mine(run->Choose(&sizesAndArray.Scalar), run->Own);
-  const auto collect = [&](vtkSPHParticles& near) { return near.Collect(sizesAndArray); };
-  if (!run->Accept(mine, collect, "there are no derivatives"))
+  const vtkSPHParticlesChoice choice = run->Choose(&sizesAndArray.Scalar);
+  vtkSPHParticles mine(choice, run->Own, sizesAndArray);
+  if (!run->Accept(mine, "there are no derivatives"))
   {
     return;
   }
@@ -167,7 +167,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   const std::string name = mine.Interpolated[0].Name;
-  vtkSPHParticles* input = run->Share(mine, collect);
+  vtkSPHParticles* input = run->Share(mine);
   vtkSPHOwned<mcor_derivatives, mcor_free_derivatives> derivatives;
   if (!input ||
     !run->Call(*input,

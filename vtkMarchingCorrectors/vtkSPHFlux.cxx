@@ -123,12 +123,12 @@ std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
   return sections;
 }
 
-bool vtkSPHFlux::Collect(vtkSPHParticles& particles)
+vtkSPHWanted vtkSPHFlux::GetWanted() const
 {
   vtkSPHWanted wanted;
   wanted.Wants |= MCOR_WANT_FLOW;
   wanted.Velocity = this->VelocityArrayName;
-  return particles.Collect(wanted);
+  return wanted;
 }
 
 int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,

@@ -96,7 +96,7 @@ protected:
   const char* GetNoun() const override { return "section"; }
   const char* GetConsequence() const override { return "nothing flows"; }
   std::vector<Place> ListPlaces(vtkDataObject* more) override;
-  bool Collect(vtkSPHParticles& particles) override;
+  vtkSPHWanted GetWanted() const override;
   int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
     mcor_statistics& statistics) const override;

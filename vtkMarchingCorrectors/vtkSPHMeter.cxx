@@ -82,9 +82,9 @@ void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numb
   this->Modified();
 }
 
-bool vtkSPHMeter::Collect(vtkSPHParticles& particles)
+vtkSPHWanted vtkSPHMeter::GetWanted() const
 {
-  return particles.Collect();
+  return vtkSPHWanted();
 }
 
 // Returns false, after an error, if two places have one name.
@@ -115,9 +115,8 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticles present(run->Choose(), run->Own);
-  const auto collect = [this](vtkSPHParticles& near) { return this->Collect(near); };
-  if (!run->Accept(present, collect, this->GetConsequence()))
+  vtkSPHParticles present(run->Choose(), run->Own, this->GetWanted());
+  if (!run->Accept(present, this->GetConsequence()))
   {
     return;
   }
@@ -154,7 +153,7 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
     }
   }
   run->PlaceBox(low, high);
-  vtkSPHParticles* input = run->Share(mine, collect);
+  vtkSPHParticles* input = run->Share(mine);
   const auto count = static_cast<vtkIdType>(places.size());
   vtkSPHAddColumn<vtkDoubleArray>(
     table, "time", count, [this](vtkIdType) { return this->InputTime; });

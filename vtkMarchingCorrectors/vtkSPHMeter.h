@@ -33,6 +33,7 @@ struct mcor_statistics;
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkTable;
+struct vtkSPHWanted;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHMeter : public vtkSPHAlgorithm
 {
@@ -91,7 +92,7 @@ protected:
   virtual const char* GetNoun() const = 0;
   virtual const char* GetConsequence() const = 0;
   virtual std::vector<Place> ListPlaces(vtkDataObject* more) = 0;
-  virtual bool Collect(vtkSPHParticles& particles);
+  virtual vtkSPHWanted GetWanted() const;
   ///@}
 
   /**

@@ -356,15 +356,11 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   }
   std::int64_t pointCount = points ? points->GetNumberOfPoints() : 0;
   run->Sum(&pointCount, 1);
-  const auto collect = [this](vtkSPHParticles& particles)
-  {
-    vtkSPHWanted wanted;
-    wanted.Wants |= this->InterpolateAttributes ? MCOR_WANT_ATTRIBUTES : 0;
-    wanted.Taken = { "WeightSum", this->ValidPointMaskArrayName };
-    return particles.Collect(wanted);
-  };
-  vtkSPHParticles mine(run->Choose(), run->Own);
-  if (!run->Accept(mine, collect, "no point is valid"))
+  vtkSPHWanted wanted;
+  wanted.Wants |= this->InterpolateAttributes ? MCOR_WANT_ATTRIBUTES : 0;
+  wanted.Taken = { "WeightSum", this->ValidPointMaskArrayName };
+  vtkSPHParticles mine(run->Choose(), run->Own, wanted);
+  if (!run->Accept(mine, "no point is valid"))
   {
     return;
   }
@@ -382,7 +378,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
       return;
     }
     run->PlacePoints(points);
-    input = run->Share(mine, collect);
+    input = run->Share(mine);
     if (!input)
     {
       return;
@@ -450,13 +446,8 @@ void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
       found->AddArray(from->GetArray(i));
     }
   }
-  std::string best;
-  run.CallAside(
-    [&](const mcor_ranks* ranks)
-    {
-      best = vtkSPHChooseArray(found, ranks);
-      return true;
-    });
+  const std::string best =
+    run.Ask([&](const mcor_ranks* ranks) { return vtkSPHChooseArray(found, ranks); });
   if (output && output->GetPointData()->HasArray(best.c_str()))
   {
     output->GetPointData()->SetActiveScalars(best.c_str());

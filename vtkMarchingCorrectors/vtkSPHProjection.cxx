@@ -110,30 +110,25 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticles mine(run->Choose(), run->Own);
   mcor_view view = this->MakeView();
   this->FillOptions(run->Options);
-  const auto collect = [this, &view](vtkSPHParticles& near)
+  vtkSPHWanted wanted;
+  wanted.Wants |= MCOR_WANT_COLUMN;
+  wanted.Scalar = this->FindRequest(0, run->Own);
+  if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
   {
-    vtkSPHWanted wanted;
-    wanted.Wants |= MCOR_WANT_COLUMN;
-    wanted.Scalar = this->FindRequest(0, near.Points);
-    if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
-    {
-      vtkPointData* arrays = near.Points->GetPointData();
-      wanted.Scalar = { arrays->GetAbstractArray(this->ScalarArrayName.c_str()), this->ScalarArrayName,
-        true };
-    }
-    wanted.ScalarComponent = this->ScalarComponent;
-    wanted.Weight = this->WeightArrayName;
-    const bool isUsable = near.Collect(wanted);
-    view.weight = near.Found.views[MCOR_ROLE_WEIGHT];
-    return isUsable;
-  };
-  if (!run->Accept(mine, collect, "nothing is seen"))
+    vtkPointData* arrays = run->Own->GetPointData();
+    wanted.Scalar = { arrays->GetAbstractArray(this->ScalarArrayName.c_str()),
+      this->ScalarArrayName, true };
+  }
+  wanted.ScalarComponent = this->ScalarComponent;
+  wanted.Weight = this->WeightArrayName;
+  vtkSPHParticles mine(run->Choose(), run->Own, wanted);
+  if (!run->Accept(mine, "nothing is seen"))
   {
     return;
   }
+  view.weight = mine.Found.views[MCOR_ROLE_WEIGHT];
   const bool needsVolumes =
     mine.Core.scalar.data || view.weight.data || !mcor_is_given(&mine.Core.mass);
   const bool computes =
@@ -146,8 +141,9 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   vtkSPHParticles* input = &mine;
   if (computes)
   {
-    input = run->Share(mine, collect);
+    input = run->Share(mine);
     view.counted = run->MarkOwned();
+    view.weight = input ? input->Found.views[MCOR_ROLE_WEIGHT] : view.weight;
   }
   vtkSPHOwned<mcor_projection, mcor_free_projection> found;
   if (input &&

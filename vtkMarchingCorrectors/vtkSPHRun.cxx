@@ -117,14 +117,13 @@ vtkSPHParticlesChoice vtkSPHAlgorithm::vtkRun::Choose(vtkSPHRequest* first)
   return choice;
 }
 
-bool vtkSPHAlgorithm::vtkRun::Accept(
-  vtkSPHParticles& particles, const Collect& collect, const std::string& consequence)
+bool vtkSPHAlgorithm::vtkRun::Accept(vtkSPHParticles& particles, const std::string& consequence)
 {
   if (this->Particles == 0)
   {
     return true;
   }
-  const bool isUsable = collect(particles);
+  const bool isUsable = particles.Collect();
   this->Filter->SetUsedNames(&particles, isUsable);
   if (!this->Agree(isUsable ? "" : particles.Error))
   {

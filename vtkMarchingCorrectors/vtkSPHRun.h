@@ -105,8 +105,6 @@ struct vtkSPHOwned : ResultT
 class vtkSPHAlgorithm::vtkRun
 {
 public:
-  using Collect = std::function<bool(vtkSPHParticles& particles)>;
-
   /** Makes a shared run if processes share the filter's runs. */
   static std::unique_ptr<vtkRun> Make(vtkSPHAlgorithm* filter);
 
@@ -151,7 +149,7 @@ public:
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /** Collects the particles, if there are any, notes which arrays were found, and warns about the
    * fluid. */
-  bool Accept(vtkSPHParticles& particles, const Collect& collect, const std::string& consequence);
+  bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**
    * Finds the period and, for many processes, everything global: for a surface, or for mcor_probe
    * and mcor_derive.
@@ -167,13 +165,26 @@ public:
    * Sends particles, and points, to the processes that need them. Returns `mine`, or those that
    * came, once they are collected; null if they are not usable.
    */
-  virtual vtkSPHParticles* Share(vtkSPHParticles& mine, const Collect&) { return &mine; }
+  virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }
   /** Marks the particles that Share() sent to this process for its own; null: all are. */
   virtual const std::uint8_t* MarkOwned() { return nullptr; }
   /** Calls the core: `call` gets a context for the device, and returns the core's status. */
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
   /** Calls a function of the core that needs no context; it returns false if that fails. */
   virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
+  /** Returns what such a function returns, which does not fail. */
+  template <typename CallT>
+  auto Ask(const CallT& call)
+  {
+    decltype(call(nullptr)) answer{};
+    this->CallAside(
+      [&](const mcor_ranks* ranks)
+      {
+        answer = call(ranks);
+        return true;
+      });
+    return answer;
+  }
   /**
    * Sends what was found, a tuple for each of the points, or else of the particles, back to where
    * these came from: to this process's `home`, which may be null.

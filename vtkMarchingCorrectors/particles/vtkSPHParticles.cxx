@@ -53,9 +53,10 @@ int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 }
 }
 
-bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* ranks)
+bool vtkSPHParticles::Collect(const mcor_ranks* ranks)
 {
   const vtkSPHParticlesChoice& f = this->Description;
+  const vtkSPHWanted& wanted = this->Wanted;
   vtkPointData* data = this->Points->GetPointData();
   std::string taken, excluded;
   for (const std::string& name : wanted.Taken)
@@ -177,7 +178,27 @@ bool vtkSPHParticles::Collect(const vtkSPHWanted& wanted, const mcor_ranks* rank
     this->FromNearest.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
   }
   this->ParticlesSignature = this->Sign();
+  this->ScalarSignature = { static_cast<std::uint64_t>(this->Core.scalar_component) };
+  vtkSPHSign(this->ScalarSignature, this->ArrayFor(MCOR_ROLE_SCALAR));
+  vtkSPHSign(this->ScalarSignature, this->ArrayFor(MCOR_ROLE_SCALAR_DOT));
   return true;
+}
+
+void vtkSPHParticles::TakeWidening(vtkDataArray* factors, vtkDataArray* volumes)
+{
+  vtkSPHSign(this->ParticlesSignature, factors);
+  vtkSPHSign(this->AttributesSignature, factors);
+  this->Core.widening = vtkSPHView(factors);
+  this->Attributes.assign(
+    this->Core.attributes, this->Core.attributes + this->Core.attribute_count);
+  this->Attributes.push_back(this->Core.widening);
+  this->Core.attributes = this->Attributes.data();
+  this->Core.attribute_count = static_cast<int>(this->Attributes.size());
+  if (volumes)
+  {
+    this->Core.volume = vtkSPHView(volumes);
+    this->Core.volume.name = nullptr; // they were computed, which the statistics say
+  }
 }
 
 vtkSmartPointer<vtkAbstractArray> vtkSPHParticles::ArrayOf(int index) const
@@ -335,11 +356,11 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 void vtkSPHChoose(
   vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first, const mcor_ranks* ranks)
 {
-  vtkSPHParticles found(choice, points);
   vtkSPHWanted wanted;
   wanted.Wants = first ? MCOR_WANT_FLUID | MCOR_WANT_ARRAY : MCOR_WANT_FLUID;
   wanted.Scalar = first ? *first : vtkSPHRequest();
-  found.Collect(wanted, ranks);
+  vtkSPHParticles found(choice, points, wanted);
+  found.Collect(ranks);
   if (vtkSPHRealName(choice.FluidArrayName).empty() || choice.IsBlock())
   {
     const std::string name = found.NameFor(MCOR_ROLE_FLUID);
@@ -358,10 +379,10 @@ vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
 {
   vtkSPHParticlesChoice choice;
   choice.DetectFluid = 1;
-  vtkSPHParticles list(choice, particles);
   vtkSPHWanted wanted;
   wanted.Wants |= MCOR_WANT_LIST | MCOR_WANT_FLUID;
-  list.Collect(wanted);
+  vtkSPHParticles list(choice, particles, wanted);
+  list.Collect();
   vtkSPHFound found;
   found.SmoothingLength = list.NameFor(MCOR_ROLE_SMOOTHING_LENGTH);
   found.Volume = list.NameFor(MCOR_ROLE_VOLUME);
@@ -381,10 +402,10 @@ std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPoin
 {
   vtkSPHParticlesChoice bare = choice;
   bare.FluidArrayName.clear();
-  vtkSPHParticles particles(bare, points);
   vtkSPHWanted wanted;
   wanted.Wants = 0;
-  particles.Collect(wanted);
+  vtkSPHParticles particles(bare, points, wanted);
+  particles.Collect();
   const std::uint8_t* marks = particles.Core.solid;
   std::vector<bool> present(marks ? particles.Core.count : 0);
   std::transform(marks, marks + present.size(), present.begin(),

@@ -72,8 +72,10 @@ std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& opti
 class vtkSPHParticles
 {
 public:
-  vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+  vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points,
+    const vtkSPHWanted& wanted = vtkSPHWanted())
     : Description(choice)
+    , Wanted(wanted)
     , Points(points)
   {
   }
@@ -82,7 +84,13 @@ public:
   void operator=(const vtkSPHParticles&) = delete;
 
   /** Finds what is wanted. False if something is missing or not usable; Error then says what. */
-  bool Collect(const vtkSPHWanted& wanted = {}, const mcor_ranks* ranks = nullptr);
+  bool Collect(const mcor_ranks* ranks = nullptr);
+
+  /**
+   * Takes the arrays that vtkMarchingCorrectors::FindWidening() has found. The factors become the
+   * core's last attribute, without being one of Interpolated.
+   */
+  void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
   /** Returns the name under which values made from neighbours travel to other processes with the
@@ -109,6 +117,7 @@ public:
   std::string NameFor(mcor_role role) const;
 
   const vtkSPHParticlesChoice Description;
+  const vtkSPHWanted Wanted;
   const vtkSmartPointer<vtkPointSet> Points;
   mcor_found Found = {};
   mcor_input& Core = Found.input;
@@ -118,8 +127,7 @@ public:
   std::vector<vtkSPHAttribute> Interpolated;      // their order is that of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // arrays of identifiers, integers, strings
   std::vector<std::uint64_t> ParticlesSignature;  // equal signatures: same particles
-  std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar; empty: there is
-                                                  // none
+  std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar
   std::vector<std::uint64_t> AttributesSignature; // the same for the interpolated arrays
 
 private:
@@ -134,6 +142,7 @@ private:
   std::unique_ptr<vtkSPHNamed> Positions, Named; // the point arrays, held while the core reads them
   vtkSmartPointer<vtkDataArray> Made[2];         // arrays copied from Found.made
   vtkSmartPointer<vtkDataArray> Lengths, Densities; // arrays summed over neighbours
+  std::vector<mcor_array> Attributes;               // with the factors of the widening
 };
 VTK_ABI_NAMESPACE_END
 

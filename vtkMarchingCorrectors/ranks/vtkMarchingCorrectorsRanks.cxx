@@ -8,7 +8,6 @@
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
-#include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -371,8 +370,8 @@ private:
 }
 
 // No rank may return here while another goes on: all agree first on what one of them has found.
-void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
-  vtkMarchingCorrectorsChoice& choice, vtkMarchingCorrectorsInput& mine, vtkPolyData* output)
+void vtkMarchingCorrectors::ContourDistributed(
+  vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output)
 {
   mcor_options& options = run.Options;
   mcor_statistics widening = {};
@@ -409,7 +408,7 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   const mcor_options whole = options;
   run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
   run.Scatter(mine.Core, run.Own);
-  vtkMarchingCorrectorsInput input(choice, run.Near);
+  vtkSPHParticles input(mine.Description, run.Near, mine.Wanted);
   if (!run.Agree(input.Collect() ? "" : input.Error))
   {
     return;
@@ -430,7 +429,7 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   }
 }
 
-void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,
+void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input,
   mcor_options options, mcor_surface& surface, vtkPolyData* output)
 {
   vtkSPHRanks& ranks = run.Ranks;

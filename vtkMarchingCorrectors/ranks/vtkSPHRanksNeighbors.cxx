@@ -239,12 +239,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   {
     return problem;
   }
-  this->CallAside(
-    [&](const mcor_ranks* shared)
-    {
-      options.dimension = mcor_find_dimension(&mine, shared, options.dimension);
-      return true;
-    });
+  options.dimension = this->Ask([&](const mcor_ranks* shared)
+    { return mcor_find_dimension(&mine, shared, options.dimension); });
 
   // Space is divided: cuts may lie anywhere.
   const double infinity = std::numeric_limits<double>::infinity();

@@ -269,7 +269,7 @@ void vtkSPHAlgorithm::vtkSharedRun::Scatter(const mcor_input& core, vtkPointSet*
   std::copy(box.begin(), box.end(), this->Options.box);
 }
 
-vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine, const Collect& collect)
+vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine)
 {
   this->Scatter(mine.Core, vtkSPHKeepUsed(this->Own, mine));
   if (this->Places)
@@ -277,8 +277,11 @@ vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine, con
     this->Points = vtkSPHSendParticles(
       this->Ranks, this->Places, this->Space.ListOwners(this->Places), &this->From);
   }
-  this->Input = std::make_unique<vtkSPHParticles>(mine.Description, this->Near);
-  const bool isUsable = collect(*this->Input);
+  vtkSPHWanted wanted = mine.Wanted; // an array that was found is now known by its name
+  wanted.Scalar.Name =
+    wanted.Scalar.Name.empty() ? mine.NameFor(MCOR_ROLE_SCALAR) : wanted.Scalar.Name;
+  this->Input = std::make_unique<vtkSPHParticles>(mine.Description, this->Near, wanted);
+  const bool isUsable = this->Input->Collect();
   return this->Agree(isUsable ? "" : this->Input->Error) ? this->Input.get() : nullptr;
 }
 

@@ -51,7 +51,7 @@ public:
   bool MeasureLengths(vtkSPHParticles& particles) override;
   void PlaceBox(const double low[3], const double high[3]) override;
   void PlacePoints(vtkDataSet* points) override;
-  vtkSPHParticles* Share(vtkSPHParticles& mine, const Collect& collect) override;
+  vtkSPHParticles* Share(vtkSPHParticles& mine) override;
   const std::uint8_t* MarkOwned() override;
   bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call) override;
   void CallAside(const std::function<bool(const mcor_ranks*)>& call) override;

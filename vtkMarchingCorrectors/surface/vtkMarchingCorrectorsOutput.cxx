@@ -10,7 +10,6 @@
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
-#include "vtkMarchingCorrectorsInput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -48,7 +47,7 @@ void AddQuantity(
 }
 
 vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
-  const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface)
+  const vtkSPHParticles& input, const mcor_options& options, mcor_surface& surface)
   : Input(input)
   , Options(options)
   , Surface(surface)
@@ -119,8 +118,9 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   }
   if (s.iso_value)
   {
-    const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
-    vtkSPHAddArray(pointData, this->Input.IsoValueName.c_str(),
+    const auto scalar = this->Input.ArrayFor(MCOR_ROLE_SCALAR);
+    const bool asFloat = scalar && scalar->GetDataType() == VTK_FLOAT;
+    vtkSPHAddArray(pointData, this->Input.Found.iso_value_name,
       vtkSPHAdoptReal(s.iso_value, 1, s.point_count, asFloat));
   }
   this->AddIsoValues(output->GetFieldData());
@@ -228,10 +228,11 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   {
     merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   }
-  const vtkMarchingCorrectorsInput& input = this->Input;
-  const bool isOne = input.Scalar && input.Scalar->GetName() && !input.ScalarDot &&
+  const mcor_input& core = this->Input.Core;
+  const std::string contoured = this->Input.NameFor(MCOR_ROLE_SCALAR);
+  const bool isOne = !contoured.empty() && !core.scalar_dot.data &&
     this->Options.iso_count == 1 && !this->Options.filled &&
-    (input.Core.scalar.components == 1 || input.Core.scalar_component == MCOR_MAGNITUDE);
+    (core.scalar.components == 1 || core.scalar_component == MCOR_MAGNITUDE);
   std::string best;
   int bestRank = -1;
   const auto consider = [&](const std::string& name, int components, bool varies)
@@ -246,11 +247,11 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   for (size_t i = 0; i < attributes.size(); ++i)
   {
     const double* r = ranges.data() + 4 * i;
-    const bool isContoured = isOne && attributes[i].Name == input.Scalar->GetName();
+    const bool isContoured = isOne && attributes[i].Name == contoured;
     consider(attributes[i].Name, attributes[i].Components,
       r[1] - r[0] > LeastShare * (r[3] - r[2]) && r[1] > r[0] && !isContoured);
   }
-  consider(this->Input.IsoValueName, 1, this->Options.iso_count > 1);
+  consider(this->Input.Found.iso_value_name, 1, this->Options.iso_count > 1);
   if (data->HasArray(best.c_str()))
   {
     data->SetActiveScalars(best.c_str());
@@ -266,7 +267,7 @@ void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
   }
   if (this->Options.outputs & MCOR_OUT_ISO_VALUE)
   {
-    isoValues->SetComponentName(0, this->Input.IsoValueName.c_str());
+    isoValues->SetComponentName(0, this->Input.Found.iso_value_name);
   }
   vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }

@@ -12,8 +12,8 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkFieldData;
-class vtkMarchingCorrectorsInput;
 class vtkPolyData;
+class vtkSPHParticles;
 
 /**
  * Lists the arrays that the core computes at points, in the output's order: bit of mcor_output,
@@ -37,7 +37,7 @@ class vtkMarchingCorrectorsOutput
 public:
   /** Takes over the surface's arrays if types agree; they are NULL in the surface then. */
   vtkMarchingCorrectorsOutput(
-    const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface);
+    const vtkSPHParticles& input, const mcor_options& options, mcor_surface& surface);
 
   /** Lists the names of the arrays that the core must compute, in the output's order. */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
@@ -68,7 +68,7 @@ private:
   void AddIsoValues(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
-  const vtkMarchingCorrectorsInput& Input;
+  const vtkSPHParticles& Input;
   const mcor_options& Options;
   mcor_surface& Surface;
 };

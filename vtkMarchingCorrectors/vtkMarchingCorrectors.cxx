@@ -3,6 +3,7 @@
 #include "vtkMarchingCorrectors.h"
 
 #include "mcor_parts.h"
+#include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -33,14 +34,12 @@ vtkMarchingCorrectors::vtkMarchingCorrectors()
 {
   this->ContourValues->SetNumberOfContours(0);
   this->FreeSurfaceValues->SetValue(0, 0.5);
+  for (vtkContourValues* values : { this->ContourValues.Get(), this->FreeSurfaceValues.Get() })
+  {
+    values->AddObserver(vtkCommand::ModifiedEvent, this, &vtkObject::Modified);
+  }
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-}
-
-vtkMTimeType vtkMarchingCorrectors::GetMTime()
-{
-  return std::max({ this->Superclass::GetMTime(), this->ContourValues->GetMTime(),
-    this->FreeSurfaceValues->GetMTime() });
 }
 
 void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)

@@ -83,15 +83,22 @@ struct mcor_surface;
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 
+/** Declares the setters and getters of contour values; `usual` is got where there are none. */
+#define vtkSPHContoursMacro(name, number, values, usual)                                           \
+  void Set##name(int i, double value) { this->values->SetValue(i, value); }                        \
+  double Get##name(int i)                                                                          \
+  {                                                                                                \
+    return this->values->GetNumberOfContours() > 0 ? this->values->GetValue(i) : usual;            \
+  }                                                                                                \
+  void SetNumberOf##number(int count) { this->values->SetNumberOfContours(count); }                \
+  vtkIdType GetNumberOf##number() { return this->values->GetNumberOfContours(); }
+
 class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
 public:
   static vtkMarchingCorrectors* New();
   vtkTypeMacro(vtkMarchingCorrectors, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  /** The modification time includes that of the contour values. */
-  vtkMTimeType GetMTime() override;
 
   enum SeedModeType
   {
@@ -145,15 +152,9 @@ public:
    * positive and span three decades, at the logarithmic middle of their range; see "IsoValues" in
    * the output field data.
    */
-  void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
-  double GetValue(int i)
-  {
-    return this->GetNumberOfContours() > 0 ? this->ContourValues->GetValue(i) : 0.0;
-  }
+  vtkSPHContoursMacro(Value, Contours, ContourValues, 0.0);
   double* GetValues() { return this->ContourValues->GetValues(); }
   void GetValues(double* contourValues) { this->ContourValues->GetValues(contourValues); }
-  void SetNumberOfContours(int number) { this->ContourValues->SetNumberOfContours(number); }
-  vtkIdType GetNumberOfContours() { return this->ContourValues->GetNumberOfContours(); }
   void GenerateValues(int numContours, double range[2])
   {
     this->ContourValues->GenerateValues(numContours, range);
@@ -205,16 +206,7 @@ public:
    */
   void SetFreeSurfaceValue(double value);
   double GetFreeSurfaceValue() { return this->GetFreeSurfaceValue(0); }
-  void SetFreeSurfaceValue(int i, double value) { this->FreeSurfaceValues->SetValue(i, value); }
-  double GetFreeSurfaceValue(int i)
-  {
-    return this->GetNumberOfFreeSurfaceValues() > 0 ? this->FreeSurfaceValues->GetValue(i) : 0.5;
-  }
-  void SetNumberOfFreeSurfaceValues(int n) { this->FreeSurfaceValues->SetNumberOfContours(n); }
-  vtkIdType GetNumberOfFreeSurfaceValues()
-  {
-    return this->FreeSurfaceValues->GetNumberOfContours();
-  }
+  vtkSPHContoursMacro(FreeSurfaceValue, FreeSurfaceValues, FreeSurfaceValues, 0.5);
   ///@}
 
   ///@{

@@ -22,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -105,22 +104,31 @@ void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
   }
 }
 
+bool vtkSPHAlgorithm::vtkInternals::Made::Serves(vtkDataObject* from, const std::string& how)
+{
+  auto* tree = vtkDataObjectTree::SafeDownCast(from);
+  if (this->Data && this->From.GetPointer() == from && this->How == how &&
+    (tree ? vtkSPHTimeOfBlocks(tree) : from->GetMTime()) <= this->Time.GetMTime())
+  {
+    return true;
+  }
+  this->From = from;
+  this->How = how;
+  this->Time.Modified();
+  return false;
+}
+
 // A rank that has only a mesh, or nothing, needs to know whether any rank has vertices.
 vtkDataObject* vtkSPHAlgorithm::TakeVertices(vtkDataObject* data)
 {
-  vtkInternals& kept = *this->Internals;
+  vtkInternals::Made& taken = this->Internals->Taken;
   std::int64_t haveVertices = vtkSPHHaveVertices(data) ? 1 : 0;
   vtkRun::Make(this)->Sum(&haveVertices, 1);
-  auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  if (!data || kept.TakenFrom.GetPointer() != data || kept.TakenAmong != haveVertices ||
-    (tree ? vtkSPHTimeOfBlocks(tree) : data->GetMTime()) > kept.TakenTime.GetMTime())
+  if (!taken.Serves(data, haveVertices > 0 ? "vertices" : ""))
   {
-    kept.Taken = vtkSPHTakeVertices(data, haveVertices > 0);
-    kept.TakenFrom = data;
-    kept.TakenAmong = haveVertices;
-    kept.TakenTime.Modified();
+    taken.Data = vtkSPHTakeVertices(data, haveVertices > 0);
   }
-  return kept.Taken;
+  return taken.Data;
 }
 
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
@@ -140,23 +148,18 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticlesAhead(vtkDataObject* 
 
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::JoinParticles(vtkDataObject* data)
 {
-  vtkInternals& kept = *this->Internals;
+  vtkInternals::Made& joined = this->Internals->Joined;
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
   if (!tree)
   {
-    kept.Joined = nullptr;
+    joined.Data = nullptr;
     return vtkPointSet::SafeDownCast(data);
   }
-  if (!kept.Joined || kept.JoinedFrom.GetPointer() != data ||
-    kept.JoinedFluid != this->FluidArrayName ||
-    vtkSPHTimeOfBlocks(tree) > kept.JoinedTime.GetMTime())
+  if (!joined.Serves(data, this->FluidArrayName))
   {
-    kept.Joined = vtkSPHJoinBlocks(tree, this->FluidArrayName);
-    kept.JoinedFrom = data;
-    kept.JoinedFluid = this->FluidArrayName;
-    kept.JoinedTime.Modified();
+    joined.Data = vtkSPHJoinBlocks(tree, this->FluidArrayName);
   }
-  return kept.Joined;
+  return vtkPointSet::SafeDownCast(joined.Data);
 }
 
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles) const
@@ -226,41 +229,36 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   {
     return false;
   }
-  using Lowest = std::multiset<double>;
-  const std::size_t far = std::min(std::max<std::int64_t>(8, total / 1000), (total - 1) / 4);
-  const auto keep = [far](Lowest& lowest, double value)
+  const std::int64_t far = std::min(std::max<std::int64_t>(8, total / 1000), (total - 1) / 4);
+  const auto keepLowest = [far](std::vector<double>& values)
   {
-    if (lowest.size() <= far || value < *lowest.rbegin())
-    {
-      lowest.insert(value);
-    }
-    if (lowest.size() > far + 1)
-    {
-      lowest.erase(std::prev(lowest.end()));
-    }
+    const auto kept = std::min<std::ptrdiff_t>(far + 1, values.end() - values.begin());
+    std::partial_sort(values.begin(), values.begin() + kept, values.end());
+    values.resize(static_cast<std::size_t>(kept));
   };
-  Lowest ends[6];
-  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
-  {
-    for (int e = takeFluid(i) ? 0 : 6; e < 6; ++e)
-    {
-      keep(ends[e], e % 2 ? -x[e / 2] : x[e / 2]);
-    }
-  }
+  std::vector<double> ends[6];
   double longest = 0.0;
   for (int e = 0; e < 6; ++e)
   {
-    Lowest all;
-    for (const auto& theirs : run->Gather(std::vector<double>(ends[e].begin(), ends[e].end())))
+    std::vector<double> mine;
+    for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
     {
-      std::for_each(theirs.begin(), theirs.end(), [&](double value) { keep(all, value); });
+      if (takeFluid(i))
+      {
+        mine.push_back(e % 2 ? -x[e / 2] : x[e / 2]);
+      }
     }
-    ends[e] = all;
-    longest = std::max(longest, e % 2 ? -*ends[e].rbegin() - *ends[e - 1].rbegin() : 0.0);
+    keepLowest(mine);
+    for (const std::vector<double>& theirs : run->Gather(mine))
+    {
+      ends[e].insert(ends[e].end(), theirs.begin(), theirs.end());
+    }
+    keepLowest(ends[e]);
+    longest = std::max(longest, e % 2 ? -ends[e].back() - ends[e - 1].back() : 0.0);
   }
   for (int e = 0; e < 6; ++e)
   {
-    const double end = *ends[e].lower_bound(*ends[e].rbegin() - longest);
+    const double end = *std::lower_bound(ends[e].begin(), ends[e].end(), ends[e].back() - longest);
     bounds[e] = e % 2 ? -end : end;
   }
   for (int a = 0; a < 3 && densest; ++a)

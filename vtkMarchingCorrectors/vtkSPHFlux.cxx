@@ -3,9 +3,7 @@
 #include "vtkSPHFlux.h"
 
 #include "mcor.h"
-#include "vtkAbstractArray.h"
 #include "vtkCell.h"
-#include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
@@ -15,11 +13,10 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHPrint.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -33,9 +30,9 @@ struct Shapes
 };
 
 /** Lists sections: the cells with one name each, in the order of their first cells. */
-std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
+std::vector<Shapes> ListShapes(
+  vtkDataSet* data, const std::function<std::string(vtkIdType)>& nameOf)
 {
-  vtkAbstractArray* names = data->GetCellData()->GetAbstractArray("Name");
   std::vector<Shapes> all;
   for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i)
   {
@@ -45,9 +42,7 @@ std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
     {
       continue;
     }
-    const std::string name = names
-      ? std::string(names->GetVariantValue(i * names->GetNumberOfComponents()).ToString())
-      : usual;
+    const std::string name = nameOf(i);
     auto shapes =
       std::find_if(all.begin(), all.end(), [&name](const Shapes& s) { return s.Name == name; });
     shapes = shapes == all.end() ? all.insert(shapes, { name, {}, {} }) : shapes;
@@ -93,7 +88,8 @@ void vtkSPHFlux::AddLine(const char* name, const double a[3], const double b[3])
 void vtkSPHFlux::AddSurface(const char* name, vtkDataSet* surface)
 {
   Shapes all;
-  for (const Shapes& shapes : ListShapes(surface, ""))
+  for (const Shapes& shapes :
+    ListShapes(surface, [surface](vtkIdType i) { return NameOf(surface, i, ""); }))
   {
     all.Triangles.insert(all.Triangles.end(), shapes.Triangles.begin(), shapes.Triangles.end());
     all.Lines.insert(all.Lines.end(), shapes.Lines.begin(), shapes.Lines.end());
@@ -107,7 +103,8 @@ std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
   std::vector<Place> sections = this->Places;
   if (auto* data = vtkDataSet::SafeDownCast(more))
   {
-    for (const Shapes& shapes : ListShapes(data, "section"))
+    for (const Shapes& shapes :
+      ListShapes(data, [data](vtkIdType i) { return NameOf(data, i, "section"); }))
     {
       const bool isLine = shapes.Triangles.empty();
       sections.push_back({ shapes.Name, isLine ? MCOR_SECTION_LINES : MCOR_SECTION_TRIANGLES,
@@ -154,7 +151,7 @@ int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,
     input.attributes = none;
     input.attribute_count = 2;
   }
-  mcor_fluxes fluxes = {};
+  vtkSPHOwned<mcor_fluxes, mcor_free_fluxes> fluxes;
   const int status = mcor_flux(
     context, &input, &options, sections.data(), static_cast<int64_t>(sections.size()), &fluxes);
   if (status != MCOR_OK)
@@ -163,19 +160,13 @@ int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,
   }
   const vtkIdType count = fluxes.count;
   const mcor_flux_reading* readings = fluxes.readings;
-  const std::pair<const char*, double mcor_flux_reading::*> columns[] = {
-    { "area", &mcor_flux_reading::area }, { "volume_flux", &mcor_flux_reading::volume_flux },
-    { "mass_flux", &mcor_flux_reading::mass_flux }, { "velocity", &mcor_flux_reading::velocity }
-  };
-  for (const auto& column : columns)
-  {
-    vtkSPHAddColumn<vtkDoubleArray>(
-      table, column.first, count, [=](vtkIdType i) { return readings[i].*column.second; });
-  }
+  vtkSPHAddColumns<mcor_flux_reading>(table, readings, count,
+    { { "area", &mcor_flux_reading::area }, { "volume_flux", &mcor_flux_reading::volume_flux },
+      { "mass_flux", &mcor_flux_reading::mass_flux },
+      { "velocity", &mcor_flux_reading::velocity } });
   std::transform(readings, readings + count, std::back_inserter(outside),
     [](const mcor_flux_reading& reading) { return reading.outside != 0; });
   statistics = fluxes.statistics;
-  mcor_free_fluxes(&fluxes);
   return status;
 }
 

@@ -3,9 +3,7 @@
 #include "vtkSPHGauge.h"
 
 #include "mcor.h"
-#include "vtkAbstractArray.h"
 #include "vtkCell.h"
-#include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
@@ -13,7 +11,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkStringArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <iterator>
@@ -25,7 +22,6 @@ std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
 {
   std::vector<Place> gauges = this->Places;
   auto* lines = vtkDataSet::SafeDownCast(more);
-  vtkAbstractArray* names = lines ? lines->GetCellData()->GetAbstractArray("Name") : nullptr;
   for (vtkIdType i = 0; lines && i < lines->GetNumberOfCells(); ++i)
   {
     vtkCell* cell = lines->GetCell(i);
@@ -34,8 +30,7 @@ std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
       continue;
     }
     Place gauge;
-    gauge.Name = names ? names->GetVariantValue(i * names->GetNumberOfComponents()).ToString()
-                       : "line " + std::to_string(i);
+    gauge.Name = NameOf(lines, i, "line " + std::to_string(i));
     gauge.Numbers.resize(6);
     lines->GetPoint(cell->GetPointId(0), gauge.Numbers.data());
     lines->GetPoint(
@@ -63,7 +58,7 @@ int vtkSPHGauge::Measure(mcor_context* context, const mcor_input& input,
     line.name = place.Name.c_str();
     lines.push_back(line);
   }
-  mcor_gauges gauges = {};
+  vtkSPHOwned<mcor_gauges, mcor_free_gauges> gauges;
   const int status = mcor_gauge(
     context, &input, &options, lines.data(), static_cast<int64_t>(lines.size()), &gauges);
   if (status != MCOR_OK)
@@ -72,23 +67,21 @@ int vtkSPHGauge::Measure(mcor_context* context, const mcor_input& input,
   }
   const vtkIdType count = gauges.count;
   const mcor_gauge_reading* readings = gauges.readings;
-  using Doubles = vtkDoubleArray;
   vtkSPHAddColumn<vtkStringArray>(
     table, "state", count, [=](vtkIdType i) { return mcor_gauge_state_name(readings[i].state); });
-  vtkSPHAddColumn<Doubles>(table, "first", count, [=](vtkIdType i) { return readings[i].first; });
-  vtkSPHAddColumn<Doubles>(table, "last", count, [=](vtkIdType i) { return readings[i].last; });
-  vtkSPHAddColumn<Doubles>(table, "depth", count, [=](vtkIdType i) { return readings[i].depth; });
+  vtkSPHAddColumns<mcor_gauge_reading>(table, readings, count,
+    { { "first", &mcor_gauge_reading::first }, { "last", &mcor_gauge_reading::last },
+      { "depth", &mcor_gauge_reading::depth } });
   vtkSPHAddColumn<vtkIdTypeArray>(
     table, "crossings", count, [=](vtkIdType i) { return readings[i].crossing_count; });
   for (int a = 0; a < 3; ++a)
   {
-    vtkSPHAddColumn<Doubles>(table, std::string(1, "xyz"[a]).c_str(), count,
+    vtkSPHAddColumn<vtkDoubleArray>(table, std::string(1, "xyz"[a]).c_str(), count,
       [=](vtkIdType i) { return readings[i].place[a]; });
   }
   std::transform(readings, readings + count, std::back_inserter(outside),
     [](const mcor_gauge_reading& reading) { return reading.outside != 0; });
   statistics = gauges.statistics;
-  mcor_free_gauges(&gauges);
   return status;
 }
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHMeter.h"
 
+#include "vtkAbstractArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
@@ -15,6 +18,7 @@
 #include "vtkSPHSay.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <limits>
@@ -80,6 +84,14 @@ void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numb
 {
   this->Places.push_back({ name ? name : "", shape, std::move(numbers) });
   this->Modified();
+}
+
+std::string vtkSPHMeter::NameOf(vtkDataSet* data, vtkIdType cell, const std::string& usual)
+{
+  vtkAbstractArray* names = data->GetCellData()->GetAbstractArray("Name");
+  return names
+    ? std::string(names->GetVariantValue(cell * names->GetNumberOfComponents()).ToString())
+    : usual;
 }
 
 vtkSPHWanted vtkSPHMeter::GetWanted() const

@@ -32,6 +32,7 @@ struct mcor_input;
 struct mcor_statistics;
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkDataSet;
 class vtkTable;
 struct vtkSPHWanted;
 
@@ -80,6 +81,9 @@ protected:
     this->Places.clear();
     this->Modified();
   }
+
+  /** Returns the cell's entry in the cell array "Name"; `usual` where there is no such array. */
+  static std::string NameOf(vtkDataSet* data, vtkIdType cell, const std::string& usual);
 
   std::vector<Place> Places; // the places that were added
 

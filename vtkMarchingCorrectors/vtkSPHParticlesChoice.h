@@ -3,7 +3,7 @@
 /** How particles are described: the members behind settings of vtkSPHAlgorithm. */
 #ifndef vtkSPHParticlesChoice_h
 #define vtkSPHParticlesChoice_h
-
+#ifndef __VTK_WRAP__
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
@@ -81,5 +81,5 @@ struct vtkSPHParticlesChoice
   bool IsBlock() const { return this->FluidArrayName.compare(0, 7, "Block: ") == 0; }
 };
 VTK_ABI_NAMESPACE_END
-
+#endif
 #endif

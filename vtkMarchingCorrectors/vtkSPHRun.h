@@ -54,14 +54,19 @@ public:
   void EndRun();
 
   mcor_context* Context = nullptr;
-  vtkSmartPointer<vtkDataObject> Taken; // particles taken from an input
-  vtkWeakPointer<vtkDataObject> TakenFrom;
-  std::int64_t TakenAmong = 0; // whether there were vertices on any rank
-  vtkTimeStamp TakenTime;
-  vtkSmartPointer<vtkPointSet> Joined; // blocks that are one set of particles
-  vtkWeakPointer<vtkDataObject> JoinedFrom;
-  std::string JoinedFluid; // the fluid array, which may be a block
-  vtkTimeStamp JoinedTime;
+  /** What was made of an input, which serves while the input and `How` are the same. */
+  struct Made
+  {
+    vtkSmartPointer<vtkDataObject> Data;
+    vtkWeakPointer<vtkDataObject> From;
+    std::string How;
+    vtkTimeStamp Time;
+
+    /** Returns whether it serves; if not, the caller makes it anew. */
+    bool Serves(vtkDataObject* from, const std::string& how);
+  };
+  Made Taken;  // particles among the cells of a mesh; how: whether any rank has vertices
+  Made Joined; // blocks as one set of particles; how: the fluid array, which may be a block
 
   /** A value of the last run, and how often it has changed: equal versions are equal data. */
   struct Kept
@@ -87,19 +92,6 @@ private:
   int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;
-};
-
-/** A result of the core, which is freed at the end. */
-template <typename ResultT, void (*Free)(ResultT*)>
-struct vtkSPHOwned : ResultT
-{
-  vtkSPHOwned()
-    : ResultT()
-  {
-  }
-  ~vtkSPHOwned() { Free(this); }
-  vtkSPHOwned(const vtkSPHOwned&) = delete;
-  void operator=(const vtkSPHOwned&) = delete;
 };
 
 class vtkSPHAlgorithm::vtkRun

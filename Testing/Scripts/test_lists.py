@@ -81,7 +81,7 @@ class Statistics(unittest.TestCase):
         names |= {"SmoothingLengthRange", "ScalarRange"}
         self.assertGreater(len(names), 30)
         keys = {re.sub("(?<!^)([A-Z])", r"_\1", name).lower() for name in names} | {"rank_" + what for what in (
-            "particles", "copies", "bytes_sent", "work", "nodes_evaluated", "triangles", "seconds")}
+            "particles", "copies", "bytes_sent", "work", "nodes_evaluated", "triangles", "seconds", "neighbors")}
         for page in sorted(GUIDE.glob("*.md")):
             for paragraph in page.read_text(encoding="utf-8").split("\n\n"):
                 for name in re.findall(r"`(\w+)`", paragraph):

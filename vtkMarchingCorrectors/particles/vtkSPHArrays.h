@@ -18,8 +18,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -142,6 +144,32 @@ void vtkSPHAddColumn(vtkTable* table, const char* name, vtkIdType rows, const Va
   }
   table->AddColumn(column);
 }
+
+/** Adds a column of doubles for each of these members of the rows. */
+template <typename RowT>
+void vtkSPHAddColumns(vtkTable* table, const RowT* rows, vtkIdType count,
+  std::initializer_list<std::pair<const char*, double RowT::*>> members)
+{
+  for (const auto& member : members)
+  {
+    const auto of = member.second;
+    vtkSPHAddColumn<vtkDoubleArray>(
+      table, member.first, count, [rows, of](vtkIdType row) { return rows[row].*of; });
+  }
+}
+
+/** A result of the core, which is freed at the end. */
+template <typename ResultT, void (*Free)(ResultT*)>
+struct vtkSPHOwned : ResultT
+{
+  vtkSPHOwned()
+    : ResultT()
+  {
+  }
+  ~vtkSPHOwned() { Free(this); }
+  vtkSPHOwned(const vtkSPHOwned&) = delete;
+  void operator=(const vtkSPHOwned&) = delete;
+};
 
 /** The ways in which a statistic of several parts or runs becomes one, see mcor_statistics.def. */
 enum vtkSPHHow

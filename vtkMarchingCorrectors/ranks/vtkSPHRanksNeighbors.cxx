@@ -16,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -27,56 +26,31 @@ constexpr double Around = 1.25;
 /** Allows for the rounding of places in periods. */
 constexpr double Rounding = 1.0001;
 
-using Doubles = vtkSmartPointer<vtkDoubleArray>;
+/** The arrays of an input that travel, as far as it has them. */
+using Members = std::vector<mcor_array mcor_input::*>;
 
-Doubles MakeDoubles(int components, vtkIdType count)
+/** Makes a VTK array of an array of the core, which it borrows; empty for a constant. */
+vtkSmartPointer<vtkDataArray> Borrow(const mcor_array& array, vtkIdType count)
 {
-  auto array = Doubles::New();
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(count);
-  return array;
-}
-
-/** Copies positions, masses and lengths as the core reads them. Returns whether places are finite. */
-bool CopyInput(const mcor_input& mine, vtkSPHRanksArrays& copies)
-{
-  const Doubles x = MakeDoubles(3, mine.count), m = MakeDoubles(1, mine.count),
-                h = MakeDoubles(1, mine.count);
-  bool isFinite = true;
-  for (vtkIdType i = 0; i < mine.count; ++i)
+  auto made = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(array.type == MCOR_FLOAT32 ? VTK_FLOAT : VTK_DOUBLE));
+  made->SetNumberOfComponents(std::max(array.components, 1));
+  if (array.data && count > 0)
   {
-    m->SetValue(i, vtkSPHValueOf(mine.mass, i));
-    h->SetValue(i, vtkSPHValueOf(mine.smoothing_length, i));
-    for (vtkIdType k = 3 * i; k < 3 * i + 3; ++k)
-    {
-      x->SetValue(k, vtkSPHValueOf(mine.positions, k));
-      const bool counts = !mine.solid || mine.solid[i] != MCOR_ABSENT;
-      isFinite = isFinite && (!counts || std::isfinite(x->GetValue(k)));
-    }
+    made->SetVoidArray(const_cast<void*>(array.data), count * made->GetNumberOfComponents(), 1);
   }
-  copies = { x.Get(), m.Get(), h.Get() };
-  return isFinite;
-}
-
-double* ValuesOf(const vtkSmartPointer<vtkAbstractArray>& array)
-{
-  return static_cast<double*>(array->GetVoidPointer(0));
+  return made;
 }
 
 /** The input with these particles, which all play a part, in place of the rank's own. */
-mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const mcor_input& like)
+mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const mcor_input& like)
 {
   mcor_input input = like;
   input.count = arrays[0]->GetNumberOfTuples();
   input.solid = nullptr;
-  input.positions = vtkSPHView(vtkDataArray::SafeDownCast(arrays[0]));
-  if (like.mass.data)
+  for (std::size_t k = 0; k < arrays.size(); ++k)
   {
-    input.mass = vtkSPHView(vtkDataArray::SafeDownCast(arrays[1]));
-  }
-  if (like.smoothing_length.data)
-  {
-    input.smoothing_length = vtkSPHView(vtkDataArray::SafeDownCast(arrays[2]));
+    input.*members[k] = vtkSPHView(vtkDataArray::SafeDownCast(arrays[k]));
   }
   return input;
 }
@@ -165,10 +139,11 @@ std::vector<vtkIdType> ListWithin(
  * behind these. order: the places of its own among all; those whose spheres leave its box come
  * first, and their count is returned. Collective.
  */
-vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space, const double* radii,
-  vtkSPHRanksArrays& arrays, vtkIdList* order)
+vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
+  const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)
 {
-  const vtkIdType own = arrays[0]->GetNumberOfTuples();
+  auto* positions = vtkDataArray::SafeDownCast(arrays[0]);
+  const vtkIdType own = positions->GetNumberOfTuples();
   std::vector<std::vector<Cell>> cells(static_cast<std::size_t>(ranks.GetCount()));
   std::vector<std::array<double, 3>> places(static_cast<std::size_t>(own));
   std::vector<int> reached;
@@ -176,9 +151,9 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space, const dou
   for (vtkIdType i = 0; i < own; ++i)
   {
     double* at = places[static_cast<std::size_t>(i)].data();
-    std::copy_n(ValuesOf(arrays[0]) + 3 * i, 3, at);
+    positions->GetTuple(i, at);
     space.Enter(at);
-    const double radius = Rounding * radii[i];
+    const double radius = Rounding * radii[static_cast<std::size_t>(i)];
     reached.clear();
     if (radius > 0.0 && std::isfinite(radius)) // else the core reports it
     {
@@ -231,8 +206,21 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     std::fill_n(options.periodic, 6, 0.0);
     std::copy(period.begin(), period.end(), options.periodic);
   }
-  vtkSPHRanksArrays arrays;
-  const bool isFinite = CopyInput(mine, arrays);
+  std::vector<vtkSPHRanksPlace> places;
+  bool isFinite = true;
+  for (vtkIdType i = 0; i < mine.count; ++i)
+  {
+    const int mark = mine.solid ? mine.solid[i] : 0;
+    if (mark != MCOR_ABSENT && (mark == 0 || !mine.ignore_solids))
+    {
+      places.push_back({ {}, 1, i });
+      for (int a = 0; a < 3; ++a)
+      {
+        places.back().At[a] = vtkSPHValueOf(mine.positions, 3 * i + a);
+        isFinite = isFinite && std::isfinite(places.back().At[a]);
+      }
+    }
+  }
   std::string problem =
     isFinite ? "" : vtkSPHSumNeighbors(mine, options, ratio, 0, values); // the core names it
   if (!ranks.Agree(problem))
@@ -242,44 +230,35 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   options.dimension = this->Ask([&](const mcor_ranks* shared)
     { return mcor_find_dimension(&mine, shared, options.dimension); });
 
-  // Space is divided: cuts may lie anywhere.
-  const double infinity = std::numeric_limits<double>::infinity();
-  double box[6] = { infinity, -infinity, infinity, -infinity, infinity, -infinity };
-  std::vector<vtkSPHRanksPlace> places;
-  for (vtkIdType i = 0; i < mine.count; ++i)
-  {
-    const int mark = mine.solid ? mine.solid[i] : 0;
-    if (mark != MCOR_ABSENT && (mark == 0 || !mine.ignore_solids))
-    {
-      places.push_back({ {}, 1, i });
-      std::copy_n(ValuesOf(arrays[0]) + 3 * i, 3, places.back().At);
-      for (int a = 0; a < 3; ++a)
-      {
-        box[2 * a] = std::min(box[2 * a], places.back().At[a]);
-        box[2 * a + 1] = std::max(box[2 * a + 1], places.back().At[a]);
-      }
-    }
-  }
-  ranks.ReduceRanges(box, 3);
-  const double extent = std::max({ box[1] - box[0], box[3] - box[2], box[5] - box[4] });
+  // Each rank gets the particles in its box.
   mcor_globals frame = {};
   frame.measured.h_min = frame.measured.h_max = 1.0;
-  frame.measured.cube = extent > 0.0 ? std::ldexp(extent, -30) : 1.0;
   for (int a = 0; a < 3; ++a)
   {
     const double length = options.periodic[2 * a + 1] - options.periodic[2 * a];
     frame.measured.edge[a] = length > 0.0 ? length : 1.0;
   }
   vtkSPHRanksSpace space(options, frame);
-  std::for_each(
-    places.begin(), places.end(), [&](vtkSPHRanksPlace& place) { space.Enter(place.At); });
+  for (vtkSPHRanksPlace& place : places)
+  {
+    space.Enter(place.At);
+  }
   space.Divide(ranks, places);
-
-  // Each rank gets the particles in its box.
-  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount()));
+  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount())), back;
   for (const vtkSPHRanksPlace& place : places)
   {
     to[static_cast<std::size_t>(space.FindOwner(place.At))].push_back(place.Particle);
+  }
+  Members members;
+  vtkSPHRanksArrays arrays;
+  for (const auto member :
+    { &mcor_input::positions, &mcor_input::mass, &mcor_input::smoothing_length })
+  {
+    if ((mine.*member).data)
+    {
+      members.push_back(member);
+      arrays.emplace_back(Borrow(mine.*member, mine.count));
+    }
   }
   std::vector<vtkIdType> from;
   arrays = vtkSPHSendTuples(ranks, arrays, to, &from);
@@ -292,14 +271,14 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
       [&](const mcor_ranks* shared)
       {
         options.ranks = shared;
-        problem = vtkSPHSumNeighbors(ViewOf(arrays, mine), options, ratio, count, sums);
+        problem = vtkSPHSumNeighbors(ViewOf(arrays, members, mine), options, ratio, count, sums);
         return problem.empty();
       });
     options.ranks = nullptr;
     return ranks.Agree(problem);
   };
-  const Doubles found = MakeDoubles(1, own), sums = MakeDoubles(1, own);
-  double* radii = sums->GetPointer(0);
+  vtkNew<vtkDoubleArray> found;
+  found->SetNumberOfValues(own);
   bool isGood = ratio > 0.0 ? sum(own, found->GetPointer(0)) : true;
   if (isGood)
   {
@@ -307,17 +286,22 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     const double unit = ratio > 0.0             ? Around * support
       : mine.smoothing_length_is_support_radius ? 1.0
                                                 : support;
-    const double* lengths = ratio > 0.0 ? found->GetPointer(0) : ValuesOf(arrays[2]);
-    std::transform(lengths, lengths + own, radii, [unit](double h) { return unit * h; });
+    const mcor_input near = ViewOf(arrays, members, mine);
+    std::vector<double> sums;
+    for (vtkIdType i = 0; i < own; ++i)
+    {
+      sums.push_back(
+        unit * (ratio > 0.0 ? found->GetValue(i) : vtkSPHValueOf(near.smoothing_length, i)));
+    }
     vtkNew<vtkIdList> order;
-    const vtkIdType asking = AskAround(ranks, space, radii, arrays, order);
+    const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
     vtkSPHAddCount(this->Filter->RunStatistics, "RankNeighbors",
       ranks.Gather(static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own)));
     const vtkIdType count = ratio > 0.0 ? asking : own;
-    isGood = sum(count, sums->GetPointer(0));
+    isGood = sum(count, sums.data());
     for (vtkIdType k = 0; k < count; ++k)
     {
-      found->SetValue(order->GetId(k), sums->GetValue(k));
+      found->SetValue(order->GetId(k), sums[static_cast<std::size_t>(k)]);
     }
   }
   if (!isGood) // a rank that has the particle in question knows its number
@@ -327,7 +311,6 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   }
 
   // Values go back to where the particles came from.
-  vtkSPHRanksLists back;
   vtkIdType next = 0;
   for (const vtkIdType count : from)
   {
@@ -344,7 +327,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   }
   const vtkSPHRanksArrays came =
     vtkSPHPutTuples(vtkSPHSendTuples(ranks, { found.Get() }, back), numbers, mine.count);
-  std::copy_n(ValuesOf(came[0]), mine.count, values);
+  std::copy_n(static_cast<double*>(came[0]->GetVoidPointer(0)), mine.count, values);
   return "";
 }
 VTK_ABI_NAMESPACE_END

@@ -268,13 +268,13 @@ void vtkSPHRanksSpace::Cut(
     below += (middle++)->Work;
   }
   const double brick = BrickCubes * this->Globals->measured.cube;
-  // or at the next brick
-  const double side = middle == end ? 0.0 : std::floor(middle->At[axis] / brick);
-  const std::int64_t less = goal - workUntil(findEnd(side * brick));
-  const std::int64_t more = workUntil(findEnd((side + 1.0) * brick)) - goal;
-  const double plane =
-    std::min(std::max((side + (more < less ? 1.0 : 0.0)) * brick, box[Index(2 * axis)]),
-      box[Index(2 * axis + 1)]);
+  const double at = middle == end ? 0.0 : middle->At[axis];
+  const auto sideOf = [at, brick](double further) // of the brick, or of the next one
+  { return brick > 0.0 ? (std::floor(at / brick) + further) * brick : at; };
+  const std::int64_t less = goal - workUntil(findEnd(sideOf(0.0)));
+  const std::int64_t more = workUntil(findEnd(sideOf(1.0))) - goal;
+  const double plane = std::min(
+    std::max(sideOf(more < less ? 1.0 : 0.0), box[Index(2 * axis)]), box[Index(2 * axis + 1)]);
   middle = findEnd(plane);
   vtkSPHRanksBox low = box, high = box;
   low[Index(2 * axis + 1)] = high[Index(2 * axis)] = plane;

@@ -54,7 +54,8 @@ public:
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
     const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places);
 
-  /** Divides the work at these places among the ranks' boxes. Collective. */
+  /** Divides the work at these places among the ranks' boxes; cuts may lie anywhere if the globals
+   * have no cube size. Collective. */
   void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places);
 
   /**

@@ -475,8 +475,7 @@ static void lengths_by_neighbours(void** state)
       options.periodic[2 * a + 1] = 1.4;
     }
     const mcor_input input = { .count = N, .positions = core_array(set.position, 3) };
-    assert_int_equal(
-      mcor_find_smoothing_lengths(&input, &options, 1.3, N, whole, &why), MCOR_OK);
+    assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, N, whole, &why), MCOR_OK);
     for (int ranks = 2; ranks <= 3; ++ranks)
     {
       rank_sums job = { .set = &set, .options = &options, .whole = whole };
@@ -484,7 +483,8 @@ static void lengths_by_neighbours(void** state)
       core_run_ranks(ranks, sum_on_rank, &job, &world);
       for (int r = 0; r < ranks; ++r)
       {
-        CORE_CHECK(job.wrong[r] == 0 && (periodic || job.held[r] < N), r, job.wrong[r], job.held[r]);
+        CORE_CHECK(
+          job.wrong[r] == 0 && (periodic || job.held[r] < N), r, job.wrong[r], job.held[r]);
       }
     }
   }

@@ -48,8 +48,8 @@
  * If processes share a run, see SetController(), each gets the part of the surface in its share of
  * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
  * GetRunStatistics() describes the whole surface, and has "RankParticles", "RankCopies",
- * "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles" and "RankSeconds" with one
- * component per process.
+ * "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" and, for lengths
+ * or densities by neighbours, "RankNeighbors", with one component per process.
  *
  * @warning
  * Every piece is contoured by itself, unless processes share the surface. Particles of a

@@ -355,7 +355,7 @@ def check_named():
         add(own, m=mass)
         if RANK == COUNT - 1:
             (vtk_to_numpy(own.GetPointData().GetArray("m")) if is_mass else vtk_to_numpy(own.GetPoints().GetData())[:, 0])[5] = -1 if is_mass else math.nan
-        set_all(filter_, NEIGHBOURS)
+        take_step(NEIGHBOURS, filter_)
         filter_.SetInputArrayToProcess(0, 0, 0, 0, "Density")
         filter_.SetController(CONTROLLER)
         filter_.SetInputData(own)

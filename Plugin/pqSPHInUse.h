@@ -12,7 +12,10 @@
  * The panel of a new filter begins with what suits its particles: the free surface where walls are
  * found, an estimate where there are no smoothing lengths, and a plane, line or box that spans the
  * fluid. Lists of arrays offer, too, what the filter takes for arrays: blocks as fluid, vx, vy and
- * vz as velocity.
+ * vz as velocity. Numbers that are not given are empty.
+ *
+ * Pictures of the output have colours that span most of its area, charts its best array alone. A
+ * gauge or a flux has a button that draws it at all times.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h

@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Blocks: cubes of nodes that are divided where they are active, from few that cover the whole
- * lattice down to blocks. A cube is inactive if it and all around it are certain of one side of
- * the iso value, or void: no crossed edge is in it, or leads out of it. Empty space costs next
- * to nothing, and so does space that coarse particles fill with values far from the iso value.
+/* Finds the blocks. A few large cubes of nodes cover the whole lattice; active cubes are divided,
+ * down to blocks. A cube is inactive if it and all cubes around it are void, or certain of one and
+ * the same side of the iso value: then no crossed edge is in it or leads out of it. Empty space
+ * costs next to nothing, and so does space that coarse particles fill with values far from the iso
+ * value.
  *
- * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
+ * Cubes of one size are sorted by key, like blocks, and mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube of the first size, all of which exist. Writes its key. */
+/* One work-item = one cube of the largest size; all of these exist. Writes its key. */
 __kernel void mcor_block_all(
   const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {
@@ -40,7 +41,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 
 #if MCOR_OF_LATTICE
 /* One work-item = one cube. Reads the states of cubes. Writes whether it is inactive. A neighbour
- * that does not exist was part of an inactive larger one. */
+ * that does not exist was part of an inactive larger cube. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {
@@ -62,7 +63,8 @@ int4 mcor_block_part(int4 cube, int c)
   return (int4)(2 * cube.x, 2 * cube.y, 2 * cube.z, cube.w - 1) + mcor_up(c);
 }
 
-/* One work-item = one cube. Counts the cubes into which it is divided: none if it is inactive. */
+/* One work-item = one cube. Counts its children, the cubes into which it is divided: none if it is
+ * inactive. */
 __kernel void mcor_block_count(const int count, __global const mcor_rung* rungs,
   __global const ulong* keys, __global const uchar* inactive, __global int* counts)
 {
@@ -93,7 +95,7 @@ __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   }
 }
 
-/* One work-item = one brick that has a slot. Requests it again if any node's value is known. */
+/* One work-item = one brick that has a slot. Requests it again if values of its nodes are known. */
 __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {

@@ -1,31 +1,29 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, what is
- * certain of the nodes in it.
+/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, whether its
+ * nodes are certainly void, above or below.
  *
- * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
- * field's sign against iso is the sign of F = sum c_j w_j - level, level = 0 (Shepard) or iso.
- * Wherever in the box the point is, each w_j lies between its least and its greatest value
- * there, so that
+ * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the sign of
+ * field - iso is the sign of F = sum c_j w_j - level, with level = 0 (Shepard) or iso. At every
+ * point of the box, each w_j lies between its least and its greatest value in the box, so that
  *
  *   F >= sum of c_j * (least w_j where c_j > 0, greatest where c_j < 0) - level,
  *
- * and likewise from above. This holds for kernels with negative lobes, too. */
+ * and F has an upper bound in the same way. This holds for kernels with negative lobes, too. */
 
-/* Rounding. u is the unit roundoff, n the number of particles that reach the box. A distance that a
- * node's evaluation computes is off by 8 u of itself at most, or of the support where the particle
- * is that far away; the bound looks as much nearer and farther. A particle's position counts from
- * the first node of the box, as which a larger box takes care of. Given the distance, w is off by
- * less than 96 u of itself, as no kernel subtracts large terms where it is small. A sum of n terms,
- * in whatever order, each a product of a few factors, is off by at most (n + 16) u of the sum of
- * the absolute terms, to first order. Hence what the bound and a node's value are off together is
- * at most
+/* Rounding. u is the unit roundoff, n the number of particles that reach the box. The relative
+ * error of a distance that a node's evaluation computes is at most 8 u. The bound uses distances
+ * that are shorter or longer by this. A slightly larger box covers the rounding of positions. Given
+ * the distance, the relative error of w is less than 96 u, because no kernel subtracts large terms
+ * where it is small. The error of a sum of n terms, each a product of a few factors, is at most (n
+ * + 16) u of the sum of the absolute terms, in any order, to first order. Hence the errors of the
+ * bound and of a node's value together are at most
  *
  *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
  *
- * for a Shepard mean, the quotient of the sums of A_j and of 1, with |A_j| + |iso|
- * <= |A_j - iso| + 2 |iso| in place of |A_j - iso|. */
+ * For a Shepard mean, the quotient of the sums of A_j and of 1, |A_j| + |iso| <= |A_j - iso| + 2
+ * |iso| takes the place of |A_j - iso|. */
 #define MCOR_UNIT_ROUNDOFF (MCOR_DOUBLE ? (real)1.1102230246251565e-16 : (real)5.9604645e-8f)
 #define MCOR_BOUND_ROUNDINGS ((real)256)
 #define MCOR_BOUND_LARGER ((real)1 + 16 * MCOR_UNIT_ROUNDOFF)
@@ -58,8 +56,8 @@ void mcor_bound_weights(
   *greatest = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Returns w at the point of a box of half size e around (dx, dy, dz) that is nearest (side -1)
- * or farthest (side 1). */
+/* Returns w at the nearest (side -1) or farthest (side 1) point of a box of half size e around (dx,
+ * dy, dz). */
 realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side, realv inv_h)
 {
   const realv x = fmax(fabs(dx) + side * e[0], (realv)0);
@@ -94,7 +92,7 @@ mcor_bound mcor_bound_start(void)
   return bound;
 }
 
-/* Adds the tile's particles for the query's box. */
+/* Adds the tile's particles to the sums for the query's box. */
 void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
 {
   const mcor_span box = query->box;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bricks that get slots [III-B]; functions for them are in mcor_virtual_grid.cl. */
+/* Bricks that get slots [III-B]; mcor_virtual_grid.cl has functions of bricks. */
 
 /* One work-item = one word of 32 bricks. Counts its bricks. */
 __kernel void mcor_brick_count(
@@ -11,8 +11,8 @@ __kernel void mcor_brick_count(
   counts[word] = (int)popcount(brick_bits[word]);
 }
 
-/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
- * each brick to its slot, and its cells where it is chosen as seed. */
+/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes to each brick's slot
+ * its coordinates, and all its cells if it is chosen as seed. */
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
@@ -26,8 +26,9 @@ __kernel void mcor_brick_fill(
   }
 }
 
-/* One work-item = one brick. Finds its 7 upper neighbours (offset bits 1 x, 2 y, 4 z: entry
- * offset - 1), and becomes their lower one (entry offset + 6). Entries are -1 before. */
+/* One work-item = one brick. Finds its 7 upper neighbours; offset: bits 1 x, 2 y, 4 z. Writes each
+ * to its own entry offset - 1, and itself to the neighbour's entry offset + 6. The other entries
+ * stay -1. */
 __kernel void mcor_brick_neighbours(
   MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
 {
@@ -46,9 +47,9 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are
- * unless they are known. With leaves of several levels, those of certain slots are only if they
- * were needed before (mcor_leaf_need); values below the node threshold never are. */
+/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: all if they
+ * are not known yet. With leaves of several levels, nodes of a certain slot are evaluated only if
+ * mcor_leaf_need marked the slot; nodes of a void slot never. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
@@ -59,7 +60,7 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
 }
 
 /* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
- * one. words: 4-byte words that the values of a brick's nodes take; they are known all or none. */
+ * one. words: 4-byte words of a brick's node values, of which all or none are known. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

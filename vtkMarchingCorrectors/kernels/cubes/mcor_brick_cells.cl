@@ -8,7 +8,7 @@
   const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
 #define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
 
-/* Keeps a brick's cells, of its level, whose centres are in the box. */
+/* Returns the cells of a brick, which are of its level, whose centres are in the box. */
 ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
 {
   ulong cells = ~0UL;
@@ -22,7 +22,7 @@ ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
   return cells;
 }
 
-/* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
+/* Gathers the masks of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
 MCOR_ONE_COPY void mcor_brick_masks(
   __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
 {
@@ -35,7 +35,7 @@ MCOR_ONE_COPY void mcor_brick_masks(
 }
 
 /* Returns the nodes or cells of a brick on some of its sides. x, y, z: 0 the first layer along the
- * axis, 2 the last one, 1 all. */
+ * axis, 2 the last layer, 1 all layers. */
 ulong mcor_on_sides(int x, int y, int z)
 {
   return (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
@@ -43,8 +43,8 @@ ulong mcor_on_sides(int x, int y, int z)
     (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
 }
 
-/* Whether any of these cells of a brick has nodes in its upper neighbour d (bits x, y, z; 0 is
- * itself). */
+/* Whether any of these cells of a brick has nodes in the upper neighbour d (bits x, y, z; 0: the
+ * brick itself). */
 bool mcor_cells_reach(ulong cells, int d)
 {
   return (cells & mcor_on_sides(1 + (d & 1), 1 + (d >> 1 & 1), 1 + (d >> 2))) != 0;

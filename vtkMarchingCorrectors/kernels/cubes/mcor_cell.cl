@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Cells and edges as masks of a brick, and the way a cell is cut: by its case, and by the field's
- * decisions on its faces and on tunnels in it. Bit x + 4 y + 16 z is the cell, or the edge along an axis,
- * whose lowest node has that bit. */
+ * decisions on its faces and on tunnels in it. The bit of a cell, or of an edge along an axis, is
+ * the bit of its lowest node, x + 4 y + 16 z. */
 
 /* Makes masks of corners from the node masks of a brick and its upper neighbours: mask c becomes
  * the mask of each cell's corner c (bits x, y, z). */
@@ -52,9 +52,9 @@ void mcor_corners_of(
   mcor_cell_corners(corners);
 }
 
-/* Finds, for each edge along an axis of a brick, the cells around it: q[0] above in both other
- * axes, q[1] below in the first, q[2] below in the second, q[3] below in both. m: masks of a
- * brick and its lower neighbours. */
+/* Finds which edges of a brick along an axis have the bits of the cells around them: q[0] of the
+ * cell above in both other axes, q[1] below in the first, q[2] below in the second, q[3] below in
+ * both. m: cell masks of the brick and its lower neighbours. */
 MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
@@ -64,12 +64,12 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
   q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
-/* MCOR_EDGE_MASKS hold three masks an axis: crossed edges; the ones of these next to a cell that
- * is not used; the ones of these that are pinched. Only two cells around a pinched edge are
- * used, opposite to each other. Their triangles form two fans, so the edge has two vertices, the
- * second one for the cell below in the first other axis. */
+/* The MCOR_EDGE_MASKS masks are three for each axis: crossed edges; crossed edges next to a cell
+ * that is not used; pinched edges. Only two cells around a pinched edge are used, opposite to each
+ * other. Their triangles form two fans, so the edge has two vertices, the second one for the cell
+ * below in the first other axis. */
 
-/* Nodes of a brick's cells. */
+/* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
 /* Returns the number of the first vertex of node n's edges among the vertices of its brick. */
@@ -85,7 +85,8 @@ int mcor_edge_rank(__global const ulong* e, int n)
 }
 
 /* Finds the vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z. A
- * pinched edge has -1 less the first of its two. upper: slots of its upper neighbours, or -1. */
+ * pinched edge gets -1 - the first of its two vertices. upper: slots of the brick's upper
+ * neighbours, or -1. */
 void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {
@@ -128,8 +129,8 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns the first row of a cell's case, plus the number of its decisions on faces. corners:
- * see mcor_cell_corners. */
+/* Returns the row of a cell's case that its faces choose: each joined ambiguous face sets a bit in
+ * the row's number. corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -150,15 +151,15 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   return row;
 }
 
-/* Data by which cells are cut: the rows of all cases, and, if the topology is resolved, the
+/* What says how cells are cut: the rows of all cases, and, if the topology is resolved, the
  * decisions on faces and cells. */
 #define MCOR_CUT_PARAMS                                                                            \
   const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
     __global const int *cases, __global const mcor_cell_row *rows
 #define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
 
-/* Returns how a cell without finer nodes is cut: as the field decided, or else as if it had joined
- * nothing. Adds 1 to *tunnels if the cell has one. */
+/* Returns how a cell without finer nodes is cut: by the field's decisions if the topology is
+ * resolved, else with no regions joined. Adds 1 to *tunnels if the cell has one. */
 __global const mcor_cell_row* mcor_cell_cut(
   const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {
@@ -184,7 +185,7 @@ int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_
   {
     const int edge = row->edges[i], axis = edge >> 3, x = edge & 1, y = edge >> 1 & 1;
     const int number = numbers[axis][first + x + 5 * y + 25 * (edge >> 2 & 1)];
-    /* The second fan is the one of cells below in the first other axis. */
+    /* The second fan belongs to the cell below in the first other axis. */
     to[i] = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
   return row->triangles;

@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that
- * the nodes are above the iso value of the free surface, before any other particles are looked
- * at. */
+/* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that the
+ * nodes are above the iso value of the free surface, so that no other particles are read. */
 
 /* Returns roughly the share of the query's box and its reach that the tile's particles fill. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
@@ -21,19 +20,20 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
   return mcor_lane_sum(volume) / (MCOR_NORM * box);
 }
 
-/* A brick whose surroundings are filled less than this is taken to be near the surface. */
+/* A brick whose surroundings are filled less than this counts as near the surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
 /* The share of each particle's support within which the proof looks at particles. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether that proof is tried: by regions if a work-item evaluates whole bricks, else by bricks. */
+/* Whether the proof is tried: for regions if a work-item evaluates whole bricks, else for
+ * bricks. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
-/* Whether the particles of the tile that are close to any of 2 x 2 points, as many above each
- * other as there are lanes, lift all points above the iso value. Points are `step` apart from
- * `at` on. The sum has another order than that of a node; the margin covers this, too. */
+/* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
+ * above the iso value. The first point is `at`, the others are `step` apart. The order of the sum
+ * differs from that at a node; the margin covers this, too. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
@@ -61,10 +61,10 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether the close particles lift all points also at the nodes of the leaf's level on its far
- * sides. The finer nodes there are also nodes of finer leaves: either own ones, which a proof of
- * those leaves covers, or nodes on their far sides, where a leaf beside a larger one is chosen, and
- * the march goes on from there. tile: particles close to any of the leaf's nodes. */
+/* Whether the close particles lift all nodes of the leaf's level on its far sides above the iso
+ * value, too. Finer nodes there belong to finer leaves: the proof of such a leaf covers its own
+ * nodes, and with nodes on its far sides, beside the larger leaf, it is chosen, and the march goes
+ * on from it. tile: particles close to any of the leaf's nodes. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
@@ -100,13 +100,13 @@ bool mcor_sides_are_inside(
 }
 #endif
 
-/* Returns MCOR_ABOVE if the particles within half their support of a brick's nodes alone lift
- * all its nodes above the iso value, else MCOR_EXAMINE. These are an eighth of all particles in
- * reach, and make up most of the weight sum. The rest can only add: w >= 0, rounding is
- * monotone, and the order is the same. The margin is for a compiler that rounds the same term in
- * another way in another place. Far inside the fluid, no more is ever evaluated. A leaf `beside`
- * finer or coarser ones gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide:
- * the close particles of the brick's region, if complete. */
+/* Returns MCOR_ABOVE if the particles within half their support of a brick's nodes alone lift all
+ * its nodes above the iso value, else MCOR_EXAMINE. These are an eighth of all particles in reach,
+ * and make up most of the weight sum. The others can only add to the sum: w >= 0, rounding is
+ * monotone, and the order is the same. The margin allows for a compiler that rounds the same term
+ * differently elsewhere. Far inside the fluid, nothing else is evaluated. A leaf `beside` finer or
+ * coarser leaves gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide: the close
+ * particles of the brick's region, if complete. */
 int mcor_seed_proof(
   const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
 {
@@ -146,8 +146,8 @@ int mcor_seed_proof(
 }
 
 #if MCOR_PROVES_INSIDE
-/* One work-item = one slot, of `count` from `first` on. Tries the proof unless the nodes are
- * known or certain, or the proof was tried before. */
+/* One work-item = one slot, of `count` from `first` on. Tries the proof if the nodes are not known,
+ * and neither a state nor an earlier trial is. */
 __kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global ulong* above, __global ulong* valid)

@@ -4,20 +4,20 @@
 /* Adaptive cubes: the cells of leaves that touch finer leaves. Such a cell also has nodes in the
  * middle of edges or faces; mcor_adaptive_cell.h makes its triangles. The leaf's nodes have
  * coordinates 0 to 8, in finer cells from its first node. Finer nodes and the edges between them
- * are in slots of the level below; other edges are in slots of the leaf's level. */
+ * are in slots of the finer level; other edges are in slots of the leaf's level. */
 
 /* The nodes of a leaf. */
 typedef struct
 {
   __global const int* slots; /* made by mcor_leaf_tables */
   __global const ulong *above, *valid;
-  uint hanging; /* where the leaf has finer nodes: a bit for each part of it, as of directions */
-  int plane;    /* in a plane, nodes above it have the masks of the nodes in it */
+  uint hanging; /* parts of the leaf with finer nodes, bits MCOR_DIRECTION */
+  int plane;    /* 1: in a plane, where nodes above the plane copy the nodes in it */
   ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
-/* Returns slot and number of the node at (x, y, z), in a slot of the finer or of the leaf's own
- * level. */
+/* Returns the slot, of the finer or of the leaf's own level, and the number there of node (x, y,
+ * z). */
 int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
 {
   return finer ? (int2)(leaf->slots[8 + MCOR_DIRECTION(x >> 2, y >> 2, z >> 2)],
@@ -26,7 +26,7 @@ int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
                    (x >> 1 & 3) + 4 * (y >> 1 & 3) + 16 * (z >> 1 & 3));
 }
 
-/* Returns slot and number of the node at (x, y, z): in a slot of the leaf's level if there is
+/* Returns slot and number of node (x, y, z): in a slot of the leaf's level if that level has
  * one. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
@@ -35,8 +35,8 @@ int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
   return ((x | y | z) & 1) == 0 && own.x >= 0 ? own : mcor_leaf_place(leaf, x, y, z, true);
 }
 
-/* Returns where a leaf has finer nodes: an edge or a face has one in its middle if any leaf that
- * touches it there is finer. */
+/* Returns on which parts, bits MCOR_DIRECTION, a leaf has finer nodes: an edge or a face of a cell
+ * there has a node in its middle, because a finer leaf touches the part. */
 uint mcor_leaf_hanging(uint finer)
 {
   uint hanging = 0;
@@ -53,8 +53,9 @@ uint mcor_leaf_hanging(uint finer)
   return hanging;
 }
 
-/* Makes masks of the leaf's own nodes and of the 7 bricks up from it. A brick without a slot of
- * the leaf's level is finer: its nodes on the leaf's side are looked up one by one. */
+/* Makes masks of the corners of the leaf's cells, from the masks of the leaf and of the 7 bricks up
+ * from it. A brick without a slot of the leaf's level is finer: its nodes on the leaf's side are
+ * looked up one by one. */
 void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m[8])
 {
   for (int d = 0; d < 8; ++d)
@@ -91,14 +92,14 @@ mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global 
   return leaf;
 }
 
-/* Returns where a coordinate of 0 to 8 lies in the leaf: on its first side, within, on its last
+/* Returns where in the leaf a coordinate of 0 to 8 lies: on the first side, within, or on the last
  * side. */
 int mcor_leaf_zone(int u)
 {
   return u == 0 ? 0 : u == 8 ? 2 : 1;
 }
 
-/* Nodes of a cell, bits x + 3 y + 9 z of mcor_adaptive_cell.h. */
+/* Nodes of a cell as bits, see mcor_adaptive_cell.h; used: the cell may be used. */
 typedef struct
 {
   uint split, above;
@@ -131,15 +132,15 @@ mcor_adaptive_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
   return nodes;
 }
 
-/* An edge of a cell: its slot, lower node and axis, and the quadrants around it that the cell
- * takes up, as bits, see mcor_cell_around. */
+/* An edge of a cell: its slot, lower node and axis, and, as bits, the quadrants around the edge
+ * that the cell fills, see mcor_cell_around. */
 typedef struct
 {
   int slot, node, axis;
   uint quadrants;
 } mcor_leaf_edge;
 
-/* Returns a cell's edge along an axis from node `lower` of its 27. */
+/* Returns a cell's edge along an axis from node `lower`. */
 mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, int axis, int lower)
 {
   const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
@@ -153,7 +154,7 @@ mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, in
   return edge;
 }
 
-/* Turns corners of a cell, bits as in mcor_march_case, into bits of its nodes. */
+/* Turns corners of a cell, with bits as in mcor_march_case, into bits of mcor_adaptive_cell.h. */
 uint mcor_leaf_corner_nodes(int corners)
 {
   uint above = 0;
@@ -205,9 +206,9 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which
- * of its cells are plain, which leaf it is, and whether its cells may be used: whether any of them
- * is valid at all nodes and has nodes on both sides. */
+/* One work-item = one leaf. If it is mixed, reads its nodes' masks. Writes to its slot which of its
+ * cells are plain and which leaf it is; if mixed, also all cells if any cell is valid at all nodes
+ * and has nodes on both sides, else none. */
 __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global ulong* cells,
   __global ulong* plain, __global int* leaf_of)
 {
@@ -234,7 +235,7 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Returns the vertex of a cell's edge, given as in mcor_adaptive_cell.h. */
+/* Returns the vertex of a cell's edge. axis, lower: its slot in mcor_adaptive_cell.h. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {

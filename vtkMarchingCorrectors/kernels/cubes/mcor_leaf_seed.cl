@@ -3,22 +3,23 @@
 
 /* Adaptive cubes: finds the leaves that may have surface.
  *
- * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of that level, 5 along
- * an edge. Where a leaf beside it is finer, they also have nodes of the level below on its
- * sides, 9 along an edge. If all leaves up from it are of its level, each answers for its own
- * nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. There is no surface in
- * the leaf if it and they are on one side. Beside leaves of other levels, the state has to cover
- * all points of the leaf, sides included. All lengths are in cells of the level. */
+ * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of this level, 5 along an
+ * edge. Where a finer leaf is beside it, they also have nodes of the finer level on its sides, 9
+ * along an edge. If all leaves up from it are of its level, each of these gives the sides of its
+ * own nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. If the leaf and the
+ * leaves up from it are on the same side, it has no surface. Beside leaves of other levels, the
+ * state has to cover all points of the leaf, with its sides. All lengths are in cells of the
+ * level. */
 
-/* Returns the bits of the 8 bricks of a row, counted through the rows of all blocks. */
+/* Returns the bits of the 8 bricks of a row. Rows are numbered through all blocks. */
 #define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)
 uint mcor_row_of(__global const uint* bits, int row)
 {
   return bits[row >> 2] >> 8 * (row & 3) & 0xff;
 }
 
-/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. row: number of
- * its first brick in the block. */
+/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. blocks: see
+ * mcor_seed_blocks; row: the number of the row's first brick in the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 {
   const int word = row >> 5, at = row & 31;
@@ -28,8 +29,8 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 }
 
 /* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are
- * split. Marks its leaves that are beside other levels: with finer leaves around them, or with
- * none or a coarser one up from them. A plane has none up from it. */
+ * split. Marks its leaves that are beside other levels: if a finer leaf is anywhere around them, or
+ * if a brick up from them is neither a leaf nor split. In a plane, only x and y count as up. */
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {
@@ -38,7 +39,7 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   const uint own = mcor_row_of(leaves, item);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
   const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick);
-  uint finer = 0, all = ~0u; /* bits x: finer bricks around; bricks up from it */
+  uint finer = 0, all = ~0u; /* bits x: a finer brick is around; all bricks up exist */
   for (int d = 0; d < 9; ++d)
   {
     const int4 other = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
@@ -56,14 +57,14 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   atomic_or(beside + (m >> 5), (own & (finer | ~all)) << (m & 31));
 }
 
-/* Leaves, and the facts known about their nodes. */
+/* The leaves, and what is known of their nodes. */
 #define MCOR_KNOWN_PARAMS                                                                          \
   MCOR_BRICK_PARAMS, __global const uint *leaves, __global const uchar *states,                    \
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* Returns the sides of some nodes of brick m: the nodes that it shares with the leaf down from
- * it by d (bits x, y, z; 0: itself). */
+/* Returns the sides of those nodes of brick m that also belong to the leaf down from it by d (bits
+ * x, y, z; 0: brick m itself). */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))
@@ -79,8 +80,8 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
   return (its & above[slot] ? MCOR_ABOVE : 0) | (its & ~above[slot] ? MCOR_BELOW : 0);
 }
 
-/* One work-item = one row of 8 bricks of a block. Chooses its leaves whose cells may have nodes
- * on both sides. */
+/* One work-item = one row of 8 bricks of a block. Chooses those of its leaves whose cells may have
+ * nodes on both sides. */
 __kernel void mcor_leaf_choose(
   MCOR_KNOWN_PARAMS, const int plane, __global const uint* beside, __global uint* chosen)
 {
@@ -95,7 +96,7 @@ __kernel void mcor_leaf_choose(
     const int4 brick = first + (int4)(x, 0, 0, 0);
     const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
     const bool evaluated = slot >= 0 && known[slot], is_beside = mcor_has_brick(beside, at);
-    /* Nothing is known of nodes that cells of other levels have on its sides. */
+    /* open: nothing is known of the nodes that cells of other levels have on the leaf's sides. */
     const bool open =
       evaluated || states[at] == MCOR_EXAMINE ? is_beside : (states[at] & MCOR_OPEN_SIDES) != 0;
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);
@@ -104,8 +105,8 @@ __kernel void mcor_leaf_choose(
       sides |= mcor_leaf_sides(
         MCOR_KNOWN_ARGS, mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, mcor_up(d)), d);
     }
-    /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and
-     * PoCL 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
+    /* No branch may depend on `sides` after the loop: LLVM 18 would move code into it, and PoCL 6.0
+     * then ends the process ("Instruction Combining did not reach a fixpoint"). */
     found |= (uint)(open | (sides == MCOR_EXAMINE)) << x;
   }
   atomic_or(chosen + (m >> 5), found << (m & 31));

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the nodes of leaves that may have surface. Nodes are kept in the slots of
- * bricks, as everywhere: the slot of the leaf, and the slots that hold the far ends of its cells
- * and its finer nodes. */
+/* Adaptive cubes: the nodes of leaves that may have surface. Nodes are kept in slots of bricks, as
+ * everywhere: in the leaf's slot, and in the slots that hold the far nodes of its cells and its
+ * finer nodes. */
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 
-/* Returns the bricks whose nodes a leaf needs. Bits 0 to 7 are bricks of its level (x, y, z up);
- * bits from 8 on are bricks of the finer level, (x, y, z) 0 to 2 from the leaf's first one. If a
- * leaf beyond a far side is finer, its brick has the leaf's nodes there, too. In the plane, only
- * bricks of its layer. */
+/* Returns the bricks whose nodes a leaf needs. Bits 0 to 7 are bricks of its level (x, y, z up).
+ * Bit 8 + x + 3 y + 9 z (each 0 to 2) is the brick of the finer level that is x, y, z bricks from
+ * the finer brick at the leaf's lowest corner. If a leaf beyond a far side is finer, its bricks
+ * also have the leaf's nodes on that side. In a plane, only bricks of its layer are needed. */
 ulong mcor_leaf_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
@@ -55,7 +55,8 @@ __kernel void mcor_leaf_request(MCOR_BLOCK_PARAMS, const int count, const int pl
   }
 }
 
-/* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
+/* One work-item = one leaf. Writes the slots of the bricks that it needs, and -1 for other
+ * bricks. */
 __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int plane,
   __global const int4* cells, __global const uint* finer, __global int* tables)
 {
@@ -68,8 +69,8 @@ __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int pla
   }
 }
 
-/* One work-item = one slot. Writes the state of its brick if that is a leaf. Writes the signs of
- * its nodes if they are certain but not known. */
+/* One work-item = one slot. Writes the state of its brick if the brick is a leaf. Writes the signs
+ * of its nodes if the state is certain and the values are not known. */
 __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global const int4* bricks,
   __global const uint* leaves, __global const uchar* states, __global const ulong* known,
   __global uchar* proofs, __global ulong* above, __global ulong* valid)
@@ -85,8 +86,8 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Marks the slots whose node values crossed cells of a leaf need. The leaf has no finer ones
- * around it. Returns whether it has crossed cells. */
+/* Marks the slots whose node values the crossed cells of a leaf need. Returns whether it has
+ * crossed cells. The leaf has no finer leaves around it. */
 bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above,
   __global const ulong* valid, __global ulong* need)
 {
@@ -109,9 +110,9 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
   return crossed != 0;
 }
 
-/* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, there is
- * no surface in it. If so, marks the slots whose values its cells need, also certain ones. Several
- * leaves may mark a slot. */
+/* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, it has no
+ * surface. If so, marks the slots whose values its cells need, also slots that are certain. Several
+ * leaves may mark one slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global ulong* need)

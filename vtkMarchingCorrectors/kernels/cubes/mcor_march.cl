@@ -1,17 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by
- * lattice edge.
+/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by lattice
+ * edge.
  *
- * A cell is plain if no finer brick touches it, not even at its corner: it has all its nodes in
- * bricks of its level. With several levels, mcor_march_hanging finds which other cells are used,
- * and which edges they use. */
+ * A cell is plain if no finer brick touches it, not even at a corner: all its nodes are in bricks
+ * of its level. With several levels, mcor_march_hanging finds which other cells are used, and which
+ * edges they use. */
 
-/* One work-item = one leaf. Reads its nodes' masks. Leaves in `used` the used ones of its cells
- * that are not plain, and marks the edges that they use. Writes the number of their triangles,
- * or lines, by slot. Adds the number of loops of owned cells that lie in one face between
- * leaves. */
+/* One work-item = one leaf. Reads its nodes' masks. Of its cells that are not plain, keeps only the
+ * used ones in `used`, marks the edges that these use, and writes the number of their triangles, or
+ * lines, to its slot. Adds to flat_loops the number of loops of owned cells that lie in one
+ * face. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -54,8 +54,8 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   }
 }
 
-/* One work-item = one brick. Reads the node masks. Leaves in `used` its plain cells that are
- * valid at all nodes and have nodes on both sides; writes these to plain_used, too. */
+/* One work-item = one brick. Reads the node masks. Keeps, of its plain cells in `used`, those that
+ * are valid at all nodes and have nodes on both sides; writes these to plain_used, too. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
   __global const ulong* plain, __global const ulong* above, __global const ulong* valid,
   __global ulong* used, __global ulong* plain_used)
@@ -70,9 +70,9 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   plain_used[slot] = now;
 }
 
-/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the edge masks for
- * edges that have their lower node in the brick and a used cell around them; counts vertices,
- * triangles, or lines, and tunnels. */
+/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the masks of
+ * crossed edges whose lower node is in the brick and that have a used cell around them. Counts
+ * vertices, triangles or lines, and tunnels. */
 __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int plane,
   const int leaf_count, __global const uint* quadrants, __global const ulong* plain_used,
   __global const ulong* above, __global ulong* edges, __global int* vertex_count,
@@ -88,7 +88,7 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   {
     ulong q[4];
     mcor_cell_around(lower, a, q);
-    if (plane) /* a square counts on both the upper and the lower side of the plane */
+    if (plane) /* a square counts as a cell on both sides of the plane */
     {
       q[0] = q[2] = a == 2 ? 0 : q[0] & MCOR_PLANE_MASK;
       q[1] = q[3] = a == 2 ? 0 : q[1] & MCOR_PLANE_MASK;
@@ -125,7 +125,7 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
 }
 
 /* Returns the value at the upper end of the edge from node n of a brick along an axis. An end
- * beyond the brick is in the next brick, or in the finer one that has the node. */
+ * beyond the brick is in the next brick of its level, or in a finer brick. */
 real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 brick, int slot, int n,
   int axis, __global const real* node_value)
 {
@@ -145,9 +145,9 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
 }
 
-/* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
- * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times
- * the level), and the two values against the iso value. */
+/* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: the
+ * lattice edge (lower node; axis, plus 4 if a cell around it is not used, plus 256 times the
+ * level), and the values at its ends less the iso value. */
 __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   __global const int* neighbours, __global const int4* bricks, __global const ulong* edges,
   __global const real* node_value, __global const int* vertex_base, const real iso,
@@ -181,8 +181,8 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 }
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes
- * triangles, or lines, and, if wanted, the keys of their cells: this call owns those in the box
- * x0 ..., other ranks those in the box all_x0 ... that it does not own. */
+ * triangles, or lines, and, if wanted, the keys of their cells. This call owns the cells in the box
+ * x0 ...; other ranks own the other cells in the box all_x0 .... */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
   const int all_x0, const int all_y0, const int all_z0, const int all_x1, const int all_y1,

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes. The host embeds one of mcor_node_lanes.cl and
- * mcor_node_point.cl, which have the parts that differ on CPUs and GPUs. */
+/* Evaluation of the field at nodes. The host embeds mcor_node_lanes.cl for CPUs, or
+ * mcor_node_point.cl for GPUs, which define the functions that differ. */
 
 /* Nodes that one work-item evaluates: a whole brick if particles are gathered for many lanes at
- * once. They form groups of MCOR_LANES. */
+ * once. The nodes form groups of MCOR_LANES. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 #define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
@@ -17,15 +17,16 @@ typedef struct
   realv s, w, t;
 } mcor_node_sums;
 
-/* The group of a work-item's n-th node, and its lane there. */
+/* Return the group of a work-item's n-th node, and the node's lane in it. */
 int mcor_group_of(int n);
 int mcor_lane_of(int n);
 
-/* Sums at the groups of a query of mcor_node_query. The tile may already hold its particles. */
+/* Makes the sums at all groups of a query of mcor_node_query. The tile may already hold the query's
+ * particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums);
 
-/* Adds all particles of a tile to the sums at MCOR_LANES nodes. x, y, z: the nodes from the
- * query's origin. */
+/* Adds all particles of a tile to the sums at MCOR_LANES nodes. x, y, z: the nodes, in cubes from
+ * the query's origin. */
 void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_sums* sums)
 {
   for (int from = 0; from < tile->count; from += MCOR_STEP)
@@ -53,8 +54,8 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
 }
 
 /* Returns the query for the nodes up to `extent` from node `first` of a brick. share: share of each
- * particle's support that counts. All bricks of a region count positions from its first node, so a
- * node's value is the same whichever tile of the region it is made from. */
+ * particle's support that counts. All bricks of a region count positions from the region's first
+ * node, so a node's value does not depend on which tile of the region it is made from. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {
@@ -75,8 +76,8 @@ MCOR_ONE_COPY mcor_query mcor_node_query(
   return query;
 }
 
-/* Writes the field's value and the trimming weight (-1: no valid value) of a node, whose sums are
- * in a lane. */
+/* Writes the field's value and the trimming weight (-1: the value is not valid) of the node whose
+ * sums are in a lane. */
 void mcor_sums_store(
   const mcor_node_sums* sums, int lane, __global real* value, __global real* weight)
 {
@@ -87,7 +88,7 @@ void mcor_sums_store(
   *weight = defined ? t : (real)-1;
 }
 
-/* Writes field and trimming weight of a work-item's nodes, beginning with its first. */
+/* Writes the field's values and the trimming weights of a work-item's nodes. */
 void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global real* weight)
 {
   for (int n = 0; n < MCOR_ITEM_NODES; ++n)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: with 16
- * lanes 2 x 2 x 4, with 8 2 x 2 x 2. The interface is that of mcor_node.cl. */
+/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: 2 x 2 x 4
+ * nodes with 16 lanes, 2 x 2 x 2 with 8 lanes. mcor_node.cl describes the interface. */
 
 #define MCOR_GROUP_Z (MCOR_LANES / 4)
 
@@ -16,11 +16,11 @@ int mcor_lane_of(int n)
   return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
 }
 
-/* Nodes of a group, from its query's origin; weights there are made in two steps, see
+/* The nodes of a group, in cubes from the query's origin. Weights are made in two steps, see
  * mcor_distance. */
 #if MCOR_TENSOR
-/* A group has few different x, y and z, so one evaluation of w serves them all: lanes 0 and 1
- * are x, 2 and 3 y, from 4 on z. */
+/* A group has few different x, y and z, so one evaluation gives w for them all: lanes 0 and 1 are
+ * x, lanes 2 and 3 y, lanes from 4 on z. */
 typedef struct
 {
   realv at;
@@ -79,8 +79,8 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to a group whose first node is `first` from the query's origin. term:
- * their weights times values. */
+/* Adds the tile's particles to the sums of a group. first: its first node, in cubes from the
+ * query's origin. term: the particles' weights times values. */
 void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], const real first[3],
   real share, mcor_node_sums* sums)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at one node per work-item; the interface is that of mcor_node.cl. */
+/* Sums at one node per work-item; mcor_node.cl describes the interface. */
 
 int mcor_group_of(int n)
 {

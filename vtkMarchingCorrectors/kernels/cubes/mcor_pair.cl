@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The paper's seed selection [III-C]: pairs of particles that are closer than the smoothing
- * length and have values on both sides, and all cells on the straight line between them. Cells
- * without a block are not marked: there is certainly no surface. */
+/* The paper's seed selection [III-C] finds pairs of particles that are closer than the smoothing
+ * length and have values on both sides, and marks all cells on the straight line between them.
+ * Cells without a block are not marked, because they certainly have no surface. */
 
 /* Adds a cell to the cells of its brick, if the brick exists. `reached` is indexed by the
  * bricks' numbers. Returns whether the cell is new. */
@@ -15,8 +15,8 @@ bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reac
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells;
- * flags: 1 where one is new. */
+/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells.
+ * Sets flags[0] if one is new. */
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
 {
@@ -38,20 +38,20 @@ __kernel void mcor_pair_request(
 /* ---- Cells between pairs ---- */
 
 #if MCOR_OF_FIELD
-/* Parameters of marking, last among a kernel's. */
+/* A kernel's last parameters, for marking cells. */
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* reached
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
-/* Returns where a line leaves the cell from `low` on along an axis, as a share of the line;
- * above 1 if it ends in the cell. 1 / gap: extent of the line along the axis. */
+/* Returns, as a share of the line from `from` on, where it leaves a cell along an axis; more than 1
+ * if it ends in the cell. low: the cell's lower side; 1 / gap: the line's extent along the axis. */
 real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
 {
   const long side = step < 0 ? from - low : low + edge - from;
   return ends ? (real)2 : (real)side * gap;
 }
 
-/* Marks the cells on the line between particles j and k. If the line passes an edge or a corner
- * of a cell to within rounding, marks the cells on both sides. */
+/* Marks the cells on the line between particles j and k. If the line passes so close to a cell's
+ * edge or corner that rounding decides, marks the cells on both sides. */
 void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 {
   const fix from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
@@ -89,8 +89,8 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
   }
 }
 
-/* Greatest distance of a pair, in unscaled smoothing lengths. It is a little more than 1, so
- * that rounding does not decide for particles on a lattice of that spacing. */
+/* Greatest distance of a pair, in unscaled smoothing lengths. It is a little more than 1, so that
+ * rounding does not decide for particles one smoothing length apart on a lattice. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
 /* Returns which of particles i, i + 1, ... of the tile may make a pair with particle j. */
@@ -101,8 +101,8 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
   const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
-  /* Positions count from the query's origin. slack: the greatest rounding error of the square of a
-   * distance within the smoothing length 1 / inv_h. */
+  /* Positions count from the query's origin. slack: the greatest rounding error of a squared
+   * distance up to the smoothing length 1 / inv_h. */
   const real* e = query->box.half_size;
   const real extent = 2 * fmax(e[0], fmax(e[1], e[2])) + query->radius;
   const real off = 16 * MCOR_UNIT_ROUNDOFF * extent, slack = off * (2 / inv_h + 3 * off);
@@ -114,10 +114,10 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
     MCOR_TILE(tile, weight, i) != 0 && (above || (r2 + slack) * other * other >= (real)1);
 }
 
-/* Marks the cells between particle j and the particles k of the tile that pair with it: on the other
- * side of the iso value, and closer than j's smoothing length. If each is closer than the other's
- * length, the pair is left to the particle above. Differences are exact, so it does not matter which
- * particles were looked at together. */
+/* Marks the cells between particle j and the particles k of the tile that pair with it: on the
+ * other side of the iso value, and closer than j's smoothing length. If they are also closer than
+ * k's, only the particle above marks the cells. Differences are exact, so the result does not
+ * depend on which particles share a tile. */
 void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int j, real iso, real h_scale, MCOR_MARK_PARAMS)
 {
@@ -142,8 +142,8 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
   }
 }
 
-/* Fits the query to the first of particles [begin, end) that lie in one row, and to the
- * particles that may pair with them. Returns how many they are. */
+/* Fits the query to those of particles [begin, end) that come first, in one row, with the reach of
+ * pairs. Returns their number. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -173,8 +173,7 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
     }
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
-      /* A particle below whose length is no longer than any other leaves all its pairs to the
-       * others. */
+      /* A particle below leaves all its pairs to the others if no other length is shorter. */
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
@@ -184,9 +183,10 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
   }
 }
 
-/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
- * together first, as most particles are far from the surface. Reads the particles within the
- * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
+/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles; it tests
+ * them together first, because most particles are far from the surface. Reads the particles within
+ * the smoothing length of each. Marks the cells between pairs that have the iso value between their
+ * values. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Growth of the cells between pairs [III-C], from cell to cell through crossed faces. */
+/* Grows the set of cells between pairs [III-C] from cell to cell through crossed faces. */
 
-/* Whether a brick that has nodes of this brick's cells still lacks a slot. */
+/* Whether any brick that has nodes of these cells, and whose block exists, still lacks a slot. */
 bool mcor_pair_lacks(
   MCOR_BLOCK_PARAMS, __global const int* neighbours, int slot, int own, int4 brick, ulong cells)
 {
@@ -18,9 +18,9 @@ bool mcor_pair_lacks(
 }
 
 /* One work-item = one brick with cells that are new to this round. Reads its nodes' masks. Grows
- * the cells reached by now through crossed faces of used cells, within the brick to the end, and
- * one step beyond its sides. domain: where nodes have right values. flags: 1 where a cell beyond is
- * new. */
+ * its set of reached cells through crossed faces of used cells: within the brick until nothing
+ * changes, and one step beyond its sides. domain: cells whose nodes have right values. Sets
+ * flags[0] if a cell beyond is new. */
 __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
   __global const ulong* above, __global const ulong* valid, __global const int4* bricks,
   MCOR_BLOCK_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,
@@ -30,7 +30,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   const int4 brick = bricks[i];
   const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick);
   const ulong before = grown[own];
-  /* Others add cells meanwhile; the next round sees the ones missed here. */
+  /* Other work-items add cells meanwhile; cells that are missed here are read in the next round. */
   const ulong first = atomic_or(reached + 2L * own, 0), rest = atomic_or(reached + 2L * own + 1, 0);
   ulong cells = domain[i] & (rest << 32 | first);
   if (cells == before)
@@ -59,7 +59,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   mcor_add_cells(reached, own, cells);
   if (!mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
   {
-    grown[own] = cells; /* otherwise it is looked at again, once all its nodes are known */
+    grown[own] = cells; /* else it is treated again when all its nodes are known */
   }
   const ulong fresh = cells & ~before & used;
   for (int face = 0; face < 6 && fresh; ++face)
@@ -76,9 +76,9 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   }
 }
 
-/* One work-item = one brick of a block. Reaches the periodic images of its reached cells that
- * are in the first period or in the ring around it. Periods are in cells; 0: open. flags: 1
- * where a cell is new. */
+/* One work-item = one brick of a block. Adds the periodic images of its reached cells that are in
+ * the first period or in the ring around it. Periods are in cells; 0: open. Sets flags[0] if a cell
+ * is new. */
 __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_x,
   const int first_y, const int first_z, const int period_x, const int period_y, const int period_z,
   __global uint* reached, __global int* flags)
@@ -113,8 +113,8 @@ __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_
   }
 }
 
-/* One work-item = one brick. Writes to its slot its cells that are reached, and the ones that
- * pairs marked. */
+/* One work-item = one brick. Writes to its slot its reached cells, and the cells that pairs
+ * marked. */
 __kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks, MCOR_BLOCK_PARAMS,
   __global const ulong* reached, __global const ulong* marked, __global ulong* cells,
   __global ulong* seeds)

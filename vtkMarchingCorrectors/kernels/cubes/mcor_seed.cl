@@ -1,23 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Complete seeds [III-C]: finds the bricks whose nodes must be evaluated so that no crossed edge
- * is missed. Nodes are left out if their side of the iso value is certain without evaluation, or
- * if their weight is certainly too low: whole blocks (32^3 nodes) or several of them, regions
- * (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both nodes were left out,
- * two neighbouring bricks would be certain of different sides: these are evaluated after all
- * (mcor_seed_request). If one was left out, an evaluated brick would have a node on the other
- * side than its neighbour: the neighbour is evaluated then (mcor_seed_grow). All bricks of
- * uncertain regions have slots while they are tested, so that the particles gathered for the
- * bound also serve the nodes' values (mcor_seed_bricks). */
+/* Complete seeds [III-C]: finds the bricks whose nodes must be evaluated so that no crossed edge is
+ * missed. Nodes are left out if their side of the iso value is certain without evaluation, or if
+ * their weight is certainly too low: by whole blocks (32^3 nodes) or several of them, regions (8^3)
+ * and bricks (4^3). A crossed edge has nodes on both sides. If both of its nodes are left out, two
+ * neighbouring bricks are certain of different sides: both are evaluated after all
+ * (mcor_seed_request). If one of its nodes is left out, an evaluated brick has a valid node on the
+ * other side than its neighbour: the neighbour is evaluated, too (mcor_seed_grow). All bricks of
+ * uncertain regions have slots while they are tested, so that the particles gathered for the bound
+ * are also used for the nodes' values (mcor_seed_bricks). */
 
 #if !MCOR_OF_LATTICE
-/* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the
- * least and the greatest of its values. */
+/* Whether the range of the particles' values decides: a Shepard mean with weights >= 0 lies between
+ * the least and the greatest value. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == MCOR_SHEPARD && !MCOR_TENSOR)
 
-/* Parameters on which a node's side depends. side_margin: greatest change by rounding of a mean
- * of values that are all on one side, as a share of each value; see mcor_side_margin in
+/* Parameters on which a node's side depends. side_margin: the greatest rounding error of a mean of
+ * values that are all on one side, as a share of each value; see mcor_side_margin in
  * mcor_seed.c. */
 typedef struct
 {
@@ -33,9 +33,9 @@ typedef struct
     side_flags, side_margin, iso, node_threshold                                                   \
   }
 
-/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Both are set if a
- * value is so close that a mean of such values may round to the other side. One flag serves
- * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not look at particles. */
+/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Both are set if a value
+ * is so close that a mean of such values may round to the other side. One flag stands for
+ * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not read particles. */
 
 #if MCOR_OF_FIELD
 /* One work-item = one run of particles. Writes the sides of its fluid particles. */
@@ -55,8 +55,8 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Returns the sides of all particles that may reach a query's box, and maybe of some more, as a
- * state. */
+/* Returns, as a state, the sides of all particles that may reach a query's box, and maybe of
+ * others. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -88,12 +88,12 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* A coarse cube that more particles reach is divided without a bound. */
+/* If more particles reach a coarse cube, it is divided without a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
-/* Returns the state of a cube of nodes, the query's box. The tile may hold its particles before,
- * and holds them afterwards. A coarse cube needs a weaker answer: it may count as certain though
- * a part is void, and as undecided without a bound. */
+/* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
+ * particles, and may be used afterwards. A `coarse` cube may count as certain though a part of it
+ * is void, and as undecided though a bound could decide. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
@@ -134,7 +134,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* Return the number of a region's first brick, and the offsets of the numbers of its bricks. */
+/* Return the number of a region's first brick, and how much larger the number of its brick b is. */
 int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
@@ -145,7 +145,7 @@ int mcor_region_offset(int b)
   return (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
 }
 
-/* Returns the bricks of a region, bits x, y, z, that are leaves; with one level all are. */
+/* Returns the bricks of a region that are leaves, as bits; with one level, all bricks are. */
 uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
   uint found = 0;
@@ -158,10 +158,10 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 
 /* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and
  * the states of blocks. In a plane (depth 0) or with several levels, it first tries the range of
- * raw values. Writes the states of its bricks, or leaves, that follow from the region, and
- * requests the uncertain ones. Appends a region with uncertain bricks to the list, in any order
- * from number `first` on; list_count: of each level. With several levels, a region includes the
- * nodes on its far sides. Above a plane nothing is examined. */
+ * the particles' values. Writes the states of its bricks, or leaves, and requests those that are
+ * uncertain. Appends a region with uncertain bricks to the list, from entry `first` on, in any
+ * order; list_count: the list's length for each level. With several levels, a region includes the
+ * nodes on its far sides. Bricks above a plane are void. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
@@ -225,10 +225,10 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
 }
 
-/* Finds the state of a brick in an uncertain region. The state covers its nodes; for a leaf
- * beside other levels also the nodes on its far sides. wide: the particles of the region, if
- * complete. If a work-item evaluates whole bricks, it also evaluates the nodes of a brick to
- * examine, because its particles are at hand. Returns the nodes known now. */
+/* Finds the state of a brick in an uncertain region. The state covers its nodes; for a leaf beside
+ * other levels also the nodes on its far sides. wide: the particles of the region, if complete. If
+ * a work-item evaluates whole bricks, it also evaluates the nodes of an uncertain brick, whose
+ * particles are already gathered. Returns the nodes that are known now. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
@@ -259,12 +259,12 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
   return ~0UL;
 }
 
-/* Bricks of a region that a work-item treats. */
+/* Number of bricks of a region that a work-item treats. */
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
-/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `count` from `first` on.
- * Reads the particles that reach it. Writes the states of bricks that are not known yet, and the
- * values and signs of nodes that it evaluates. */
+/* One work-item = MCOR_ITEM_BRICKS bricks of a region; the list has `count` regions from `first`
+ * on. Reads the particles that reach them. Writes the states of bricks that are not known yet, and
+ * the values and signs of nodes that it evaluates. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int count,
   MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS,
   __global uchar* states, __global ulong* known, __global real* node_value,
@@ -306,8 +306,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
 #endif
 
 #if MCOR_OF_LATTICE
-/* Returns the block of a brick and the blocks left and right of it; -1 for one that does not
- * exist. */
+/* Returns the block left of a brick's block, the block itself, and the block right of it; -1 for a
+ * block that does not exist. */
 int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int4 brick)
 {
   const int4 block = mcor_block_of_brick(brick), step = (int4)(1, 0, 0, 0);
@@ -315,8 +315,8 @@ int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int4 brick)
     mcor_find_block(MCOR_BLOCK_ARGS, block), mcor_find_block(MCOR_BLOCK_ARGS, block + step));
 }
 
-/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row are certainly above, and which
- * certainly below (from bit 16 on). row: place of the row in the blocks. */
+/* Returns which bricks x = -1 to 8 of a row are certainly above (bits 0 to 9), and which are
+ * certainly below (bits 16 to 25). row: the number of the row's first brick in its block. */
 uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 {
   uint sides = 0;
@@ -329,8 +329,8 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick to
- * examine, and each brick that is certainly on another side than one next to it. */
+/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick to examine,
+ * and each brick that is certain of another side than a brick next to it. */
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
@@ -366,9 +366,9 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
   }
 }
 
-/* One work-item = one brick; bricks without `fresh` nodes were looked at before. Reads its
- * nodes' sides, and the states of bricks around it that are not evaluated. Requests the ones
- * that are certain of another side than a valid node next to them. */
+/* One work-item = one brick; bricks without `fresh` nodes were treated before. Reads its nodes'
+ * sides, and the states of bricks around it. Requests each brick that is certain of another side
+ * than a valid node next to it. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
   __global const uchar* states, __global uint* brick_bits, __global int* grown)

@@ -1,20 +1,20 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field. On an ambiguous face, nodes above and below the iso value are diagonal
- * to each other. The field itself decides which of them are connected, where the bilinear
- * interpolant of the face has its saddle. The brick that owns the face's lowest node evaluates
- * it once, so both cells read the same answer. The same is then done for cells with two loops:
- * the field at the saddles of the trilinear interpolant decides whether the loops make a tunnel.
+/* Topology by the field. On an ambiguous face, two nodes at opposite corners are above the iso
+ * value, and the other two below. The field at the saddle of the face's bilinear interpolant
+ * decides which nodes are connected. The brick that owns the face's lowest node evaluates it once,
+ * so both cells read the same answer. Then cells with two loops follow: the field at the saddles of
+ * the trilinear interpolant decides whether the loops make a tunnel.
  *
  * With adaptive cubes, the field decides on faces between two plain cells of one level, and on
- * tunnels in plain cells; all other ambiguous faces follow the case table. Only the leaves
- * determine which faces these are, so cells on both sides agree. */
+ * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
+ * decides depends on the leaves alone, so cells on both sides agree. */
 
-/* The side of the iso value on which the field is at a sample. */
+/* Returns the side of the iso value on which the field is at a sample. */
 #define MCOR_SAMPLE_BELOW 0
 #define MCOR_SAMPLE_ABOVE 1
-#define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
+#define MCOR_SAMPLE_NONE 2 /* no particle reaches the sample, see mcor_evaluate */
 int mcor_sample_side(real value)
 {
   return value == (real)1e30f ? MCOR_SAMPLE_NONE
@@ -23,8 +23,8 @@ int mcor_sample_side(real value)
 }
 
 /* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels,
- * which cells are plain. Writes the ambiguous faces between plain cells, next to used ones, and
- * their number. */
+ * which cells are plain. Writes the ambiguous faces between plain cells, at least one of them used,
+ * and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
@@ -44,7 +44,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
       : plane                             ? p[0]
                                           : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
     const ulong layer =
-      plane ? 0xffffUL : ~0UL; /* squares are ambiguous; other faces of a plane are not */
+      plane ? 0xffffUL : ~0UL; /* in a plane, only the squares, one layer, may be ambiguous */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
     const ulong ambiguous = reached & (m[0] ^ m[du]) & (m[0] ^ m[dv]) & ~(m[0] ^ m[du | dv]);
@@ -54,7 +54,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   counts[slot] = count;
 }
 
-/* Returns the value of node n of a brick, moved by the bits of `corner` along x, y, z. */
+/* Returns the value at the node that is `corner` (bits x, y, z) up from node n of a brick. */
 real mcor_topology_value(
   __global const real* node_value, __global const int* neighbours, int slot, int n, int corner)
 {
@@ -65,7 +65,8 @@ real mcor_topology_value(
   return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
 }
 
-/* Returns part / whole; it is 0 / 0 on a device without denormal numbers. */
+/* Returns part / whole, or 0.5 if `whole` is 0, as it may be on a device without denormal
+ * numbers. */
 real mcor_topology_part(real part, real whole)
 {
   return whole != 0 ? part / whole : (real)0.5;
@@ -77,8 +78,8 @@ int4 mcor_topology_node(__global const int4* bricks, int slot, int n)
   return (int4)(node.x, node.y, node.z, 0);
 }
 
-/* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each:
- * node and offset. */
+/* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each
+ * face: node and offset. */
 __kernel void mcor_topology_saddles(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
   __global const int* base, const real iso, __global int4* sample_node,
@@ -106,8 +107,8 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
   }
 }
 
-/* One work-item = one brick. Reads the field at its faces' saddles. Keeps the joined faces
- * only, and writes their number. */
+/* One work-item = one brick. Reads the field at its faces' saddles. Keeps only the joined faces,
+ * and writes their number. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
   __global const real* value, __global ulong* decisions, __global int* joined_count)
 {
@@ -128,7 +129,7 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
 }
 
 /* One work-item = one brick. Reads used cells and joined faces. Writes the cells that may have a
- * tunnel, and the number of their samples, two each. */
+ * tunnel, and the number of their samples, two for each cell. */
 __kernel void mcor_topology_cells(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const int* cases,
   __global const mcor_cell_row* rows, __global ulong* decisions, __global int* counts)
@@ -146,23 +147,23 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* A root of (xyz t + q)^2 = p^2, the one of xyz t + q = p. The other root gives it where this
- * subtraction cancels; their product is n / (a xyz). */
+/* Returns the root t of xyz t + q = p, or -1 if it is not between -1 and 1. If p - q cancels, the
+ * other root of (xyz t + q)^2 = p^2 gives it: the product of both roots is n / (a xyz). */
 real mcor_topology_root(real p, real q, real xyz, real n, real a)
 {
   const real above = p * q > 0 ? n : p - q, below = p * q > 0 ? -a * (p + q) : xyz;
   return fabs(above) < fabs(below) ? above / below : (real)-1;
 }
 
-/* Product of both roots, times a xyz. */
+/* Returns the product of both roots, times a xyz. */
 real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, real xyz)
 {
   return yz * (x * yz - y * xz - z * xy) + y * z * xyz;
 }
 
-/* Finds the saddles in the cell of the trilinear interpolant of corner values f, where all three
- * derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, they say Q R = -a, P R = -b,
- * P Q = -c. Returns their number. */
+/* Finds the saddles, within the cell, of the trilinear interpolant of corner values f, and returns
+ * their number. All three derivatives are 0 there: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z +
+ * xy this means Q R = -a, P R = -b, P Q = -c. */
 int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
   const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];
@@ -189,7 +190,8 @@ int mcor_topology_find_saddles(const real* f, real4 saddle[2])
   return count;
 }
 
-/* Mean of the points where linear interpolation along the cell's edges is 0: between two loops. */
+/* Returns the mean of the points where linear interpolation along the cell's edges is 0; it lies
+ * between two loops. */
 real4 mcor_topology_middle(const real* f)
 {
   real4 sum = 0;
@@ -210,7 +212,8 @@ real4 mcor_topology_middle(const real* f)
 }
 
 /* One work-item = one brick. Reads the cells that may have a tunnel, and node values. Writes two
- * samples for each: the saddles inside, the same one twice, or the middle. */
+ * samples for each cell: the two saddles in it; if it has one, this saddle twice; if none, the
+ * middle twice. */
 __kernel void mcor_topology_middles(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
   __global const int* base, const real iso, __global int4* sample_node,
@@ -243,7 +246,7 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
 }
 
 /* One work-item = one brick. Reads the field at its cells' samples. Writes the cells whose samples
- * agree: below, above. */
+ * are both below, and the cells whose samples are both above. */
 __kernel void mcor_topology_agree(const int brick_count, __global const int* base,
   __global const real* value, __global ulong* decisions)
 {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface.
- * A brick has a slot (values, masks) if it is needed. Blocks are sorted by key, bricks by block,
- * then z, y, x: a slot number is a count of bits, and depends on the set of bricks alone. */
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where the surface may be. A
+ * brick has a slot (values, masks) if it is needed. Blocks are sorted by key, bricks by block, then
+ * z, y, x. A slot's number is a count of bits, so it depends on the set of bricks alone. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
@@ -12,13 +12,14 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
+/* Number of a brick among the 27 in and around a leaf, or of a part of a leaf; x, y, z are 0 to
+ * 2. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
-/* Whether a slot's state is certain, so that no node's value is needed. */
+/* Whether a slot's state says the sides of its nodes, without their values. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
-/* Blocks and bricks are positions among those of their level, and the level (w). */
+/* A block or brick is an int4: x, y, z count blocks or bricks of its level, w is the level. */
 
 /* Returns the key of a block. */
 ulong mcor_block_key(__global const mcor_rung* rungs, int4 block)
@@ -50,7 +51,7 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int4 block)
 
 #define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
-/* Returns the block of a brick, and the brick's number among its MCOR_BLOCK_BRICKS. */
+/* Return the block of a brick, and the brick's number in it. */
 int4 mcor_block_of_brick(int4 brick)
 {
   return (int4)(brick.x >> 3, brick.y >> 3, brick.z >> 3, brick.w);
@@ -60,16 +61,16 @@ int mcor_place_in_block(int4 brick)
   return (brick.z & 7) * 64 + (brick.y & 7) * 8 + (brick.x & 7);
 }
 
-/* Returns the number of a brick, counted through the MCOR_BLOCK_BRICKS of each block, or -1 if
- * its block does not exist. */
+/* Returns the number of a brick, or -1 if its block does not exist. Numbers count through all
+ * blocks, MCOR_BLOCK_BRICKS each. */
 int mcor_brick_number(MCOR_BLOCK_PARAMS, int4 brick)
 {
   const int block = mcor_find_block(MCOR_BLOCK_ARGS, mcor_block_of_brick(brick));
   return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + mcor_place_in_block(brick);
 }
 
-/* Returns the number of a brick a step, of -1 to 1 along each axis, from the one with number `own`;
- * mostly they share a block. */
+/* Returns the number of the brick that is one `step` (-1 to 1 along each axis) from `brick`, which
+ * has number `own`. Mostly both are in one block. */
 MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int4 step)
 {
   const int4 to = (brick & 7) + step;
@@ -77,13 +78,13 @@ MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int
                                         : mcor_brick_number(MCOR_BLOCK_ARGS, brick + step);
 }
 
-/* Whether the bit of the brick with number m is set. */
+/* Whether the bit of the brick with this number is set. */
 bool mcor_has_brick(__global const uint* bits, int number)
 {
   return bits[number >> 5] >> (number & 31) & 1;
 }
 
-/* Returns the slot of the brick with number m, or -1. */
+/* Returns the slot of the brick with this number, or -1. */
 int mcor_slot_of_number(__global const uint* brick_bits, __global const int* brick_base, int number)
 {
   if (number < 0)
@@ -102,8 +103,8 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int4 brick)
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
-/* With several levels: which bricks are leaves, and which leaves are beside other levels, see
- * mcor_leaf_compare. */
+/* With several levels, bits say which bricks are leaves, and which leaves are beside other levels,
+ * see mcor_leaf_compare. */
 #define MCOR_TREE_PARAMS                                                                           \
   const int has_leaves, __global const uint *leaves, __global const uint *beside
 #define MCOR_TREE_ARGS has_leaves, leaves, beside
@@ -145,7 +146,7 @@ bool mcor_request_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns which of them are
+/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns the cells that are
  * new. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {

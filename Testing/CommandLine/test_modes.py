@@ -227,6 +227,17 @@ class Modes(CommandLineTest):
         listed = {option: ["x" * (option in acting[mode]) for mode in MODES] for option in TRIALS}
         self.assertEqual(said, listed)
 
+    def test_what_options_need(self):
+        """Where nothing is there that an option needs, as Options.def has it, the sentence names what is."""
+        text = (pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options" / "Options.def").read_text(encoding="utf-8")
+        rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
+        self.assertGreater(len(rows), 15)
+        for option, modes, needs in rows:
+            with self.subTest(option):
+                words = [word for word in (option, TRIALS[option].value) if word]
+                result = self.run_program(*STEPS[:1 + ("SERIES" in modes)], "out.pvd" if "SERIES" in modes else "out.vtp", "--free-surface", *words)
+                self.one_sentence(result, 2, rf"{option} needs {needs.replace('|', ' or ')}; add .*, or leave out {option}")
+
     def test_every_option_in_every_mode(self):
         self.help = self.acting()
         trials = {(option, mode): OTHER_TRIALS.get((option, mode), trial) for option, trial in TRIALS.items() for mode in MODES}

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Real data sets: a box beside them, how large surfaces are, and where they end at walls. oracle_data checks their points, core_box boxes."""
+"""Real data sets: a box beside them, how large surfaces are, and where they end at walls. oracle_data has tests of their points, core_box of boxes."""
 import pathlib
 import unittest
 

@@ -30,9 +30,10 @@ class Walls(CommandLineTest):
 
     def test_surfaces(self):
         alone = self.surface(*HOW, source=self.fluid)
-        for more in ([], ["--solids", "weight"], ["--solids", "wall", "--derive", "Velocity"], ["--gradients"]):
-            wanted = self.surface(*HOW, *more, "--fluid", "Kind=0")
-            found = self.surface(*HOW, *more, "--walls", self.wall, source=self.fluid)
+        for how, more in ((HOW, []), (HOW, ["--solids", "weight"]), (HOW, ["--gradients"]),
+                          (HOW[:4], ["--solids", "wall", "--derive", "Velocity", "--attributes", "Divergence"])):
+            wanted = self.surface(*how, *more, "--fluid", "Kind=0")
+            found = self.surface(*how, *more, "--walls", self.wall, source=self.fluid)
             self.assertEqual(found, wanted, more)
             self.assertNotEqual(found, alone)
         free = ["--free-surface", "--no-attributes"]

@@ -1,8 +1,8 @@
-# The programs of OpenCL kernels, and the sources of which they consist, in their order: SOURCE PROGRAMS, and "lanes" or
-# "point" where a source is only in a CPU's or in a GPU's form of the kernels. The built-in device has the programs LATTICE,
-# FIELD and PROBE. A driver, which compiles while a user waits, has parts of LATTICE and FIELD (mcor_program in mcor_cl.h):
-# LATTICE:GRID,CELLS means that a source is in these parts only. Of sources of several programs, `#if MCOR_OF_...` says
-# which kernels are whose.
+# The programs of OpenCL kernels, and the sources of each in their order: SOURCE PROGRAMS, and "lanes" or "point" if only
+# a CPU's or only a GPU's form of the kernels has the source. The built-in device has the programs LATTICE, FIELD and
+# PROBE. A driver compiles while a user waits, so it has parts of LATTICE and FIELD instead (mcor_program in mcor_cl.h):
+# LATTICE:GRID,CELLS means that a source is only in these parts. In a source of several programs, `#if MCOR_OF_...` says
+# which program has which kernels.
 set(mcor_programs LATTICE FIELD PROBE)
 set(mcor_program_sources
   "core/mcor_shared.h                        LATTICE FIELD PROBE"

@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature of the surface on which a field f has the value that it has at a point, from the
- * gradient g and the Hessian H of the SPH sum there. With the normal n = -g / |g|, which points to
- * lower values,
+/* Curvature, at a point, of the surface on which a field f has its value at this point; computed
+ * from the gradient g and the Hessian H of the SPH sum there. With the normal n = -g / |g|, which
+ * points to lower values,
  *
  *   2 mean = div n = (g . H g - |g|^2 tr H) / |g|^3        Gaussian = g . adj(H) g / |g|^4
  *
- * so that both are those of a sphere of radius R, 1 / R and 1 / R^2, around higher values. */
+ * For a sphere of radius R around higher values these are 1 / R and 1 / R^2. */
 
 /* A sum and its derivatives, per cube. Elements of the Hessian: xx, yy, zz, xy, yz, zx. */
 typedef struct
@@ -15,7 +15,7 @@ typedef struct
   realv value, gradient[3], hessian[6];
 } mcor_bent;
 
-/* Derivatives of W / norm * h^3 at offset u. */
+/* Finds W / norm * h^3 and its derivatives at offset u. */
 void mcor_weight_hessian(const realv u[3], realv inv_h, mcor_bent* w)
 {
 #if MCOR_TENSOR
@@ -39,7 +39,7 @@ void mcor_weight_hessian(const realv u[3], realv inv_h, mcor_bent* w)
   const realv r2 = mcor_square(u[0], u[1], u[2]), inv_r = mcor_rsqrt(r2), q = r2 * inv_r * inv_h;
   const realv n[3] = { u[0] * inv_r, u[1] * inv_r, u[2] * inv_r };
   const realv slope = MCOR_DW(q) * inv_h, bend = MCOR_DDW(q) * inv_h * inv_h;
-  /* At a particle itself, W bends alike along all axes. */
+  /* At a particle itself, the second derivative of W is the same along all axes. */
   const fixv here = q < (real)1e-4f;
   const realv across = here ? bend : slope * inv_r, along = bend - across;
   w->value = MCOR_W(q);
@@ -63,8 +63,8 @@ void mcor_bent_add(mcor_bent* sum, realv m, const mcor_bent* w)
   }
 }
 
-/* The derivatives of the quotient g = f / w, times the weight:
- * (f / w)'' w = f'' - g w'' - g' w' - w' g'. */
+/* Turns f into the derivatives of the quotient g = f / w, times w: (f / w)'' w = f'' - g w'' - g'
+ * w' - w' g'. */
 void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
 {
   const realv inv_w = (real)1 / (fabs(w->value) < (real)1e-12f ? (realv)1 : w->value);
@@ -79,8 +79,9 @@ void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
   }
 }
 
-/* Mean and Gaussian curvature; of a line in a plane its curvature, and 0. 0 where the gradient
- * vanishes. The field is scaled first: a square of its gradient may vanish, or overflow. */
+/* Finds the mean and the Gaussian curvature; in a plane, the line's curvature, and 0. Both are 0 if
+ * the gradient vanishes. The field is scaled first, because a square of its gradient may underflow
+ * or overflow. */
 void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 {
   realv g[3], h[6];
@@ -112,8 +113,8 @@ void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
   *gauss = most > 0 && !plane ? *gauss : (realv)0;
 }
 
-/* One work-item = one group of points. iso: relative to A0 for the Shepard mean. Writes their
- * curvatures, two numbers each; per cube. */
+/* One work-item = one group of points. Writes two curvatures of each point, per cube. iso: relative
+ * to A0 for the Shepard mean. */
 __kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* offset,
   const real iso, const int plane, __global real* curvature)
 {

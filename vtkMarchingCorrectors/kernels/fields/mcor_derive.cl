@@ -3,11 +3,12 @@
 
 /* SPH gradients of particle arrays at the particles themselves.
  *
- * Arrays are fixed-point numbers, so a difference of two values is exact, as a difference of two
- * positions is. The gradient of a linear array is then exact up to the rounding of the sums. */
+ * Arrays are fixed-point numbers, like positions, so a difference of two values is exact. The
+ * gradient of a linear array is then exact up to the rounding of the sums. */
 
-/* One work-item = one sorted particle, of `count` from `first`. Writes its position as node and
- * offset, and whether it is in the box, if there is one; particles outside have node -1. */
+/* One work-item = one sorted particle, of `count` from `first` on. Writes its position as node and
+ * offset, and whether it is in the box; without a box, every particle is. Particles outside get
+ * node -1. */
 __kernel void mcor_derive_place(const int first, const int count, const real units,
   const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
   __global const fix* py, __global const fix* pz, const int has_box, const int first_x,
@@ -28,14 +29,14 @@ __kernel void mcor_derive_place(const int first, const int count, const real uni
     (real)(z % step_z) / (real)step_z, 0);
 }
 
-/* Sums over the neighbours of the particles i in the lanes, per cube. */
+/* Sums over the neighbours j of the particles i in the lanes, per cube. */
 typedef struct
 {
   realv moments[3][3];              /* sum V_j grad_a W_ij (x_j - x_i)_b */
-  realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij of these A */
+  realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij of each array A */
 } mcor_derive_sums;
 
-/* Adds the particles of a reach. values: A_j; own: A_i; both fixed-point. */
+/* Adds the particles of a reach to the sums. values: A_j; own: A_i; both fixed-point. */
 void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
   const mcor_values* values, const fixv own[MCOR_ARRAY_STEP], mcor_derive_sums* sums)
 {
@@ -79,9 +80,9 @@ fixv mcor_derive_own(
   return MCOR_LOAD(0, own);
 }
 
-/* One work-item = one group of particles, numbered in `order` from `first` on. Reads arrays of
- * fixed-point numbers, `stride` long each, from number `first_array` on. Writes the sums of up
- * to MCOR_ARRAY_STEP of them. */
+/* One work-item = one group of particles. Reads arrays of fixed-point numbers, `stride` long each.
+ * Writes the sums of arrays `first_array` and following, MCOR_ARRAY_STEP at most. Point i is sorted
+ * particle first + order[i]. */
 __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first, __global const int* order, const int first_array, const int array_count,
   const int stride, __global const real* arrays, __global real* moments, __global real* slopes)
@@ -96,7 +97,7 @@ __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* off
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* The first array stands in for those beyond the last. */
+    /* Beyond the last array, the first one takes its place. */
     array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
     own[c] = mcor_derive_own(&points, order, array[c] + first);
     for (int a = 0; a < 3; ++a)

@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The field at points of the caller's choice: weight sums, means or sums of particle arrays, and
- * their gradients. Every sum adds its particles in the order of the search grid, so a point's
- * bits do not depend on other points. */
+/* The field at points that the caller gives: weight sums, sums of particle arrays, and their
+ * gradients. Every sum adds its particles in the order of the search grid, so a point's bits do not
+ * depend on other points. */
 
-/* One work-item = one point. Reads its node, which is below 0 if no particle reaches it. Writes
- * a key that puts points of a cell, and cells of a brick, next to each other. first: the first
- * brick. */
+/* One work-item = one point. Reads its node, which is below 0 if no particle reaches it. Writes a
+ * key by which points of a cell, and cells of a brick, are next to each other. first_x, ...: the
+ * first brick. */
 __kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
   __global const int4* node, __global ulong* keys)
@@ -21,8 +21,8 @@ __kernel void mcor_probe_key(const int count, const int first_x, const int first
     n.x < 0 ? brick << 6 : brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
 }
 
-/* One work-item = one point of the sorted order. Reads the points in input order. Writes them as
- * node and offset in sorted order. */
+/* One work-item = one point in sorted order. Reads the nodes and offsets of points in input order.
+ * Writes them in sorted order. */
 __kernel void mcor_probe_order(const int count, __global const int* order,
   __global const int4* node, __global const real4* offset, __global int4* sorted_node,
   __global real4* sorted_offset)
@@ -53,7 +53,7 @@ void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
   }
 }
 
-/* Evaluates a group of points that shares no particles with others. */
+/* Evaluates a group of points with particles that it gathers for itself. */
 void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   mcor_reach* reach, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
@@ -67,11 +67,12 @@ void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_point
   mcor_probe_put(points, w, sums, weight_sum, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* mcor_probe_sums, which launches these, is in mcor_probe_lanes.cl and mcor_probe_point.cl. */
+/* mcor_probe_sums, the kernel that calls these functions, is in mcor_probe_lanes.cl and
+ * mcor_probe_point.cl. */
 
-/* One work-item = one group of points. Reads arrays from number `first_array` on. Writes the
- * gradients, per cube, of the weight sums and of the sums of weight times array, of up to
- * MCOR_ARRAY_STEP arrays. */
+/* One work-item = one group of points. Writes the gradients, per cube, of the weight sums, and of
+ * the sums of weight times array for arrays `first_array` and following, MCOR_ARRAY_STEP at
+ * most. */
 __kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first_array, __global real* weight_gradient, const int attribute_count,
   const int stride, __global const real* attributes, __global real* gradients)
@@ -85,7 +86,7 @@ __kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offs
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* The weights stand in for arrays beyond the last: any finite values do. */
+    /* Beyond the last array, the weights take its place: any finite values will do. */
     arrays[c] = c < count ? attributes + (first_array + c) * (long)stride : p_weight;
     slopes[c][0] = slopes[c][1] = slopes[c][2] = 0;
   }

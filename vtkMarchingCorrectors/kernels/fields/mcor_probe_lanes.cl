@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at many points, in the form for CPUs; see mcor_probe.cl. Points of a slice or a volume
- * lie so close together that most particles that reach one group also reach the next ones. These
- * groups form a cluster with one tile of particles. */
+/* Sums at many points, in the form for CPUs; see mcor_probe.cl. Points of a slice or a volume are
+ * so close together that most particles that reach one group also reach the next groups. Such
+ * groups form a cluster, which shares one tile of particles. */
 
 typedef struct
 {
@@ -12,8 +12,8 @@ typedef struct
   realv weight[MCOR_CLUSTER], sums[MCOR_CLUSTER][MCOR_ATTRIBUTE_LIMIT];
 } mcor_cluster;
 
-/* Whether the parts lie so close together that packing their lists of particles takes longer
- * than going through the whole tile; measured at planes of points. */
+/* Whether the parts are so close together that packing their lists of particles takes longer than
+ * reading the whole tile. The limit was measured at planes of points. */
 #define MCOR_TILE_SHARE 0.8f
 bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
 {
@@ -30,8 +30,8 @@ bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mc
   return rest < MCOR_TILE_SHARE * grid->levels[0].support;
 }
 
-/* Fits groups from `begin` on, before `end`, into one cluster, and a query to the box around their
- * points, whose origin is a node in the middle. Returns how many fit, one at least. */
+/* Returns how many groups from `begin` on, before `end`, fit into one cluster, at least 1. Fits a
+ * query to the box around their points; its origin is a node in the middle. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
   __global const int4* node, __global const real4* offset, mcor_query* query)
 {
@@ -77,7 +77,7 @@ int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int be
   return g - begin;
 }
 
-/* Makes a box's range along an axis that of the lanes. */
+/* Sets a box's range along an axis to the range of the lanes of v. */
 void mcor_lane_range(realv v, int axis, mcor_span* box)
 {
 #if MCOR_LANES == 16
@@ -105,9 +105,9 @@ void mcor_cluster_from(
   mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
 }
 
-/* Adds the weights of the listed particles at a group's points, and the first `step` arrays
- * times the weights. One loop does all sums, because each sum alone would wait for its last
- * addition. step: a constant. keep: the weights are wanted. */
+/* Adds the weights of the listed particles at a group's points, and the first `step` arrays times
+ * the weights, to the sums. One loop makes all sums, because each sum alone would wait for its last
+ * addition. step: a constant. keep: whether to write the weights to `weight`. */
 __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
   int count, const int step, bool keep, realv* weight, realv* weight_sum, realv* sums)
@@ -150,7 +150,7 @@ __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   }
 }
 
-/* Adds a tile's particles at group g's points, of `arrays` arrays. */
+/* Adds a tile's particles, with `arrays` arrays, to the sums at group g's points. */
 void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   const mcor_cluster_values* values, int arrays, int g, mcor_cluster* cluster)
 {
@@ -217,7 +217,7 @@ __kernel void mcor_probe_sums(
   const mcor_grid grid = MCOR_GRID;
   const int end = min((int)(get_global_id(0) + 1) * MCOR_CLUSTER, group_count);
   mcor_cluster cluster;
-  mcor_query query, wide; /* numbers of the group, of the cluster */
+  mcor_query query, wide; /* query: for one group; wide: for the cluster */
   mcor_reach reach;
   for (int begin = get_global_id(0) * MCOR_CLUSTER; begin < end; begin += cluster.count)
   {

@@ -2,30 +2,31 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: finds how much each particle's smoothing length may grow while the particle stays
- * inside of the surface. core/fields/mcor_widen.c begins with the rule; these are its reasons.
+ * inside the surface. core/fields/mcor_widen.c begins with the rule; here are its reasons.
  *
  * The taper falls to 0 where few neighbours are near, because lone drops and threads would shrink.
- * `least` is the iso value and a margin, without which sheets would get holes. At the surface of
- * deep water, where all neighbours are on one side, there is no margin, and a particle may even be
- * outside a little: each one that must be inside there would raise a bump. At the rim of a sheet,
- * where few are on one side, the margin is wider: their own lengths may be longer, and a thread
- * that hangs there would part. A particle in the corner of a tank has as few neighbours, but those
- * beside it are widened, so that with its own length it would be a knob: it goes most of the way to
- * their mean. One with more neighbours on one side is at the surface of a drop, and stays. */
+ * `least` is the iso value plus a margin, without which sheets would get holes. At the surface of
+ * deep water, where all neighbours are on one side, the margin is 0, and a particle may even be
+ * slightly outside, because each particle that has to be inside would raise a bump. At the rim of a
+ * sheet, where few neighbours are on one side, the margin is wider: their own lengths may be
+ * longer, and a thread that hangs there would break. A particle in the corner of a tank has as few
+ * neighbours, but its neighbours are widened, so that it would stick out as a knob with its own
+ * length; its factor goes most of the way to their mean. A particle with more neighbours on one
+ * side is at the surface of a drop, and keeps its length. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
-/* Most by which the weight sum may be below the iso value at the surface of deep water. */
+/* At the surface of deep water, the weight sum may be this far below the iso value. */
 #define MCOR_WIDEN_OUTSIDE ((real)0.08f)
 
-/* A margin gains this share of it at a rim. */
+/* At a rim, a margin grows by this share of itself. */
 #define MCOR_WIDEN_RIM ((real)0.5f)
 
-/* Distance of the neighbours' middle, in smoothing lengths: below the first there is water on
- * both sides, beyond the second on one. */
+/* Limits of the distance to the neighbours' middle, in smoothing lengths: below the first, water is
+ * on both sides; beyond the second, on one side. */
 #define MCOR_SIDED_FROM ((real)0.4f)
 #define MCOR_SIDED_TO ((real)0.6f)
 
-/* Particles j in the lanes; the first `count` count. x: positions as in the grid. */
+/* Particles j, one in each of the first `count` lanes. x: positions as in the grid. */
 typedef struct
 {
   fixv x[3];
@@ -33,8 +34,8 @@ typedef struct
   int count, plane;
 } mcor_widen_at;
 
-/* One work-item = one sorted particle. Writes V_k norm, of which its weight is made; in the
- * plane V_k norm / h_k. */
+/* One work-item = one sorted particle. Writes V_k norm, the weight without its powers of h_k; in
+ * the plane V_k norm / h_k. */
 __kernel void mcor_widen_sizes(const int count, const int plane, __global const real* inv_h,
   __global const real* weight, __global real* size)
 {
@@ -43,9 +44,9 @@ __kernel void mcor_widen_sizes(const int count, const int plane, __global const 
   size[i] = weight[i] * h * h * (plane ? (real)1 : h);
 }
 
-/* Fits the query's box to the particles of the lanes from `from` on, up to one that is far from
- * the first, or that comes before the one before it, as at the end of a row. Returns the lane of
- * that one. */
+/* Fits the query's box to the particles of lanes `from` and following. Stops before a particle that
+ * is far from the first, or whose x is less than its predecessor's, as at the end of a row, and
+ * returns its lane. */
 int mcor_widen_place(
   const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
 {
@@ -77,18 +78,18 @@ int mcor_widen_place(
 /* Finds the offsets of particle k, in the unit of positions. */
 #define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
 
-/* Values of s in one walk over the particles. */
+/* Most values of s that one walk over the particles treats. */
 #define MCOR_WIDEN_LEVELS 3
 
-/* The crowd: the sum of n = max(0, 1 - (r / 2 h_j)^3) over particles, and of n times their offsets. */
+/* The crowd: sums over particles of n = max(0, 1 - (r / 2 h_j)^3), and of n times their offsets. */
 typedef struct
 {
   realv count, offset[3];
 } mcor_crowd;
 
-/* Finds c(s) for each s of `levels`, the largest first, from the particles within `reach` h_j,
- * and the crowd if it is not NULL. Each lane has its own reach, so its sum does not depend on
- * the others. */
+/* Finds c[l], the weight sum c(s) with factor s[l], for `levels` factors, the largest first, from
+ * the particles within `reach` h_j, and the crowd unless it is NULL. Each lane has its own reach,
+ * so its sum does not depend on the other lanes. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)
@@ -153,7 +154,7 @@ __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   }
 }
 
-/* Rises smoothly from 0 to 1 between two values. */
+/* Returns a value that rises smoothly from 0 at x = from to 1 at x = to. */
 realv mcor_widen_ramp(realv x, real from, real to)
 {
   const realv t = clamp((x - from) / (to - from), (realv)0, (realv)1);
@@ -161,8 +162,9 @@ realv mcor_widen_ramp(realv x, real from, real to)
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factor of
- * particles for which the widest one suffices, or 1 is known. For the others, writes 1 to
- * `wanted`, and their share in place of the factor. Writes the least weight sum of each. */
+ * particles that are inside with the widest factor, or whose factor is 1 anyway. For the others,
+ * writes 1 to `wanted`, and their taper in place of the factor. Writes the least weight sum of all
+ * particles. */
 __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
   __global real* factor, __global real* least, __global int* wanted)
@@ -175,7 +177,7 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
     { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
     grid.unit * inv_h, min(MCOR_LANES, particle_count - begin), plane
   };
-  /* Terms are not negative, so inside of the fluid a part of the particles suffices. */
+  /* Terms are not negative, so inside the fluid some of the particles suffice. */
   const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
                                  : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
   mcor_crowd crowd = { 1, { 0, 0, 0 } };
@@ -199,8 +201,8 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   }
 }
 
-/* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their
- * factors, and to `outside` whether the iso value is above their sums with the widest one. */
+/* One work-item = MCOR_LANES listed particles. Reads their tapers and least sums. Writes their
+ * factors, and to `outside` whether their sums with the widest factor are below the iso value. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, __global const real* least, __global const real* sizes, const int listed,
   __global const int* list, __global real* factor, __global int* outside)
@@ -265,7 +267,7 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
 }
 
 /* Whether all particles that may reach the query's box have the widest factor. Nearly all groups
- * are that deep inside, so their means are known. */
+ * are so deep inside that this is true; their means are then known. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -284,9 +286,10 @@ bool mcor_widen_is_plain(
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, and the least sums in `limited`.
- * Writes the lower of each factor and the mean there; a share of the way from 1 to the mean where
- * no length gave a particle in a corner its least sum. The mean is the widest factor less a mean of what
- * factors lack, so it is exact if none lacks anything. */
+ * Writes to `limited` the lower of each factor and the mean of factors at the particle. If the
+ * factor is 1, it becomes 1 plus a share of mean - 1, which is 0 outside of corners. The mean is
+ * the widest factor less the mean of (widest - factor), so it is exact if all factors are the
+ * widest. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
   const real margin, __global const real* factor, __global real* limited)
 {
@@ -340,8 +343,8 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
- * mcor_widen_solve wrote for these. Writes whether c(1) is at least the iso value, and c of the
- * factor is below it. */
+ * mcor_widen_solve wrote for these. Writes whether c(1) is at least the iso value while c(factor)
+ * is below it. */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)

@@ -17,7 +17,8 @@ bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
     node.y <= last_y && node.z + size > first_z && node.z <= last_z;
 }
 
-/* One work-item = one cube, 32 << level nodes long. Makes it void if it has no node of the box. */
+/* One work-item = one cube, 32 << level nodes long. Makes the cube void if it has no node of the
+ * box's cells. */
 __kernel void mcor_box_void_cubes(const int count, __global const mcor_rung* rungs,
   __global const ulong* keys, MCOR_BOX_PARAMS, __global uchar* states)
 {
@@ -30,8 +31,8 @@ __kernel void mcor_box_void_cubes(const int count, __global const mcor_rung* run
   }
 }
 
-/* One work-item = one brick of a block. Makes it void, and without a slot, if it has no node of
- * the box. */
+/* One work-item = one brick of a block. If the brick has no node of the box's cells, makes it void,
+ * and removes its request for a slot. */
 __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_rung* rungs,
   __global const ulong* block_keys, MCOR_BOX_PARAMS, __global uchar* states,
   __global uint* brick_bits)
@@ -45,9 +46,9 @@ __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_ru
   }
 }
 
-/* One work-item = one brick, of any level. Writes which of its cells are in the box, or in the
- * ring around it. The ring has the cells that would be in the box if they were so many cells
- * larger on all sides. */
+/* One work-item = one brick, of any level. Writes which of its cells are in the box, or in the ring
+ * around it. The ring has the cells that would be in the box if they were larger by `ring` of their
+ * edges on all sides. */
 __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
   const int ring, __global const ulong* cells, __global ulong* clipped)
 {

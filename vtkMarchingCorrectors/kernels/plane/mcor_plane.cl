@@ -2,18 +2,18 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Marching squares, on the lowest layer of the lattice's cells: a square is the lower face of a
- * cell. Its nodes above have the signs of the nodes in the plane, so all code that finds cells
- * and nodes works for squares.
+ * cell. The cell's upper nodes have the signs of the nodes in the plane, so all code that finds
+ * cells and nodes works for squares, too.
  *
- * A square's sides are halved where a finer square touches them, so it is a polygon of 4 to 8
- * nodes. Each crossed piece of a side has one vertex, which the squares on both sides share. In
- * each square, one line begins or ends there. */
+ * A square's side is halved if a finer square touches it, so a square is a polygon of 4 to 8 nodes.
+ * Each crossed side or half has one vertex, which the squares on both sides share. In each of these
+ * squares, one line begins or ends at the vertex. */
 
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
 
-/* One work-item = one brick. Copies the signs of nodes in the plane to the nodes above. Only the
- * next layer of these is valid, which leaves one layer of cells. */
+/* One work-item = one brick. Copies the signs of nodes in the plane to the layers above. Only the
+ * first of these layers can be valid, so that only one layer of cells can be used. */
 __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __global ulong* valid)
 {
   MCOR_ITEM(slot, slot < brick_count);
@@ -28,8 +28,8 @@ __kernel void mcor_plane_squares(const int count, __global ulong* cells)
   cells[i] &= MCOR_PLANE_MASK;
 }
 
-/* The nodes around a square, in the order that keeps the square on the left. Bits as in
- * mcor_adaptive_cell.h. */
+/* The nodes around a square, in the order that keeps the square on the left. Nodes are numbered as
+ * in mcor_adaptive_cell.h. */
 typedef struct
 {
   int node[8], count;
@@ -50,7 +50,7 @@ mcor_plane_ring mcor_plane_ring_of(uint split)
   return ring;
 }
 
-/* Whether side i goes from above to below, and whether its ends are on different sides. */
+/* Return whether side i goes from above to below, and whether it is crossed. */
 bool mcor_plane_falls(const mcor_plane_ring* ring, uint above, int i)
 {
   return (above >> ring->node[i] & 1) && !(above >> ring->node[(i + 1) % ring->count] & 1);
@@ -60,14 +60,14 @@ bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
   return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
 }
 
-/* Returns axis and lower node of side i, as a slot of mcor_adaptive_cell.h. */
+/* Returns side i as a slot of mcor_adaptive_cell.h. */
 int mcor_plane_side(const mcor_plane_ring* ring, int i)
 {
   return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);
 }
 
-/* Marks the sides that a square beside finer ones uses; a side with squares on both sides gets
- * all quadrants, as in space. Returns the number of its lines. */
+/* Marks the sides that a square beside finer squares uses. A side that the squares on both sides
+ * use gets all quadrants, as in space. Returns the number of the square's lines. */
 int mcor_plane_mark(
   const mcor_leaf* leaf, int cell, mcor_adaptive_nodes_of nodes, __global uint* quadrants)
 {
@@ -83,14 +83,14 @@ int mcor_plane_mark(
     const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
     const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, nodes.split, axis, lower);
     const int across = axis == 0 ? lower / 3 : lower % 3;
-    /* quadrants on the side where the square is */
+    /* the quadrants where the square is */
     mcor_leaf_mark_edge(&edge, across > 0 ? 10 : 5, quadrants);
   }
   return lines;
 }
 
-/* Returns the vertex of the edge along an axis from node (x, y) of a brick, or of a brick beyond
- * it. upper: slots of its upper neighbours. */
+/* Returns the vertex of the edge along an axis from node (x, y) of a brick; x and y may be 4, in
+ * the next brick. upper: slots of the brick's upper neighbours. */
 int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int x, int y, int axis)
 {
@@ -100,11 +100,11 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   return vertex_base[owner] + mcor_edge_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
 }
 
-/* Writes the lines of a square, with above on their left, as triangles whose last two corners are
- * the same. A line begins where the border of the square goes from above to below, run through
- * with the square on the left. On an ambiguous square it ends at the crossing before that, or at
- * the one after it if the nodes above are joined. leaf: its leaf, unless it is plain. upper: see
- * mcor_plane_vertex. Returns the number of lines. */
+/* Writes the lines of a square as triangles whose last two corners are the same, and returns their
+ * number. Nodes above are on a line's left. A line begins where the square's border, with the
+ * square on its left, goes from above to below. It ends at the crossing before this, or, if the
+ * nodes above are joined, at the crossing after it. leaf: the square's leaf; not read for a plain
+ * square. upper: see mcor_plane_vertex. */
 MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mcor_leaf* leaf,
   int cell, bool joined, __global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, __global int* to)

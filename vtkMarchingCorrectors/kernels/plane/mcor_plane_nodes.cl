@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes in the plane. Each node has the bits that mcor_node_values
- * would give it. */
+/* Evaluation of the field at nodes in the plane. The values have the same bits as those of
+ * mcor_node_values. */
 
-/* Work-items that share a brick's 16 nodes; nodes of one along y. */
+/* Number of work-items that share a brick's 16 nodes, and of a work-item's rows of nodes along
+ * x. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 
-/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. Evaluates them if they
- * are needed. Writes their values and weights, also to the nodes above them, see
+/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. If they are needed,
+ * evaluates them, and writes their values and weights, also to the nodes above them, see
  * mcor_plane_spread. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,

@@ -3,18 +3,18 @@
 
 /* Other particle arrays at the surface's points [III-D.4]. */
 
-/* Least sum of weights that can be divided by: a lower one has no digits. */
+/* A mean needs a sum of weights above this; a lower sum has no exact digits. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
 /* At most MCOR_ATTRIBUTE_LIMIT sorted arrays, `stride` elements long, one after the other. Their
- * means at a point lie one after the other, too. */
+ * means at a point are stored one after the other, too. */
 #define MCOR_ATTRIBUTE_PARAMS                                                                      \
   const int attribute_count, const int stride, __global const real *attributes, __global real *means
 
 #define MCOR_ATTRIBUTE_ARGS attribute_count, stride, attributes, means
 
 /* Writes the Shepard means of the attributes at a group of points. iso: as for mcor_evaluate.
- * evaluated: mcor_evaluate was last called for these points. */
+ * evaluated: the last call of mcor_evaluate was for these points. */
 MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query,
   const mcor_points* points, real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
 {

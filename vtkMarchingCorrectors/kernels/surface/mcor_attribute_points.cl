@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Attributes at points; their functions are in mcor_attribute.cl. */
+/* Attributes at points; the functions for them are in mcor_attribute.cl. */
 
 /* One work-item = one group of points. Writes the means there. */
 __kernel void mcor_attribute_means(
@@ -11,9 +11,10 @@ __kernel void mcor_attribute_means(
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* Updates each point's nearest fluid particle from the particles that reach it, or from all
- * within the query's radius and maybe more. Particles that do not reach it may be too far from
- * the query's origin for exact positions, so differences are made first. */
+/* Updates each point's nearest fluid particle: with radius < 0 from the particles that reach the
+ * point, else from all particles within the query's radius, and maybe others. Particles that do not
+ * reach it may be too far from the query's origin for exact positions, so fixed-point differences
+ * are used. */
 MCOR_ONE_COPY void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
@@ -40,10 +41,10 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
   }
 }
 
-/* One work-item = one group of points. Writes the nearest fluid particle. It first looks among
- * particles that reach the points; if smoothing lengths differ, particles that do not reach them
- * may be nearer. With a very low iso value of the weight, no particle may reach a point; one
- * then reaches an end of its lattice edge. */
+/* One work-item = one group of points. Writes each point's nearest fluid particle. First it looks
+ * among particles that reach the points; if smoothing lengths differ, particles that do not reach
+ * them may be nearer. With a very low iso value of the weight, it may be that no particle reaches a
+ * point, but one reaches an end of its lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)
 {

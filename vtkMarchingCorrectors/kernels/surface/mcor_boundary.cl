@@ -6,12 +6,12 @@
  *   S. Marrone, A. Colagrossi, D. Le Touze, G. Graziani: Fast free-surface detection and level-set
  *   function definition in SPH solvers. Journal of Computational Physics 229, 2010.
  *
- * It is the smallest eigenvalue of the inverse of the renormalisation matrix, which is
+ * It is the smallest eigenvalue of the symmetric part of the inverse of the renormalisation matrix.
+ * This inverse is
  *
  *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
  *
- * in its symmetric part: about the identity where particles surround x, singular where they do
- * not. */
+ * It is about the identity where particles surround x, and singular where they do not. */
 
 /* A symmetric matrix. */
 typedef struct
@@ -24,7 +24,8 @@ realv mcor_dot(const realv a[3], const realv b[3])
   return MCOR_FMA(a[2], b[2], MCOR_FMA(a[1], b[1], a[0] * b[0]));
 }
 
-/* Finds the gradient g of W / norm * h^3, and its derivative d along the unit vector e, which is the Hessian times e. */
+/* Finds the gradient g of W / norm * h^3, and the derivative d of g along the unit vector e, which
+ * is the Hessian times e. */
 void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[3], realv d[3])
 {
 #if MCOR_TENSOR
@@ -57,11 +58,11 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
 #endif
 }
 
-/* Least element of M that is not taken as 0; most are about 1. No product is then a denormal
- * number, which some devices do not know. */
+/* Elements of M, mostly about 1, count as 0 below this, so that no product is a denormal number,
+ * which some devices do not have. */
 #define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
 
-/* Makes Jacobi's rotation in the plane of axes p and q, after which pq is 0. r is the third
+/* Makes Jacobi's rotation in the plane of axes p and q, which turns pq into 0. r is the third
  * axis. */
 void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
@@ -84,8 +85,9 @@ void mcor_eigen_rotate(
   }
 }
 
-/* Finds the smallest eigenvalue of a symmetric matrix, and its eigenvector e. It never divides
- * by 0, so any matrix will do; e is some eigenvector if eigenvalues coincide. */
+/* Returns the smallest eigenvalue of a symmetric matrix, and finds its eigenvector e. It never
+ * divides by 0, so any matrix is allowed. If eigenvalues coincide, e is one of their
+ * eigenvectors. */
 realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
 {
   mcor_symmetric a = *m;
@@ -113,9 +115,9 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
     (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
 }
 
-/* Finds the eigenvalue at all points and, if asked for, its gradient, which is e . (dM/dx_k) e, with e its unit
- * eigenvector. The gradient is useless where the two smallest coincide. plane: in two dimensions, uses the
- * matrix of x and y. */
+/* Finds the eigenvalue at all points and, if wanted, its gradient, which is e . (dM/dx_k) e with
+ * the unit eigenvector e. The gradient is useless where the two smallest eigenvalues coincide.
+ * plane: in two dimensions, uses only the matrix's elements of x and y. */
 void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, bool plane, bool want_gradient, mcor_quantity* boundary)
 {
@@ -139,7 +141,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
       m.zx = MCOR_FMA(-half_v, MCOR_FMA(u[2], g[0], u[0] * g[2]), m.zx);
     }
   }
-  if (plane) /* keeps the third axis out: the smallest eigenvalue must be one of the plane's two */
+  if (plane) /* the smallest eigenvalue must be one of the plane's two, not the third axis's */
   {
     m.zz = (real)4 * (fabs(m.xx) + fabs(m.yy) + (real)1);
   }

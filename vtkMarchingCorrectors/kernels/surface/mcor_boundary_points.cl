@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The boundary eigenvalue at points; its functions are in mcor_boundary.cl. */
+/* The boundary eigenvalue at points; the functions for it are in mcor_boundary.cl. */
 
 /* One work-item = one group of points. Writes their boundary eigenvalues. */
 __kernel void mcor_boundary_points(

@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES
- * edges at a time. Vertices of a compact contour that are not on an edge move along a line, one
- * cube of the gradient's direction where they start. */
+/* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES edges
+ * at a time. Vertices of a compact contour that are not on an edge move along a line instead. It is
+ * one cube long, in the gradient's direction at the vertex's start. */
 
-/* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value
- * or a NaN, because compilers that relax arithmetic need not honour them. */
+/* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value or a
+ * NaN, because compilers that relax arithmetic may treat them wrongly. */
 realv mcor_correct_ratio(realv x, realv y)
 {
   return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
@@ -24,7 +24,8 @@ realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
   return d;
 }
 
-/* Returns the root near t of the cubic through the values at 0, 1 and t with the slope at t. */
+/* Returns the root near t of the cubic that has the given values at 0, 1 and t, and the slope at
+ * t. */
 realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 {
   const realv a = ((v0 - v) / t + slope) / t;                   /* (p(0) - tangent(0)) / t^2 */
@@ -34,9 +35,9 @@ realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
   return t + mcor_correct_root(v, slope, c2, c3);
 }
 
-/* Returns the root near t of the cubic through the values and slopes at t and at the start of
- * the last step. last: distance of that start from t. After a short step, or from a void, the
- * slope at t alone is used. */
+/* Returns the root near t of the cubic that has the given values and slopes at t and at t + last,
+ * the start of the last step. After a short step, or a step from a void, uses only the value and
+ * slope at t. */
 realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
 {
   const fixv two = fabs(last) > (real)1e-3f && fabs(last_v) < (real)1e20f;
@@ -50,15 +51,15 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
  * from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
-/* Limit of that accuracy by the rounding of a sum, relative to its value. A Shepard mean's terms
- * against the iso value vanish at the surface. */
+/* Limits MCOR_EDGE_ERROR: the rounding error of a sum, relative to the iso value. It is 0 for a
+ * Shepard mean, whose sum of terms against the iso value vanishes at the surface. */
 #define MCOR_SUM_ROUNDING (MCOR_FIELD == MCOR_SHEPARD ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
 /* A bracket of this length is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* Edges or lines: vectors from end to end, and values at both ends, against iso. Lines: start,
- * from the node, and slope there, in place of the value at the other end. */
+/* Edges or lines: vectors a from end to end, and values v less iso at both ends. A line has a
+ * start, relative to the node, and the slope there; it has no v1. */
 typedef struct
 {
   bool lines;
@@ -66,10 +67,10 @@ typedef struct
   realv x, y, z, slope;
 } mcor_edges;
 
-/* Most vertices are this close to their place by linear interpolation, in cubes. */
+/* Most vertices are this close to their linear interpolation, in cubes. */
 #define MCOR_EDGE_SLACK ((real)0.15f)
 
-/* Most vertices move this far on a line, in cubes. */
+/* Most vertices move no further than this on a line, in cubes. */
 #define MCOR_LINE_SLACK ((real)0.3f)
 
 /* Loads group number `group` of edges: their lower nodes and their ends. */
@@ -110,7 +111,8 @@ realv mcor_edges_slope(const mcor_edges* e, const mcor_field_at* at)
   return g[0] * e->ax + g[1] * e->ay + g[2] * e->az;
 }
 
-/* Evaluates at the starts of lines, and makes them along the gradient, towards the iso value. */
+/* Evaluates the field at the starts of lines, and makes the lines: along the gradient, towards the
+ * iso value. */
 void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int group,
   __global const int4* node, __global const real4* offset, real iso, mcor_edges* lines,
   mcor_points* points, mcor_query* query, mcor_reach* reach, mcor_field_at* at)
@@ -137,15 +139,15 @@ void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int grou
   lines->slope = mcor_edges_slope(lines, at);
 }
 
-/* Returns how close to the iso value a vertex must be, where a small residual alone may be far
- * from the surface. */
+/* Returns how close to the iso value a vertex must be, because with a small gradient it may
+ * otherwise be far from the surface. */
 realv mcor_correct_near(realv slope, real iso)
 {
   return fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso)));
 }
 
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or has
- * made `limit` steps. evaluations: counts the evaluations that each needed. */
+ * made `limit` steps. evaluations: the number of evaluations of each vertex. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations)
@@ -178,9 +180,9 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    /* The sum of the terms against the iso value. It differs in sign only at a mean's pole, where a
-     * kernel with negative lobes lets the weight pass 0. Between nodes of a positive weight, it is
-     * this quantity that passes 0. */
+    /* side: the sign of the sum of terms against the iso value, which passes 0 between nodes of a
+     * positive weight. It differs from the sign of `value` only at a mean's pole, where a kernel
+     * with negative lobes lets the weight pass 0. */
     const realv side =
       MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
@@ -192,8 +194,8 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     last_t = *t;
     last_value = value;
     last_slope = slope;
-    /* Newton may creep if the field has a kink or no slope: from the 6th step on, every other
-     * step halves the bracket. */
+    /* Newton's steps may be tiny if the field has a kink or no slope, so from the 6th step on,
+     * every other step halves the bracket. */
     const bool newton = i < 5 || (i & 1);
     next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
     active = active && next != *t;
@@ -208,10 +210,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-/* One work-item = one group of vertices. Reads edges and end values (against iso), or, with
- * `lines`, starts (offset). Writes position (node, offset), linear less final position along the
- * edge, value, gradient and trimming weight, number of evaluations, and attributes. On lines,
- * linear becomes 1 where the surface is not reached. limit 0: no correction (preview). */
+/* One work-item = one group of vertices. Reads edges and the values less iso at their ends, or,
+ * with `lines`, starts (offset). Writes the vertices' offsets; linear: linear less final position
+ * along the edge; value, gradient and trimming weight; number of evaluations; attributes. On lines,
+ * linear becomes 1 if the surface is not reached. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

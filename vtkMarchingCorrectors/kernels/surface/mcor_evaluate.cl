@@ -15,7 +15,7 @@ typedef struct
   mcor_quantity field, weight, fluid;
 } mcor_field_at;
 
-/* Adds m times a kernel's value k, and its gradient slope * along. */
+/* Adds to a sum m times a kernel's value k, and m times its gradient slope * along. */
 void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor_quantity* sum)
 {
   const realv ms = m * slope;
@@ -25,7 +25,7 @@ void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor
   sum->gradient[2] = MCOR_FMA(ms, along[2], sum->gradient[2]);
 }
 
-/* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
+/* Evaluates the field at all points. iso: relative to A0 for the Shepard mean. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, real iso, mcor_field_at* at)
 {
@@ -45,7 +45,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       }
       for (int i = begin; i < end; ++i)
       {
-        /* Made again: keeping it takes longer. */
+        /* d is computed again, because keeping it takes longer. */
         MCOR_REACH_FROM(at_node, points, reach, i, d);
         const realv k =
           mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
@@ -61,8 +61,8 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
     }
   }
 #if MCOR_FIELD == MCOR_SHEPARD
-  /* A void between fluid particles, kept valid by solids, has no value. A huge one makes the
-   * iteration look for the void's border. */
+  /* A void between fluid particles, which solids keep valid, has no value. The huge value makes the
+   * iteration search for the void's border. */
   const fixv none = fabs(w.value) < (real)1e-12f;
   const realv inv_w = (real)1 / (none ? (realv)1 : w.value);
   at->field.value = none ? (realv)1e30f : s.value * inv_w;
@@ -78,9 +78,9 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   at->fluid = w;
 }
 
-/* Writes the points of a group: attributes, if there are any, position, value, gradient and trimming
- * weight. With solids, the fluid's part of the weight goes with the gradient. at: made by
- * mcor_evaluate, which was last called for these points. */
+/* Writes offset, value, gradient, trimming weight and any attributes of a group's points. With
+ * solids, the gradient's fourth number is the fluid's part of the weight. at: from the last call of
+ * mcor_evaluate, which was for these points. */
 MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, mcor_query* query,
   const mcor_points* points, real iso, mcor_reach* reach, const mcor_field_at* at,
   __global real4* offset, __global real* value, __global real4* gradient, __global real* weight,

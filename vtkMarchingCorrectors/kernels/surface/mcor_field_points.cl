@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The field at points; its functions are in mcor_evaluate.cl. */
+/* The field at points; the functions for it are in mcor_evaluate.cl. */
 
-/* One work-item = one group of points that no edge has: of caps, and where the field decides on the
- * topology. Writes value, gradient, weight and attributes there. */
+/* One work-item = one group of points that are not on lattice edges: points of caps, and points
+ * where the field decides the topology. Writes value, gradient, weight and attributes at each. */
 __kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real4* offset,
   __global real* value, __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
 {

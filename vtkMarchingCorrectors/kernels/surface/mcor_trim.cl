@@ -2,13 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
- * threshold. "Weight" also stands for the boundary eigenvalue and for the margin here. A cut
- * vertex belongs to a mesh edge, whose key is (lower vertex << 32 | higher vertex); the two
- * triangles there share it. */
+ * threshold. "Weight" here also means the boundary eigenvalue or the margin. A cut vertex belongs
+ * to a mesh edge, whose key is (lower vertex << 32 | higher vertex); the two triangles at this edge
+ * share the vertex. */
 
-/* Returns bits 0..2 of the corners above the threshold. A corner at the threshold is outside,
- * for every triangle around it: the rest is then a manifold there, too, and a triangle that
- * merely touches the threshold leaves nothing [Fig. 3 b]. */
+/* Returns which corners are above the threshold, bits 0 to 2. A corner at the threshold is outside
+ * for every triangle around it, so that the trimmed surface is a manifold there, too, and nothing
+ * remains of a triangle that merely touches the threshold [Fig. 3 b]. */
 int mcor_trim_case(__global const int* t, __global const real* weight, const real threshold)
 {
   int inside = 0;
@@ -19,8 +19,8 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
   return inside;
 }
 
-/* One work-item = one batch of triangles. Writes how many triangles remain of them, and the
- * number of their cut edges. */
+/* One work-item = one batch of triangles. Writes how many triangles remain of the batch, and how
+ * often its triangles' edges are cut. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
@@ -70,8 +70,8 @@ __kernel void mcor_trim_edges(const int triangle_count, __global const int* tria
   }
 }
 
-/* Writes the rest of a cut triangle [Fig. 3 c, d, e], whose cut edges have these vertices; a
- * quad is split. Returns where the next triangle goes. */
+/* Writes the rest of a cut triangle [Fig. 3 c, d, e]; a quad is split. cut_next, cut_last: the
+ * vertices of its cut edges. Returns where the next triangle goes. */
 __global int* mcor_trim_cut(
   __global const int* t, int inside, int cut_next, int cut_last, __global int* to)
 {

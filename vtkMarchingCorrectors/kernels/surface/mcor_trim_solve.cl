@@ -3,7 +3,7 @@
 
 /* Trimming [III-D.3]: the quantity by which a vertex is trimmed, and the places of cut vertices.
  * Cut vertices move from linear cuts to where the field equals the iso value and the quantity
- * its threshold. */
+ * equals its threshold. */
 
 /* Least weight of the fluid itself for a Shepard mean at a vertex. */
 #define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
@@ -14,10 +14,10 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes the quantity by which it is trimmed. This is `quantity`;
- * or, if the fluid needs a share of the weight, the smaller of its distances inside of that
- * limit and of the threshold of `quantity`, and the threshold is then 0. A vertex without a mean
- * is always outside: at the threshold, if it was inside. */
+/* One work-item = one vertex. Writes the quantity by which it is trimmed. This is `quantity`,
+ * unless the fluid needs a share of the weight: then it is the smaller of quantity - threshold and
+ * the excess of the fluid's weight over its share (for the weight sum, this excess alone), and is
+ * trimmed at 0. A vertex without a mean is always outside: at most at the threshold. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -34,18 +34,19 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   margin[i] = m;
 }
 
-/* Returns where a quantity that is wa and wb at the ends of an edge, and linear between, equals
- * w; kept off the ends. */
+/* Returns where on an edge a linear quantity, wa and wb at the ends, equals w; but not too close to
+ * the ends. */
 real mcor_trim_fraction(real wa, real wb, real w)
 {
   return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
 }
 
-/* One work-item = one cut vertex. Writes its position, as node of the nearer end and offset:
- * where the weight, taken as linear along the mesh edge, equals the threshold, or the fluid's
- * weight the least for a mean. It keeps off the ends, because cut vertices of several edges
- * would meet there. Its bits do not depend on the order of vertices. In place of its gradient,
- * writes the vector to the end inside, and whether the fluid ends. */
+/* One work-item = one cut vertex. Writes its position, as the nearer end's node and an offset:
+ * where the weight, taken as linear along the mesh edge, equals the threshold, or, if nearer to the
+ * end inside, the fluid's weight equals the least for a mean. It stays away from the ends, because
+ * cut vertices of several edges would meet there. Its bits do not depend on the order of vertices.
+ * In place of its gradient, writes the vector to the end inside, and whether the fluid's weight
+ * decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -72,27 +73,27 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int4 n = node[a] << up, m = node[b] << up_b, d = m - n;
   const real4 from = offset[a] * (real)(1 << up), to = offset[b] * (real)(1 << up_b);
   const real4 along = to + (real4)(d.x, d.y, d.z, 0) - from;
-  const bool is_near = s <= (real)0.5f; /* from the nearer end: cuts near it stay apart */
+  const bool is_near = s <= (real)0.5f; /* from the nearer end, so cuts near it stay apart */
   const int4 begin = is_near ? n : m;
   node[vertex_count + i] = (int4)(begin.x, begin.y, begin.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = is_near ? from + s * along : to - ((real)1 - s) * along;
   gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 
-/* Most that a cut vertex may move from the linear cut, and in one iteration, in cubes. */
+/* Most that a cut vertex may move, in cubes: from the linear cut, and in one iteration. */
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
-/* Most steps back to where there is a mean. Each goes half of the way left to the edge's end,
- * where cuts would meet. */
+/* Most steps back to where the Shepard mean exists. Each step goes half of the remaining way to the
+ * edge's end, where cuts would meet. */
 #define MCOR_TRIM_RETREATS 12
 
 /* Greatest |w - threshold| of a cut vertex. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
-/* Limits of trimming: the threshold of the weight or the boundary eigenvalue; the share of the
- * weight that the fluid needs, if above 0; and the fluid's own weight at points on an edge with
- * an end that lacks fluid. Most steps, and the greatest |field - iso|, of a cut vertex. */
+/* Limits of trimming. threshold: of the weight or of the boundary eigenvalue; fluid_share: the
+ * share of the weight that the fluid needs, if above 0; lacking: points that the fluid's own weight
+ * may limit. steps: most steps of a cut vertex; tolerance: its greatest |field - iso|. */
 typedef struct
 {
   real iso, tolerance, threshold, fluid_share;
@@ -112,8 +113,8 @@ void mcor_quantity_choose(fixv lanes, const mcor_quantity* other, mcor_quantity*
   }
 }
 
-/* Finds how far all points, where the field was evaluated, are inside of the nearest limit. A free
- * surface has no other than the fluid's share. */
+/* Finds how far the points of the last evaluation are inside the nearest limit. For a weight sum,
+ * the fluid's share is the only limit if it is above 0. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
   mcor_quantity* bound)
@@ -142,7 +143,7 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   }
 }
 
-/* Divides a quantity by the length of its gradient, whatever the unit. Returns the lanes without a
+/* Divides a quantity by the length of its gradient, in any unit. Returns the lanes without a
  * gradient. */
 fixv mcor_trim_normalize(mcor_quantity* q)
 {
@@ -165,9 +166,9 @@ fixv mcor_trim_normalize(mcor_quantity* q)
   return none;
 }
 
-/* Finds Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J
- * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes
- * without a step, because the gradients are parallel. */
+/* Finds Newton's step of least norm towards both field = iso and weight = threshold: -J^T (J
+ * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes without
+ * a step, because the gradients are parallel. */
 fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 {
   const fixv flat = mcor_trim_normalize(&f) || mcor_trim_normalize(&w);
@@ -190,8 +191,8 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
   return tangent;
 }
 
-/* Moves points whose linear cut has no mean towards the edge's end inside, until there is one.
- * Returns which points were moved. */
+/* Moves points whose linear cut has no Shepard mean towards the edge's end inside, until they have
+ * one. Returns which points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -219,7 +220,7 @@ fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim
 }
 
 /* Moves the sought points of a group to where field = iso and weight = threshold. Returns the
- * points for which that fails near `start`; they may be anywhere. */
+ * points for which this fails near `start`; their positions are then arbitrary. */
 fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
   const realv start[3], fixv sought, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -253,7 +254,7 @@ fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* 
   }
 }
 
-/* Moves some points of a group back to `start`. */
+/* Moves the points of `back` to `start`, and evaluates the group again. */
 void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const realv start[3],
   fixv back, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -263,10 +264,10 @@ void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const 
   mcor_evaluate(grid, query, reach, points, iso, at);
 }
 
-/* Moves a group of points to where field = iso and weight = threshold. If that fails nearby, a
- * point goes back to its start. If it has no mean there, it goes on to where there is one, and
- * is sought once more from there: the field has no slope to follow where it has hardly any
- * weight. Returns the points that stay. */
+/* Moves a group of points to where field = iso and weight = threshold. If this fails nearby, a
+ * point goes back to its start. If it has no Shepard mean there, it moves on to where it has one,
+ * and seeks once more from there, because where the weight is nearly 0, the field has no slope to
+ * follow. Returns the points that failed in the end. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
   mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -293,9 +294,9 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
 }
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
- * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 2
- * instead of 1 if the linear cut stays, because the two surfaces are tangent or too far away, or
- * the boundary eigenvalue has no gradient. */
+ * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 1, or 2
+ * if this fails, because the two surfaces are tangent or too far away, or the boundary eigenvalue
+ * has no gradient. */
 __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
   const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
   const int plane, __global real4* offset, __global real* value, __global real4* gradient,

@@ -20,8 +20,8 @@ __kernel void mcor_block_all(
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one cube, 32 << level nodes long: number index[i], or i if that is NULL. Reads
- * the particles that reach it. Writes its state. */
+/* One work-item = one cube, 32 << level nodes long: cube index[i], or cube i if `index` is NULL.
+ * Reads the particles that reach it. Writes its state. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
   __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS,
   __global uchar* states)

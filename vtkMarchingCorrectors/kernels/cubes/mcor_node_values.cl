@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values and sides of nodes; their functions are in mcor_node.cl. */
+/* Values and sides of nodes; the functions for them are in mcor_node.cl. */
 
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. If they are
  * needed, reads the particles that reach them, and writes their values and weights. */

@@ -47,8 +47,8 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
-/* Required accuracy along the edge. With a small gradient, a small residual alone may be far
- * from the surface. */
+/* Required accuracy along the edge. A small residual alone is not enough: with a small gradient, it
+ * also occurs far from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
 /* Limits MCOR_EDGE_ERROR: the rounding error of a sum, relative to the iso value. It is 0 for a

@@ -126,7 +126,7 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   }
 }
 
-/* One work-item = one triangle corner. Writes 1 to its vertex. */
+/* One work-item = one triangle corner. Marks its vertex as used. */
 __kernel void mcor_trim_used(
   const int triangle_count, __global const int* triangles, __global int* used)
 {

@@ -66,7 +66,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
     s = lacks ? t : s;
   }
 #endif
-  /* Lengths are in cells of the lower level, which the lower vertex has. */
+  /* Lengths are in cells of the lower of both levels, the level of vertex `low`. */
   const int level = node[low].w >> MCOR_LEVEL_SHIFT;
   const int up = (node[a].w >> MCOR_LEVEL_SHIFT) - level;
   const int up_b = (node[b].w >> MCOR_LEVEL_SHIFT) - level;

@@ -1,16 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours. Marching leaves slivers where the surface passes close by a node. Vertices
- * of one node that edges join are therefore merged to their mean [Moore and Warren], which then
- * moves along the gradient onto the surface. Triangles with two equal corners vanish.
+/* Compact contours. Where the surface passes close to a node, Marching Cubes makes slivers.
+ * Therefore the vertices of one node that are joined by edges are merged into their mean [Moore and
+ * Warren], which then moves along the gradient onto the surface. Triangles with two equal corners
+ * vanish.
  *
- * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart
- * again; bunches allow this at any time. It may turn triangles beside them over, so there are
- * two rounds. Vertices of slivers that are left then move (mcor_compact_face.c).
+ * The vertices of one merged vertex are a bunch. If it does not reach the surface, or turns a
+ * triangle over, its bunch is taken apart again, which is always possible. This may turn over
+ * triangles beside it, so this is done in two rounds. Then the vertices of the remaining slivers
+ * move (mcor_compact_face.c).
  *
- * Vertices that stay, merged ones, and those of bunches taken apart are appended to the mesh one
- * after the other. At the end all are sorted by node, because keys need this order. */
+ * Merged vertices, and vertices that moved, are appended to the mesh. At the end all vertices are
+ * sorted by node, because keys need this order. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -89,7 +91,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
 }
 
 /* Vertices that are being appended to the mesh. They are corrected on lines that begin at `starts`,
- * or at the means of bunches if there are no starts. */
+ * or, if this is NULL, at the means of bunches. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
@@ -129,8 +131,8 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Notes that `count` vertices of the order are in the mesh from `at` on, and the first one of each
- * level. */
+/* Notes that the first `count` vertices of the order are in the mesh from `at` on, and where each
+ * level begins. */
 static void mcor_note_places(mcor_bunches* bunches, int at, int count, cl_int level_first[])
 {
   const int levels = bunches->context->lattice.levels;
@@ -168,7 +170,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches, const double (*starts)[3], 
   MCOR_THEN(
     status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL));
   MCOR_THEN(status, mcor_extend_vertices(context, (int)o, (int)(o + n)));
-  for (size_t i = 0; i < 3; ++i) /* cuts and caps may have no entries so far */
+  for (size_t i = 0; i < 3; ++i) /* arrays may lack entries of cuts and caps */
   {
     const size_t old = o * widths[i], size = of_edges[i]->size;
     MCOR_THEN(
@@ -185,7 +187,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches, const double (*starts)[3], 
   return mcor_launch_correction(context, MCOR_ON_BOUNDARY, true);
 }
 
-/* Makes the merged vertices; the mesh has the others. */
+/* Makes the merged vertices; the mesh has all other vertices. */
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
   mcor_sorted_bunch* sorted = bunches->sorted;
@@ -200,8 +202,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
     }
   }
   qsort(sorted, (size_t)bunches->sorted_count, sizeof *sorted, mcor_compare_bunches);
-  for (int i = 2; i < bunches->sorted_count; ++i) /* a node has keys for two merged vertices; others
-                                                   * stay apart */
+  for (int i = 2; i < bunches->sorted_count; ++i) /* a node has keys for only two merged vertices */
   {
     if (sorted[i].key == sorted[i - 2].key)
     {
@@ -223,7 +224,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   return mcor_add_vertices(bunches, NULL, count);
 }
 
-/* Takes the bad bunches apart, and the bunches that lean on them. */
+/* Takes apart the bad bunches, and the bunches that lean on them. */
 static mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   for (bunches->round = 0; bunches->round < MCOR_COMPACT_ROUNDS; ++bunches->round)
@@ -326,8 +327,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   free(from);
   MCOR_TRY(status);
   mcor_note_places(bunches, 0, march_count, mesh->level_first[0]);
-  const int shift = march_count - bunches->march_count; /* for the vertices of cuts and caps, which
-                                                         * come last */
+  const int shift = march_count - bunches->march_count; /* moves the vertices of cuts and caps */
   for (int i = march_count; i < count; ++i)
   {
     bunches->place[i - shift] = i;
@@ -357,7 +357,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 typedef struct mcor_filing
 {
   const mcor_bunches* bunches;
-  int64_t first[MCOR_SLICES], count[MCOR_SLICES]; /* of the triangles that are left */
+  int64_t first[MCOR_SLICES], count[MCOR_SLICES]; /* triangles that are left */
 } mcor_filing;
 
 /* Moves a slice's remaining triangles to the slice's beginning. */
@@ -412,7 +412,7 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Memory of the host, in one block, and a copy of the vertices. */
+/* Allocates the host's memory in one block, and copies the mesh into it. */
 static mcor_status mcor_begin_bunches(mcor_bunches* b)
 {
   mcor_context* context = b->context;

@@ -3,16 +3,16 @@
 
 /* Bunches of a marched mesh, and which of them may be merged.
  *
- * Merging must leave a manifold with the same pieces. It does if each merged bunch can be drawn
- * together to a point, and if two vertices of the result are joined by one edge at most. That edge
- * replaces edges beside each other and the triangles between them. The second condition is tested
- * for pairs: of two bunches, or of a bunch and a vertex. A bunch is
- *   - sure, if the triangles around it are one closed fan of three or more different vertices, both
- *     with all bunches merged and with no other one merged;
- *   - leaning, if they are so with the sure bunches merged. It is taken apart if a sure bunch beside
- *     it is.
- * Of two bunches that must not both be merged, the first one is. A bunch therefore depends on the
- * cells near it alone, whatever part of the surface a call makes, and may be taken apart at any
+ * Merging must leave a manifold with the same pieces. It does if each merged bunch can be
+ * contracted to a point, and if any two vertices of the result are joined by one edge at most. This
+ * edge replaces edges beside each other and the triangles between them. The second condition is
+ * tested for pairs of two bunches, or of a bunch and a vertex. A bunch is
+ *   - sure, if its triangles are one closed fan of three or more different vertices, both if all
+ *     other bunches are merged and if none is;
+ *   - leaning, if this holds if only sure bunches are merged. If a sure bunch beside it is taken
+ *     apart, so is the leaning bunch.
+ * Of two bunches that must not both be merged, the first is merged. A bunch therefore depends only
+ * on the cells near it, whatever part of the surface a call makes, and may be taken apart at any
  * time. A closed piece that would keep fewer than 8 triangles stays as it is. */
 
 #include "mcor_cap.h"
@@ -25,22 +25,22 @@
 /* Most vertices around a bunch with one fan. */
 #define MCOR_FAN_LIMIT 48
 
-/* Least triangles that a closed piece keeps; least lines. */
+/* A closed piece keeps at least this number of triangles, or lines. */
 #define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 8 : 4)
 
 /* ---- Nodes ---- */
 
-/* Vertices stay that lie on the side of a period or cap. node: the coordinate along the axis. */
+/* Vertices on these sides, of periods or caps, stay. node: the side's coordinate along its axis. */
 typedef struct mcor_frozen
 {
   const mcor_bunches* bunches;
   int count, axis[12], node[12];
 } mcor_frozen;
 
-/* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer
- * by linear interpolation, the lower one if both are. Neighbouring levels differ by one, so the
- * last bit of the level tells them apart. Vertices on a side, or on the border that the node
- * threshold leaves, stay. */
+/* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer by
+ * linear interpolation; if both are equally near, to the lower end. Neighbouring levels differ by
+ * one, so the level's last bit distinguishes them. Vertices on a side, or on the border that the
+ * node threshold leaves, stay. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_frozen* frozen = data;
@@ -114,7 +114,7 @@ static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3
   }
 }
 
-/* Returns the first vertex that this one is known to be joined with. */
+/* Returns the first vertex to which v is joined so far. */
 static int32_t mcor_first_of(int32_t* first, int32_t v)
 {
   while (first[v] != v)
@@ -145,7 +145,7 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    first[v] = first[first[v]]; /* the vertex before is already the bunch's first */
+    first[v] = first[first[v]]; /* first[v] already has its bunch's first vertex */
   }
   for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
   {
@@ -159,8 +159,8 @@ static void mcor_join_vertices(mcor_bunches* bunches)
 
 /* ---- Whether they can be merged ---- */
 
-/* Edges opposite to a bunch in its triangles, in their order around it. For lines: one edge from
- * the vertex before to the one after. */
+/* The edges opposite to a bunch in its triangles, in their order around it. For lines: one edge
+ * from the vertex before the bunch to the vertex behind it. */
 typedef struct mcor_fan
 {
   int count;
@@ -177,8 +177,8 @@ static int mcor_size_of(const mcor_bunches* bunches, int32_t bunch)
   return size;
 }
 
-/* Finds the fan around a bunch. Returns false if the bunch cannot be drawn together, or has no
- * fan. */
+/* Finds the fan around a bunch. Returns false if the bunch cannot be contracted to a point, or has
+ * no fan. */
 static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
   int within = 0; /* triangles with two or three corners in the bunch; lines with two */
@@ -220,8 +220,8 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
   return 2 * mcor_size_of(bunches, bunch) - within == 2;
 }
 
-/* Replaces vertices around a bunch by their bunches, all or the sure ones. Edges within a bunch
- * vanish. */
+/* Replaces vertices around a bunch by their bunches: by all bunches, or only by sure ones. Edges
+ * within a bunch vanish. */
 static void mcor_merge_fan(
   const mcor_bunches* bunches, bool all, const mcor_fan* from, mcor_fan* to)
 {
@@ -240,7 +240,7 @@ static void mcor_merge_fan(
 }
 
 /* Whether the edges form one closed ring through different vertices; for lines, whether the two
- * ends differ. Puts the edges in the order of the ring. */
+ * ends differ. Sorts the edges along the ring. */
 static bool mcor_is_ring(mcor_fan* fan, int corners)
 {
   const int count = fan->count;
@@ -270,8 +270,8 @@ static bool mcor_is_ring(mcor_fan* fan, int corners)
   return count >= 3 && fan->to[count - 1] == fan->from[0];
 }
 
-/* Whether a closed piece would keep enough triangles: counts those of a bunch and of the bunches
- * around it, with all merged. */
+/* Whether a closed piece would keep enough triangles: counts the triangles of a bunch and of the
+ * bunches around it, as if all were merged. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
 {
   const bool lines = bunches->corners == 2;
@@ -308,7 +308,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return triangles >= least;
 }
 
-/* Finds which bunches are sure. Others may be leaning, or clash with a bunch beside them. */
+/* Finds which bunches are sure, and which of the others may be leaning, or clash with a bunch
+ * beside them. */
 static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -329,7 +330,7 @@ static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Merges bunches that are not sure, as far as they can be. */
+/* Finds which bunches that are not sure can be merged. */
 static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -367,7 +368,7 @@ mcor_status mcor_find_bunches(mcor_bunches* bunches)
   memset(bunches->star, 0xff, n * sizeof *bunches->star);
   mcor_join_vertices(bunches);
   MCOR_TRY(mcor_report_launch(context));
-  /* Lists the triangles of each bunch, once by their first corner in it. */
+  /* Lists the triangles of each bunch, each once, by its first corner in the bunch. */
   for (int64_t t = 0; t < bunches->triangle_count; ++t)
   {
     int32_t of[3];

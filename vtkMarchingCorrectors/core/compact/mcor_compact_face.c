@@ -14,7 +14,7 @@
 /* A vertex of the mesh. */
 struct mcor_point
 {
-  double at[3], uphill[3]; /* uphill: unit gradient, 0 if there is none */
+  double at[3], uphill[3]; /* uphill: unit gradient, or 0 without a gradient */
   double linear;           /* above 0: the vertex did not reach the surface */
 };
 
@@ -62,7 +62,7 @@ mcor_status mcor_find_places(mcor_bunches* bunches)
     bunches->context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_now_slice, bunches, NULL);
 }
 
-/* Reads the vertices that were added since the last time. */
+/* Reads the vertices that were added to the mesh since the last call. */
 static mcor_status mcor_update_points(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -105,8 +105,8 @@ static void mcor_make_bad(mcor_bunches* bunches, int32_t first)
   }
 }
 
-/* Whether a triangle, or line, is turned over: it does not face against the mean of its corners'
- * unit gradients. */
+/* Whether a triangle, or line, is turned over: its normal and the sum of its corners' unit
+ * gradients point to the same side, or are at a right angle. */
 static bool mcor_is_turned(const mcor_bunches* bunches, const int32_t place[3])
 {
   const mcor_point *p = &bunches->points[place[0]], *q = &bunches->points[place[1]];
@@ -180,19 +180,21 @@ mcor_status mcor_find_bad(mcor_bunches* bunches)
 
 /* ---- Slivers ---- */
 
-/* Measure (mcor_sharpness) of the least angle of other triangles: of 20 degrees. */
+/* A triangle with a larger mcor_sharpness is a sliver: its least angle is below 20 degrees. */
 #define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
-/* Farthest start from the node, in edges; a line from there ends within MCOR_POINT_EXTENT. */
+/* Farthest start from a vertex's node, in edges; a line from this start ends within
+ * MCOR_POINT_EXTENT. */
 #define MCOR_FARTHEST_START 1.5
 
-/* Returns the vertex, or the first one of the merged bunch that replaced it. */
+/* Returns vertex v, or the first vertex of the merged bunch that replaced it. */
 static int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
 {
   return mcor_is_merged(bunches, bunches->first[v]) ? bunches->first[v] : v;
 }
 
-/* Finds the corners of a triangle. Returns whether the triangle is left and has the corner v. */
+/* Finds the corners of a triangle, see mcor_stand_in. Returns whether the triangle is left and has
+ * the corner v. */
 static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, int32_t of[3])
 {
   const cl_int* corner = bunches->triangles + 3 * t;
@@ -203,8 +205,8 @@ static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, in
   return mcor_is_left(of, 3) && (of[0] == v || of[1] == v || of[2] == v);
 }
 
-/* Returns four times the squared cosine of the least angle of a triangle, 4 if it has no area. It
- * is opposite to the shortest side. side: squared, by the corner opposite to it. */
+/* Returns four times the squared cosine of a triangle's least angle, which is opposite to the
+ * shortest side; 4 if it has no area. side: squared lengths, by the opposite corner. */
 static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3], double side[3])
 {
   for (int c = 0; c < 3; ++c)
@@ -240,8 +242,8 @@ static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Finds the middle of the vertices around one, from its node, in edges. The sum is one of whole
- * numbers, so that its order does not count. Returns whether the vertex may start there. */
+/* Finds the middle of the vertices around v, in edges from v's node. Adds whole numbers, so that
+ * the order does not matter. Returns whether the vertex may start there. */
 static bool mcor_find_middle(const mcor_bunches* bunches, int32_t v, double start[3])
 {
   cl_int node[4];
@@ -260,7 +262,7 @@ static bool mcor_find_middle(const mcor_bunches* bunches, int32_t v, double star
       ++count;
       if (w < v && atomic_load_explicit(&bunches->wide[w], memory_order_relaxed))
       {
-        return false; /* no two vertices beside each other move */
+        return false; /* of two vertices beside each other, only the first moves */
       }
       for (int a = 0; a < 3; ++a)
       {
@@ -279,7 +281,7 @@ static bool mcor_find_middle(const mcor_bunches* bunches, int32_t v, double star
   return is_near;
 }
 
-/* Returns the sharpness of the least angle around a vertex; 8 if a triangle is turned over. */
+/* Returns the greatest mcor_sharpness of triangles around a vertex; 8 if one is turned over. */
 static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
 {
   double worst = -1;
@@ -300,8 +302,9 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
   return worst;
 }
 
-/* A vertex with the widest angle of a sliver starts anew from the middle of the vertices around
- * it. It is put back if it does not reach the surface, or makes no angle around it better. */
+/* Moves each vertex at the widest angle of a sliver to the middle of the vertices around it, and
+ * corrects it from there. Puts it back if it does not reach the surface, or if the worst triangle
+ * around it gets no better. */
 mcor_status mcor_move_slivers(mcor_bunches* bunches)
 {
   if (bunches->corners == 2)
@@ -309,7 +312,7 @@ mcor_status mcor_move_slivers(mcor_bunches* bunches)
     return MCOR_OK;
   }
   double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
-  int32_t* before = bunches->order + bunches->vertex_count; /* stands behind the vertices that move */
+  int32_t* before = bunches->order + bunches->vertex_count; /* uses the second half of `order` */
   int count = 0;
   mcor_status status = mcor_allocated(bunches->context, starts);
   MCOR_THEN(status, mcor_update_points(bunches));

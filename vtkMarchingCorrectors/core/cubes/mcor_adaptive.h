@@ -3,8 +3,8 @@
 #ifndef mcor_adaptive_h
 #define mcor_adaptive_h
 
-/* Adaptive cubes, as the other phases see them. Vertices are on edges of their level's lattice:
- * node, offset, gradient and correction are in its cells, 2^level cubes. */
+/* Adaptive cubes: the interface for other phases. Vertices are on edges of their level's lattice;
+ * node, offset, gradient and correction are in cells of the level, 2^level cubes long. */
 
 #include "mcor_internal.h"
 
@@ -27,10 +27,10 @@ enum
   MCOR_ON_BOUNDARY = 2,
   MCOR_ALL_VERTICES = 3
 };
-/* Launch heavy kernels level by level, each with the search grid in cells of the level. Kernels
- * take MCOR_GRID_PARAMS, the arguments named here, and up to MCOR_MORE_ARGS more. At vertices:
- * groups of vertices, and their nodes. By level: first and count of the elements from first[l]
- * to before end[l], with `items` work-items for each. */
+/* Launch a heavy kernel level by level, with the search grid in cells of each level. The kernel
+ * takes MCOR_GRID_PARAMS, then own arguments, then up to MCOR_MORE_ARGS `more`. Own arguments are,
+ * at vertices, the groups of vertices and their nodes; by level, the first and the count of
+ * elements first[l] to end[l] - 1, each with `items` work-items. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \
@@ -43,10 +43,11 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
-/* mcor_correct.c. Corrects vertices by a kernel, level by level. */
+/* mcor_correct.c. Launches the correction of vertices, level by level. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines);
 
-/* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless they are there. */
+/* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless this is done
+ * already. */
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */
 mcor_status mcor_choose_leaves(mcor_context* context);

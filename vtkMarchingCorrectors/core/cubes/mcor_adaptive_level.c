@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes, level by level: kernels that evaluate the field at vertices of a level see the
- * search grid in cells of that level. */
+/* Adaptive cubes, level by level: kernels that evaluate the field at vertices of a level use the
+ * search grid in cells of this level. */
 
 #include "mcor_adaptive.h"
 
@@ -44,7 +44,7 @@ mcor_status mcor_launch_at_vertices(
   {
     const int level = i / 2, boundary = i % 2;
     const int begin = boundary ? mesh->march_count : 0;
-    /* caps have vertices here, too */
+    /* includes vertices of caps */
     const int end = boundary ? mesh->vertex_count : mesh->march_count;
     const int* of_levels = mesh->level_first[boundary];
     const int first = level > 0 ? of_levels[level] : begin;

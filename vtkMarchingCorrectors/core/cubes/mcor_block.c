@@ -7,13 +7,14 @@
 
 #include <math.h>
 
-/* Most cubes that may cover the lattice at first. The first size of cubes is the smallest that
- * needs no more. */
+/* Most cubes that may cover the lattice at first. The first cubes have the smallest size with no
+ * more cubes than this. */
 #define MCOR_FIRST_CUBES 32768
 
-/* Finds the states of the cubes in block_keys, and which of them are inactive. parts: how many of
- * these cubes were made by dividing; their places are in `index`, or all in order if that is empty.
- * The others are void, as if they did not exist: kept blocks in cubes that are inactive now. */
+/* Finds the states of the cubes in block_keys, and which of them are inactive. parts: the number of
+ * cubes that were made by dividing; `index` has their places, or is empty if these are 0, 1, 2 ....
+ * The other cubes are kept blocks in larger cubes that are now inactive; they become void, as if
+ * they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
@@ -31,12 +32,11 @@ static mcor_status mcor_test_cubes(
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Most blocks that can be used: surface in a fourth of them has as many triangles as there can
- * be. */
+/* Most blocks: if a fourth of them has surface, the triangles reach their own limit. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Replaces the cubes by the parts of the active ones, *parts in number, and adds the blocks
- * `kept` when the parts are blocks. */
+/* Replaces the cubes by the parts of active cubes, and, if the parts are blocks, adds the blocks
+ * `kept`. *parts: number of parts. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
   const mcor_buffer* kept, int kept_count, int* parts)
 {
@@ -50,9 +50,9 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->inactive),
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, parts));
-  /* The least number of blocks that these cubes will become. A surface is nearly flat in cubes that
-   * are small against the particles' supports: dividing them makes fewer than four times as many,
-   * but more than three times. */
+  /* foreseen: the least number of blocks that these cubes will become. In cubes that are small
+   * against the particles' supports, a surface is nearly flat: dividing them makes more than three,
+   * and fewer than four, times as many. */
   const double edge = ldexp(context->lattice.cube, level - 1) * MCOR_BLOCK_CUBES;
   const bool is_flat = edge < 0.25 * context->measure.h_median;
   const double foreseen = (double)(*parts + added) * (is_flat ? pow(3, level - 1) : 1);
@@ -69,7 +69,7 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *parts + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Makes the active blocks, and the blocks of bricks whose nodes are known. */
+/* Makes the active blocks, and keeps the blocks of bricks whose nodes are known. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -1,15 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The cases of Marching Cubes, derived rather than listed. On each face, every run of corners
- * above the iso value is cut off by one segment; this depends on the face's corners alone, so two
- * cells agree on their common face. Segments join to loops, loops are cut into triangles. A
- * diagonal within a face would meet the neighbour's in an edge of four triangles; none is used.
+/* Derives the cases of Marching Cubes. On each face, one segment cuts off each run of corners above
+ * the iso value; this depends on the face's corners alone, so two cells agree on their common face.
+ * Segments form loops, and loops are cut into triangles. No diagonal lies within a face, because
+ * the neighbour cell might have the same one, and four triangles would then meet there.
  *
- * Each of the 256 cases has a row for all decisions on its ambiguous faces, whose corners are
- * above and below in turn: they are cut off as before, or joined, and then those below are cut
- * off. Two loops around the same region may become a tunnel. Not all of this can be triangulated
- * without a diagonal within a face; see mcor_allow_side. */
+ * The corners of an ambiguous face are above and below in turn: either those above are cut off, or
+ * they are joined, and those below are cut off. Each of the 256 cases has a row for each
+ * combination of these decisions. Two loops around the same region may become a tunnel. Some rows
+ * need diagonals within a face; see mcor_allow_side. */
 
 #include "mcor_internal.h"
 
@@ -102,11 +102,11 @@ static int mcor_common_face(int edge_a, int edge_b)
 
 #define MCOR_NO_DIAGONALS (-1)
 
-/* Whether triangles of a cell may have a side between the vertices of two edges, besides the
- * sides on loops. With a case, opposite edges of an ambiguous face are allowed, too. Of the
- * face's two such sides, the cell below may use one and the cell above the other, so no side is
- * used by both. The face's lowest corner decides which one. This makes the three faces around a
- * corner alike; otherwise few tunnels could be made. */
+/* Whether triangles of a cell may have a side between the vertices of two edges that do not follow
+ * each other on a loop. Without a case, only if the edges have no common face. With a case,
+ * opposite edges of an ambiguous face are allowed, too. Such a face has two such sides; the cell
+ * below may use one, and the cell above the other. The face's lowest corner decides which one. This
+ * makes the three faces around a corner alike; otherwise few tunnels could be made. */
 static int mcor_allow_side(int edge_a, int edge_b, int cube_case)
 {
   const int face = mcor_common_face(edge_a, edge_b), axis = edge_a >> 3, side = face & 1;
@@ -126,7 +126,7 @@ static void mcor_add_triangle(mcor_cell_row* row, int a, int b, int c)
   triangle[2] = (uint8_t)c;
 }
 
-/* Cuts loop[first..last] into triangles, see mcor_allow_side. Returns 0 if there is no way. */
+/* Cuts loop[first..last] into triangles, see mcor_allow_side. Returns 0 if this is impossible. */
 static int mcor_cut_loop(const int* loop, int first, int last, int cube_case, mcor_cell_row* row)
 {
   if (last - first < 2)
@@ -222,8 +222,8 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   }
 }
 
-/* A way around two loops. From side (a, b) on, a step along the first loop or back along the
- * second adds a triangle each. */
+/* A strip of triangles between two loops. A step from side (a, b), either along the first loop or
+ * back along the second, adds a triangle. */
 typedef struct mcor_strip
 {
   int cube_case;
@@ -234,8 +234,8 @@ typedef struct mcor_strip
   int best_cost, best_start, best_step[24];
 } mcor_strip;
 
-/* Returns the squared distance between edge middles, in half cubes; much more for a side in a
- * face. */
+/* Returns the squared distance between the middles of two edges, in half cubes; much more if both
+ * are in one face. */
 static int mcor_side_cost(int edge_a, int edge_b)
 {
   int cost = mcor_allow_side(edge_a, edge_b, MCOR_NO_DIAGONALS) ? 0 : 1000;
@@ -248,7 +248,8 @@ static int mcor_side_cost(int edge_a, int edge_b)
   return cost;
 }
 
-/* Tries all ways that go on from step a along the first loop and step b along the second. */
+/* Tries all strips that continue after a steps along the first loop and b steps along the
+ * second. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
   if (cost >= strip->best_cost || a > strip->first_length || b > strip->second_length)
@@ -316,8 +317,8 @@ static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor
   return 1;
 }
 
-/* Finds the pair of loops that a tunnel may connect. The tunnel must join two regions on a side
- * (1 above), with the region between the loops on the other side. Returns 0 unless there is
+/* Finds the pair of loops that a tunnel may connect. The tunnel must join two regions on `side` (1:
+ * above), and the region between the loops must be on the other side. Returns 0 unless there is
  * exactly one pair. */
 static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* first, int* second)
 {
@@ -340,8 +341,8 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   return pairs == 1;
 }
 
-/* Makes the rows of a case for one set of decisions: discs in all loops go to `row`; rows with a
- * tunnel follow from `to` on. Returns the number of the latter. */
+/* Makes the rows of a case for one set of decisions: `row` fills each loop with a disc; rows with a
+ * tunnel go to `to` and following. Returns the number of rows with a tunnel. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

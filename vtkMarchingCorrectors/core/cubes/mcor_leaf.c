@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The
- * seeds (mcor_seed.c) find the states of all leaves. Leaves that may have surface are listed;
- * all their cells are examined, and no others. Nodes whose side is certain have no value at
- * first; they are evaluated if a crossed cell has them. */
+/* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The seeds
+ * (mcor_seed.c) find the states of all leaves. Leaves that may have surface are listed; only their
+ * cells are examined. Nodes whose side is certain have no value at first, and are evaluated if a
+ * crossed cell has them. */
 
 #include "mcor_adaptive.h"
 #include "mcor_tree.h"
@@ -65,8 +65,8 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer));
 }
 
-/* Evaluates the nodes of all slots that are neither known nor certain. The signs of all are
- * known then. */
+/* Evaluates the nodes of all slots that are neither known nor certain. Then all nodes have
+ * signs. */
 static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
   const mcor_options* options = context->run.options;

@@ -35,7 +35,7 @@ static mcor_status mcor_find_used(mcor_context* context)
   MCOR_TRY(mcor_clip_near(context, &mesh->used));
   MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
-  if (adaptive->count > 0) /* cells that touch finer leaves, and their edges */
+  if (adaptive->count > 0) /* finds cells that touch finer leaves, and their edges */
   {
     const mcor_buffer* owned;
     cl_int flat = 0;
@@ -151,7 +151,7 @@ mcor_status mcor_march(mcor_context* context)
   {
     return MCOR_OK;
   }
-  if (!mcor_uses_pairs(context)) /* growth from the pairs has found these cells */
+  if (!mcor_uses_pairs(context)) /* growth from pairs has already found the neighbours */
   {
     MCOR_TRY(mcor_find_neighbours(context));
   }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. In a
- * plane, the nodes above it get the sides of those in it. */
+/* Nodes of the virtual grid: their values, and on which side of the iso value they are. The nodes
+ * above a plane get the sides of the nodes in it. */
 
 #include "mcor_adaptive.h"
 
@@ -12,8 +12,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count, lanes = context->cl.lanes;
   const mcor_space* space = &context->space;
-  /* One item does a brick if particles are gathered for many lanes, else a node. In the plane a
-   * brick has 16 nodes, and one item does as many as there are lanes. */
+  /* One work-item evaluates a brick if particles are gathered for many lanes, else a node. In a
+   * plane, a brick has 16 nodes, and one work-item evaluates as many nodes as it has lanes. */
   const int items = space->flat || lanes == 1 ? space->brick_nodes / lanes : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),
@@ -24,8 +24,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Finds the signs of the nodes of bricks with bits in `evaluated`. Their values were made just
- * now, or for another iso value. */
+/* Finds the signs of the nodes of bricks with bits in `evaluated`. The values are new, or from an
+ * earlier iso value. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   const mcor_brick_data* now = &context->bricks.now;
@@ -40,7 +40,7 @@ mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
         MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* Gives back node values, which only another call could still use. */
+/* Frees the nodes' values, which only a later call could use again. */
 void mcor_release_nodes(mcor_context* context)
 {
   MCOR_RELEASE(context, &context->bricks.now.value, &context->bricks.now.weight);

@@ -3,18 +3,18 @@
 
 /* The paper's seed selection by particle pairs [III-C].
  *
- * The cells on the line between the particles of a pair are marked. From there the surface grows
- * through crossed faces, and from one end of a period to the other. The marked and reached cells
- * therefore depend on the particles alone. Only bricks with nodes of reached cells are
+ * The cells on the line between the particles of a pair are marked. From these cells, others are
+ * reached through crossed faces, and from one end of a period to the other. Which cells are marked
+ * and reached depends on the particles alone. Only bricks with nodes of reached cells are
  * evaluated.
  *
- * Pairs are for comparisons with the paper: all cubes have one size, and the surface is whole,
- * in one process. */
+ * Pairs are for comparisons with the paper: all cubes have one size, and one process makes the
+ * whole surface. */
 
 #include "mcor_box.h"
 
-/* Number of bricks in all blocks. Cells are noted by these numbers, because most bricks have no
- * slot. */
+/* Returns the number of bricks in all blocks. Masks of cells are indexed by the bricks' numbers,
+ * because most bricks have no slot. */
 static size_t mcor_count_places(const mcor_context* context)
 {
   return (size_t)context->bricks.block_count * MCOR_BLOCK_BRICKS;
@@ -26,7 +26,7 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   mcor_pairs* pairs = &context->pairs;
   const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
   const int particles =
-    /* how many particles one work-item takes */
+    /* number of particles of one work-item */
     context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes);
   MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY,
@@ -39,8 +39,8 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-/* Gives slots to the bricks that have nodes of reached cells, and evaluates these bricks.
- * *placed: whether some had no slot. */
+/* Gives slots to the bricks that have nodes of reached cells, and evaluates these bricks. *placed:
+ * whether any brick is new. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -65,7 +65,7 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
   return mcor_sign_nodes(context, &bricks->need);
 }
 
-/* Reaches the periodic images of reached cells. *reached is false if none is new. */
+/* Adds the periodic images of reached cells. *reached: whether any is new. */
 static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -100,7 +100,7 @@ mcor_status mcor_find_reached(mcor_context* context)
     MCOR_TRY(mcor_place_reached(context, first, &placed));
     if (placed)
     {
-      /* Growth stays where nodes have right values: in the period, whose particles are on the
+      /* Cells grow only where nodes have right values: in the period, whose particles are on the
        * device, and in the ring around it. */
       MCOR_TRY(mcor_find_neighbours(context));
       MCOR_TRY(

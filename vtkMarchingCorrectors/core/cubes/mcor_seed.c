@@ -10,10 +10,10 @@
 #include <float.h>
 #include <math.h>
 
-/* Returns the greatest change by rounding of a Shepard mean of values that are all on one side.
- * With n particles that reach a point, the two sums are off by at most (n + 3) and (n + 1) unit
- * roundoffs of their absolute terms, the quotient by another one. A point is reached from 27
- * cells of each level. */
+/* Returns the greatest relative rounding error of a Shepard mean of values that are all on one
+ * side. With n particles that reach a point, the errors of the two sums are at most (n + 3) and (n
+ * + 1) unit roundoffs of their absolute terms, and the quotient adds one. Particles of 27 cells of
+ * each level may reach a point. */
 double mcor_side_margin(const mcor_context* context)
 {
   const mcor_grid* grid = &context->grid;
@@ -23,7 +23,7 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Requests bricks beside bricks with `fresh` nodes, if these nodes show that they are needed. */
+/* Requests the bricks that `fresh` nodes of bricks beside them require. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -44,7 +44,7 @@ static mcor_status mcor_request_known(mcor_context* context)
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
-/* Counts the seed cells. The ones that the surface uses are subtracted later. */
+/* Counts the seed cells. mcor_march.c subtracts used cells from seed_cells_not_intersected. */
 static mcor_status mcor_count_seeds(mcor_context* context)
 {
   mcor_buffer* seeds = &context->bricks.seeds;
@@ -56,16 +56,16 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Requests the bricks that the regions leave uncertain, whose cells are the seeds, and lists these
- * regions. Places these bricks, and all bricks that are known from earlier iso values. Finds states
- * of the uncertain bricks, and evaluates most of them. In a plane, finds no states: bounds on
- * bricks cost more than their few nodes. */
+/* Requests the bricks that the tests of regions leave uncertain, whose cells are the seeds, and
+ * lists these regions. Places these bricks, and all bricks that are known from earlier iso values.
+ * Finds states of the uncertain bricks, and evaluates most of them; but not in a plane, where
+ * bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const int levels = context->lattice.levels;
   const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
-  /* Listed regions by level: from first[l] to before end[l]. */
+  /* Listed regions of level l: first[l] to end[l] - 1. */
   int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
   for (int l = 0; l <= levels; ++l)
   {
@@ -90,8 +90,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  /* One item does a region if particles are gathered for many lanes, and evaluates bricks; else
-   * a brick. */
+  /* One work-item treats a region, and evaluates its bricks, if particles are gathered for many
+   * lanes; else a brick. */
   return context->space.flat
     ? MCOR_OK
     : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1, first, end,
@@ -122,8 +122,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Places the bricks, makes the values of their nodes, and finds which cells may be used, and
- * which are plain. */
+/* Places the bricks, evaluates their nodes, and finds which cells may be used, and which are
+ * plain. */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

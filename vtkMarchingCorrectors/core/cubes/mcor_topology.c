@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: samples of the field decide what Marching Cubes leaves ambiguous. */
+/* Topology by the field: samples of the field decide what is ambiguous for Marching Cubes. */
 
 #include "mcor_adaptive.h"
 
-/* Makes room for the samples that sample_base counts, calls `locate` to place them, and evaluates
- * them level by level, because slots are sorted by level. */
+/* Makes room for the samples that sample_base counts, launches `locate` to place them, and
+ * evaluates them level by level; slots, and therefore samples, are sorted by level. */
 static mcor_status mcor_evaluate_samples(
   mcor_context* context, const char* locate, int* sample_count)
 {
@@ -32,8 +32,8 @@ static mcor_status mcor_evaluate_samples(
   return MCOR_OK;
 }
 
-/* Decides on the ambiguous faces between plain cells, then on the plain cells whose loops may be
- * a tunnel. */
+/* Decides which ambiguous faces between plain cells are joined, then in which plain cells two loops
+ * make a tunnel. */
 mcor_status mcor_resolve_topology(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;

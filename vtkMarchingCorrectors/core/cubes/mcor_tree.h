@@ -3,32 +3,32 @@
 #ifndef mcor_tree_h
 #define mcor_tree_h
 
-/* Adaptive cubes: the leaves that the lattice is divided into. A brick of level L is 4^3 cells
- * of edge 2^L cubes. Leaves are the largest bricks that only particles with h >= 2^L x the
- * smallest h reach; more are split until leaves that touch differ by one level at most. They
- * depend on the particles alone. */
+/* Adaptive cubes: the leaves that the lattice is divided into. A brick of level L is 4^3 cells,
+ * each 2^L cubes long. Leaves are the largest bricks that only particles with h >= 2^L x the
+ * smallest h reach; further bricks are split until leaves that touch differ by one level at most.
+ * The leaves depend on the particles alone. */
 
 #include "mcor_internal.h"
 
-/* Most leaves. A split brick has 8 parts, which are leaves unless they are split themselves:
- * each split brick adds at least seven leaves. */
+/* Most leaves. A split brick has 8 parts, which are leaves unless they are split, too: each split
+ * brick adds at least seven leaves. */
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
 /* mcor_tree_brick.c. Returns the number of bits that are set. */
 int mcor_bit_count(uint64_t bits);
-/* Adds bricks of a cluster to a set. Returns false if memory ran out or there
- * would be too many leaves, before the sets take much memory. */
+/* Add bricks of a cluster to a set. They return false if memory ran out, or, before the sets take
+ * much memory, if the leaves would become too many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3]);
-/* Whether the sets of all levels together make too many leaves. */
+/* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
 
-/* Bricks of a cluster along an axis. */
+/* Number of bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
-/* Return the key of a brick's cluster among the clusters of its level, and the brick's bit
- * there. */
+/* Return the key of a brick's cluster among the clusters of its level, and the brick's bit in the
+ * cluster. */
 static inline uint64_t mcor_cluster_key(const mcor_rung* rung, const int brick[3])
 {
   const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
@@ -49,8 +49,8 @@ static inline uint64_t mcor_layers(int axis, int count)
     { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
   return layers[axis][count];
 }
-/* Returns the bricks from `first` to `last` of the cluster with the first brick `cluster`; some are
- * in it. */
+/* Returns which bricks of a cluster are between `first` and `last`; at least one is. cluster: its
+ * first brick. */
 static inline uint64_t mcor_bricks_between(
   const int first[3], const int last[3], const int cluster[3])
 {
@@ -73,11 +73,10 @@ static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, in
   brick[2] = MCOR_CLUSTER * (int)(key / nx / ny);
 }
 
-/* Returns the level of a particle: the largest one up to `top` whose smallest h is not above its
- * h. */
+/* Returns the level of a particle: the largest level L up to `top` with 2^L h_min <= h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
-/* Clusters, or other units of work, that the host does between two reports of progress. */
+/* Clusters, or other elements, that the host treats between two reports of progress. */
 #define MCOR_TREE_STEP 4096
 
 /* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the
@@ -88,15 +87,15 @@ static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 {
   return tree->lattice->rungs[tree->top + 2].base * MCOR_BLOCK_BRICKS;
 }
-/* Finds the place of a brick, or, with a period, of its image there. Returns false if it is off
- * the lattice. */
+/* Finds the position of a brick, or, with a period, of its image in the first period. Returns false
+ * if the brick is off the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 /* Whether all bricks of a cluster are on the lattice, or in its first period. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
-/* Fails: there are too many leaves, or no memory for more. */
+/* Fails, because the leaves are too many, or memory for them ran out. */
 mcor_status mcor_fail_leaves(mcor_context* context);
 
-/* mcor_tree_split.c. Finds all bricks to split, by the particles of all ranks. */
+/* mcor_tree_split.c. Finds all bricks that the particles of all ranks split. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);
 
 /* mcor_tree_key.c. Lists the keys of all split bricks, ascending. Free them with free(). */
@@ -108,11 +107,11 @@ void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 
-/* Bits of a brick's key in keys of points or triangles; the rest is an edge or a cell of the
+/* Bits of a brick's key in keys of points or triangles; the other bits are an edge or a cell of the
  * brick. */
 #define MCOR_TREE_KEY_BITS 55
 
-/* Finds which bricks are split, over the particles of all ranks; none with one level. */
+/* Finds which bricks the particles of all ranks split; with one level, none. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 /* Makes the leaves in the box, and the blocks of all bricks whose nodes they may need. */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: keys of split bricks, which are numbers of the bricks of all levels. Other
- * ranks and calls get split bricks as keys. */
+/* Adaptive cubes: keys of split bricks, which number the bricks of all levels. Other ranks and
+ * later calls receive split bricks as keys. */
 
 #include "mcor_tree.h"
 

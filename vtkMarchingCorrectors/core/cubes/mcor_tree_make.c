@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the leaves, which are the parts of split bricks (mcor_tree_split.c) that are
- * not split themselves. All ranks know all split bricks; leaves are made in the box alone. They
+/* Adaptive cubes: makes the leaves, which are the parts of split bricks (mcor_tree_split.c) that
+ * are not split, too. All ranks know all split bricks, but make leaves only in their box. Leaves
  * are bits of blocks: the parts of a cluster's bricks form a block of the level below. */
 
 #include "mcor_adaptive.h"
@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Most blocks whose bricks have numbers. */
+/* Most blocks: the bricks' numbers are ints. */
 #define MCOR_TREE_BLOCK_LIMIT (INT32_MAX / MCOR_BLOCK_BRICKS)
 
-/* Whether a brick, with a ring of cells around it, touches the box. */
+/* Whether a brick, with a ring of cells of level `cell_level` around it, touches the box. */
 static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const int brick[3])
 {
   bool wanted = true;
@@ -29,14 +29,14 @@ static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const
   return wanted;
 }
 
-/* Adds a block of a level to a table by keys, if it is on the lattice and near the box. */
+/* Adds a block of a level to a table of keys, if it is on the lattice and near the box. */
 static mcor_status mcor_add_block(
   mcor_context* context, const mcor_tree* tree, int level, const int block[3], mcor_table* blocks)
 {
   const mcor_rung* rung = &tree->lattice->rungs[level];
   const int brick[3] = { 8 * block[0], 8 * block[1], 8 * block[2] };
   bool exists = mcor_is_wanted(&context->box, level + 3, level + 4,
-    block); /* a brick of this level is as large as the block */
+    block); /* a block is as large as a brick three levels higher */
   for (int a = 0; a < 3; ++a)
   {
     exists = exists && block[a] >= 0 && block[a] < rung->n[a];
@@ -54,8 +54,8 @@ static mcor_status mcor_add_block(
 }
 
 /* Adds the blocks of one level that have parts of split bricks of the next level, or of their
- * images, and all blocks around these. In them, leaves find the finer leaves beside them, and
- * the bricks whose nodes they need. */
+ * periodic images, and all blocks around these. They have all finer leaves beside leaves, and all
+ * bricks whose nodes leaves need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {
@@ -158,7 +158,7 @@ static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level
   return count;
 }
 
-/* Lists the blocks of a table by their keys, with their leaves. */
+/* Lists the blocks of a table, sorted by key, with their leaves. */
 static mcor_status mcor_list_blocks(
   mcor_context* context, mcor_tree* tree, const mcor_table* blocks)
 {

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the bricks that are split. A particle splits the bricks of the level above its
- * own that it reaches. A split brick splits the bricks of the next level that touch it. Leaves
- * around a split brick are therefore at most one level above its parts.
+/* Adaptive cubes: finds the bricks that are split. A particle splits the bricks that it reaches of
+ * the level above its own. A split brick splits the bricks of the next higher level that touch it.
+ * Leaves around a split brick are therefore at most one level above its parts.
  *
  * The result is global: the particles of all ranks decide (mcor_measure_splits). A period is a
- * whole number of bricks of all levels, and a brick stands for its periodic images by its image
- * in the first period.
+ * whole number of bricks of every level. A brick in the first period stands for all its periodic
+ * images.
  *
- * Sets of bricks are kept and filled in clusters of 4^3: the bricks that a particle reaches, and
- * the bricks above a cluster, are masks. */
+ * Sets of bricks consist of clusters of 4^3 bricks, which are masks. The bricks that a particle
+ * reaches, and the bricks above a cluster, are added by masks, too. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -23,8 +23,8 @@
 
 /* ---- Clusters ---- */
 
-/* Adds bricks of a cluster. first: a multiple of 4, which may be off the lattice. Returns false
- * if memory ran out, or there are too many bricks. */
+/* Adds bricks of a cluster to a set. first: the cluster's first brick, a multiple of 4, which may
+ * be off the lattice. Returns false if memory ran out, or the bricks are too many. */
 static bool mcor_split_cluster(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
@@ -46,7 +46,7 @@ static bool mcor_split_cluster(
   return made;
 }
 
-/* Adds 4^3 bricks, given as bits, from any brick `first` on. */
+/* Adds those of 4^3 bricks whose bits are set. first: their first brick, any brick. */
 static bool mcor_split_cube(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
@@ -74,7 +74,7 @@ typedef struct mcor_tree_job
   const mcor_context* context;
   const mcor_input* input;
   const mcor_tree* tree;
-  bool homes;   /* a particle splits only its home, the brick that it is in */
+  bool homes;   /* a particle splits only its home, the brick at its place */
   double reach; /* support radius of h = 1, in cubes */
   bool is_cube; /* the support is a cube */
   /* Edges of a level's bricks, in cubes, and their inverses. */
@@ -83,7 +83,7 @@ typedef struct mcor_tree_job
   atomic_bool failed;
 } mcor_tree_job;
 
-/* A particle, and the bricks of the level above its own that it may reach: from first to last. */
+/* A particle, and the bricks that it may reach, `first` to `last`, of the level above its own. */
 typedef struct mcor_splitter
 {
   double x[3], reach; /* in cubes, from the lattice's origin */
@@ -112,8 +112,8 @@ static uint64_t mcor_reached_bricks(
   return bricks;
 }
 
-/* Adds to the set the bricks that a particle reaches, unless the tree knows already that they are
- * split. *all becomes whether the tree knows this of all bricks that the particle may reach. */
+/* Adds to the set the bricks that a particle reaches, unless they are split in the tree already.
+ * *all: whether all bricks that the particle may reach are split in the tree. */
 static bool mcor_split_reached(
   const mcor_tree_job* job, const mcor_splitter* p, mcor_brick_set* set, bool* all)
 {
@@ -141,8 +141,9 @@ static bool mcor_split_reached(
   return made;
 }
 
-/* Splits the bricks that one particle reaches. done: homes (by key, each at one place) whose whole
- * neighbourhood is split already. A particle there that reaches no farther is skipped, as most are. */
+/* Splits the bricks that one particle reaches. done: keys of homes (each has one place) whose whole
+ * neighbourhood is split already. Most particles are in such homes and reach no farther, so they
+ * are skipped. */
 static bool mcor_split_by_particle(
   mcor_tree_job* job, int slice, mcor_splitter* p, uint64_t done[MCOR_BLOCK_BRICKS])
 {
@@ -186,7 +187,7 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_tree_job* job = data;
   const mcor_context* context = job->context;
   const mcor_lattice* lattice = &context->lattice;
-  /* The reach is limited to the longest measured one, in case other threads write to the arrays
+  /* No reach exceeds the longest measured one, even if other threads change the arrays
    * meanwhile. */
   const double longest = 1.000001 * context->measure.support_max / lattice->cube;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
@@ -224,7 +225,7 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Splits bricks by all particles. homes: each splits its own brick alone. */
+/* Splits bricks by all particles. homes: each particle splits only the brick at its place. */
 static mcor_status mcor_split_by_particles(
   mcor_context* context, const mcor_input* input, bool homes, mcor_tree* tree)
 {
@@ -264,8 +265,9 @@ static mcor_status mcor_split_by_particles(
 
 /* ---- Bricks above split ones ---- */
 
-/* Returns which of four bricks above along an axis touch bricks of a cluster. The first of the
- * four is the one below the first parent. Brick i touches brick i / 2 and the nearest other one. */
+/* Returns which of four higher bricks along an axis touch bricks of a cluster. The second and third
+ * of the four are parents. Brick i of the cluster touches its parent i / 2 and the other of the
+ * four that is nearest. */
 static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
 {
   const int step = 1 << 2 * axis;
@@ -276,8 +278,8 @@ static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
     high << 3 * step;
 }
 
-/* Splits, level by level, the bricks above that touch a split one: its parent, and the bricks
- * beyond the sides of the parent at which it lies. */
+/* Splits, level by level, the higher bricks that touch a split brick: its parent, and the bricks
+ * beyond those sides of the parent at which it lies. */
 static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
 {
   for (int level = 1; level <= tree->top; ++level)
@@ -311,15 +313,16 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
   return MCOR_OK;
 }
 
-/* Particles are looked at twice. At first each splits its own brick, and bricks above these are
- * split. That leaves most particles none, which the second look finds quickly. */
+/* Goes through the particles twice. First, each particle splits only the brick at its place, and
+ * the bricks above these are split. Then most particles have nothing left to split, so the second
+ * time is quick. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree)
 {
   MCOR_TRY(mcor_number_bricks(context, tree));
   MCOR_TRY(mcor_split_by_particles(context, input, true, tree));
   MCOR_TRY(mcor_split_above(context, tree));
   MCOR_TRY(mcor_split_by_particles(context, input, false, tree));
-  if (context->run.options->ranks) /* bricks that other ranks' particles split */
+  if (context->run.options->ranks) /* adds bricks that other ranks' particles split */
   {
     uint64_t* own = NULL;
     const void* all;

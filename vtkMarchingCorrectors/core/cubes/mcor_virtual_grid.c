@@ -22,7 +22,7 @@ void mcor_release_bricks(mcor_context* context)
   mcor_release_brick_data(context, &b->now);
 }
 
-/* Fills the new set, and moves the data of the last one there. */
+/* Fills the new set of bricks, and moves the last set's data into it. */
 static mcor_status mcor_fill_bricks(
   mcor_context* context, const mcor_brick_data* last, int count, int words)
 {
@@ -53,7 +53,7 @@ static mcor_status mcor_fill_bricks(
   return MCOR_OK;
 }
 
-/* Gives slots to all requested bricks, and keeps the data of bricks that had one. */
+/* Gives slots to all requested bricks, and keeps the data of bricks that had a slot before. */
 mcor_status mcor_place_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -78,7 +78,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   return status;
 }
 
-/* Finds the slots of the bricks beside each brick; also for adaptive cubes. */
+/* Finds the slots of the bricks beside each brick, all of its level. */
 mcor_status mcor_find_neighbours(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -329,7 +329,10 @@ const char* vtkSPHAlgorithm::GetColorRanges()
   if (shown && !this->IsShared())
   {
     vtkSPHParticlesChoice choice(*this);
-    vtkSPHChoose(choice, points, nullptr, nullptr);
+    if (points && points->GetNumberOfPoints() > 0)
+    {
+      vtkSPHChoose(choice, points, nullptr, nullptr);
+    }
     vtkPointData* data = shown->GetPointData();
     vtkDataArray* fluid = data->GetArray(choice.FluidArrayName.c_str());
     for (vtkIdType i = 0; fluid && points && i < fluid->GetNumberOfTuples(); ++i)
@@ -341,7 +344,8 @@ const char* vtkSPHAlgorithm::GetColorRanges()
     {
       double range[2];
       vtkDataArray* array = data->GetArray(i);
-      if (array && array->GetName() && ranges.Find(array, range))
+      if (array && array->GetName() && array->GetNumberOfTuples() == shown->GetNumberOfPoints() &&
+        ranges.Find(array, range))
       {
         text << range[0] << " " << range[1] << " " << array->GetName() << "\n";
       }

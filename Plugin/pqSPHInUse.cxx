@@ -61,8 +61,8 @@
 
 namespace
 {
-// Properties that tell what the next update would find. The panel shows them elsewhere, or begins
-// with them.
+// Properties that tell what the next update would find. Hidden ones get no row here: the panel
+// shows them elsewhere, or begins with their values.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
   "NextDimension", "NextFreeSurface", "NextFluid", "NextCells", "NextWarning" };
 const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension",
@@ -77,7 +77,7 @@ double rounded(double value)
   return QString::number(value).toDouble();
 }
 
-// "-" for what is not known: nothing was drawn, or the free surface has no such thing.
+// Returns the values as text; "-" if there are none: nothing was drawn, or a free surface has none.
 QString textOf(vtkSMProperty* property)
 {
   const vtkSMPropertyHelper values(property, true);
@@ -93,7 +93,7 @@ QString textOf(vtkSMProperty* property)
   return isKnown ? texts.join(" to ") : QString("-");
 }
 
-// The names of all properties that a user sets, but for inputs and commands.
+// Lists the names of the properties that a user sets, except inputs and commands.
 QStringList namesOf(vtkSMProxy* filter)
 {
   QStringList names;
@@ -110,7 +110,7 @@ QStringList namesOf(vtkSMProxy* filter)
   return names;
 }
 
-// Leaves only those series of a chart that have such names.
+// Shows only the series of a chart whose names match.
 void showSeries(vtkSMProxy* chart, const QRegularExpression& names)
 {
   if (!chart->GetProperty("SeriesVisibility"))
@@ -267,7 +267,7 @@ void pqSPHInUse::beginNew()
   {
     this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
     this->lookAhead();
-    // What most want to see is the water; or there is nothing else.
+    // Most users want to see the water; without an array, there is nothing else to draw.
     const bool isFree = vtkSMPropertyHelper(filter, "NextFreeSurface").GetAsInt() != 0 ||
       !*vtkSMPropertyHelper(filter, "NextArray").GetAsString();
     vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(isFree ? 1 : 0);
@@ -277,8 +277,8 @@ void pqSPHInUse::beginNew()
   }
 }
 
-// A slice through the middle, or the particles' own plane; a line along the longest side, or
-// upright, through the densest part. All reach somewhat beyond the particles, where the fluid ends.
+// Sets a slice through the middle, or the particles' own plane; or a line along the longest side,
+// or upright, through the densest part, which ends somewhat beyond the fluid.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
@@ -287,7 +287,7 @@ void pqSPHInUse::beginPlace()
   vtkPVDataInformation* data =
     vtkSMSourceProxy::SafeDownCast(input.GetAsProxy())->GetDataInformation(input.GetOutputPort());
   double low[3], high[3], middle[3], normal[3] = { 0.0, 0.0, 1.0 };
-  double filled = 1.0; // bounds of space, or of the plane
+  double filled = 1.0; // volume of the bounds; in a plane, their area
   int longest = 0, up = 2, axes = 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -316,7 +316,7 @@ void pqSPHInUse::beginPlace()
   const bool isGauge = filter->GetProperty("Level") != nullptr;
   if (isGauge && up == 2)
   {
-    // z, unless walls are higher than the water along y.
+    // Up is z, unless walls are higher than the water along y.
     double all[6];
     data->GetBounds(all);
     const auto above = [&all, &low, &high](int a)
@@ -330,7 +330,7 @@ void pqSPHInUse::beginPlace()
   {
     from[a] = to[a] = low[a] == high[a] ? low[a] : rounded(densest.GetAsDouble(3 * along + a));
   }
-  // Beyond the surface, which is half a spacing away from the uppermost particles.
+  // The line ends beyond the surface, which lies half a spacing above the uppermost particles.
   const double spacing =
     std::pow(filled / static_cast<double>(data->GetNumberOfPoints()), 1.0 / axes);
   const double margin = std::max(0.05 * length, 2.0 * spacing);
@@ -412,7 +412,7 @@ void pqSPHInUse::showNotGiven()
   }
 }
 
-// While Smooth is on, what it stands for is shown, greyed.
+// While Smooth is on, Compact and Widening show in grey the values that Smooth stands for.
 void pqSPHInUse::showSmooth()
 {
   vtkSMUncheckedPropertyHelper smooth(this->proxy(), "Smooth"), compact(this->proxy(), "Compact"),
@@ -441,9 +441,9 @@ void pqSPHInUse::showValues()
   this->showRows();
 }
 
-// ParaView chooses colours when something is shown first. The same choice is made anew where there
-// was nothing to see (after an error, or with an iso value beside the range), and where another
-// array is the best one, until a person takes another colour.
+// ParaView chooses colours when it first shows something. The panel chooses anew if nothing was
+// visible before (after an error, or with an iso value outside of the range), or if another array
+// is the best one now, until a person takes another colour.
 void pqSPHInUse::colourLate()
 {
   auto* source =
@@ -531,7 +531,7 @@ void pqSPHInUse::plotOverTime()
   END_UNDO_SET();
 }
 
-// Returns whether the picture has another array of colours than it was seen with before.
+// Returns whether another array colours the picture than when this last looked.
 bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
 {
   vtkSMProperty* property = shown->getProxy()->GetProperty("ColorArrayName");
@@ -544,8 +544,8 @@ bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
   return name != std::exchange(this->Coloured[shown], name);
 }
 
-// ParaView's own ranges are those of all values, which a few drops or corners decide. Where it has
-// taken such a range, or another array, the colours become those of most of the area.
+// ParaView's own colour ranges cover all values, so a few drops or corners decide them. If ParaView
+// has taken such a range, or another array, the colours get the range of most of the area.
 void pqSPHInUse::narrowColours()
 {
   SCOPED_UNDO_EXCLUDE();
@@ -590,8 +590,8 @@ void pqSPHInUse::narrowColours()
   }
 }
 
-// Asks a filter like this one that nobody sees, with what the panel shows, applied or not. The range
-// is the domain of the list of iso values, which shows it and follows it.
+// Asks a hidden filter like this one, with the values that the panel shows, applied or not. The list
+// of iso values has the scalar range as its domain, so it shows the range and follows it.
 void pqSPHInUse::lookAhead()
 {
   SCOPED_UNDO_EXCLUDE(); // the user did nothing
@@ -622,7 +622,7 @@ void pqSPHInUse::lookAhead()
 }
 
 // A new filter's panel begins with an array and an iso value, which then follows the array until
-// the user has another one. What is loaded, or made by a script, stays as it is.
+// the user sets another value. A filter that was loaded, or made by a script, stays as it is.
 void pqSPHInUse::begin()
 {
   vtkSMProxy* filter = this->proxy();
@@ -649,7 +649,8 @@ void pqSPHInUse::begin()
   }
 }
 
-// An empty row of the list of iso values would count as 0. The panel's other widgets come before.
+// Drops the empty rows of the list of iso values, which would count as 0. The panel's other widgets
+// were applied before.
 void pqSPHInUse::apply()
 {
   QWidget* panel = this->parentWidget();

@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The group "In Use" of a filter's panel, folded at first: shows the information properties of the
- * group, which ParaView itself leaves out, as they were after the last update. A group must have
- * another property, too: ParaView asks for its widget when it comes to that one.
+ * group, which ParaView itself leaves out, as they were after the last update. A group needs
+ * another property, too: ParaView creates the group's widget when it comes to this property.
  *
- * What the next update would find (the properties that begin with Next, where the filter has them)
- * is told as soon as something is changed on the panel, before Apply. The list of iso values begins
- * with the one that would be taken, and follows it until the user has others.
+ * As soon as something is changed on the panel, before Apply, the group shows what the next update
+ * would find (the properties that begin with Next, if the filter has them). The list of iso values
+ * begins with the usual value for the array, and follows it until the user sets others.
  *
- * The panel of a new filter begins with what suits its particles: the free surface where walls are
- * found, an estimate where there are no smoothing lengths, and a plane, line or box that spans the
- * fluid. Lists of arrays offer, too, what the filter takes for arrays: blocks as fluid, vx, vy and
- * vz as velocity. Numbers that are not given are empty.
+ * The panel of a new filter begins with what suits its particles: the free surface if walls are
+ * found, an estimate if there are no smoothing lengths, and a plane, line or box that spans the
+ * fluid. Lists of arrays also offer what the filter accepts as an array: blocks as fluid; vx, vy
+ * and vz as velocity. Fields of numbers that are not given are empty.
  *
- * Pictures of the output have colours that span most of its area, charts its best array alone. A
- * gauge or a flux has a button that draws it at all times.
+ * Pictures of the output have colours that span most of its area; charts show only its best array.
+ * A gauge or a flux has a button that plots it at all times.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h
@@ -65,12 +65,12 @@ private: // NOLINT(readability-redundant-access-specifiers)
   QToolButton* Button;
   QPushButton* Plot = nullptr;
   QLabel* Warning = nullptr; // beside the size of cubes
-  bool HasLooked = false, WasEmpty = false; // at the last output
+  bool HasLooked = false, WasEmpty = false; // a last output was seen; it was empty
   bool IsSmooth = false;
   QPair<int, double> Rough{ 0, 1.0 }; // Compact and Widening without Smooth
-  QMap<pqDataRepresentation*, QString> Coloured; // by which array each picture is coloured
+  QMap<pqDataRepresentation*, QString> Coloured; // the array that colours each picture
   QString Colour;      // the array that the last output is best coloured by; empty: none
-  QList<double> Given; // the iso value that the panel chose last; none: it does not choose
+  QList<double> Given; // the iso value that the panel chose last; empty: the user chooses
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
   QTimer Pause; // waits between the last change and the look ahead

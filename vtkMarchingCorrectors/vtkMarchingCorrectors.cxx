@@ -121,7 +121,7 @@ std::unique_ptr<vtkSPHParticles> vtkMarchingCorrectors::MakeInput(
   return std::make_unique<vtkSPHParticles>(choice, run.Own, wanted);
 }
 
-// Where nobody chose what to contour, the particles tell.
+// If nobody chose what to contour, the particles decide.
 void vtkMarchingCorrectors::ChooseMode(vtkRun& run)
 {
   const double* values = this->ContourValues->GetValues();
@@ -180,7 +180,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 }
 
 // Returns whether the particles have all that is needed, and fluid among them. Sets the run's iso
-// values to those that are numbers, as an empty row of a panel's list is NaN, or to a usual one.
+// values: the given ones without NaN, which an empty row of a panel's list is, or a usual one.
 bool vtkMarchingCorrectors::Take(vtkRun& run, vtkSPHParticles& input)
 {
   if (!run.Accept(input, "no surface") || !run.HasFluid ||
@@ -248,8 +248,8 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   return true;
 }
 
-// If processes share the run, the one that owns a particle's place finds its factor, which then
-// travels to where the particle came from.
+// If processes share the run, the process that owns a particle's place finds the particle's factor
+// and sends it back to the process that has the particle.
 bool vtkMarchingCorrectors::FindWidening(
   vtkRun& run, vtkSPHParticles& mine, vtkPointData* found, mcor_statistics& statistics)
 {
@@ -404,7 +404,7 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
 }
 
 // Finds each answer as far as it is known: the range needs no smoothing length, the number of cells
-// no scalar. With several blocks, the iso value is that of the first one.
+// no scalar. With several blocks, the iso value is the first block's.
 vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
   vtkAhead& next = this->Next;

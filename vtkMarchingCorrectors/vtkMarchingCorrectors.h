@@ -36,8 +36,8 @@
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
  * velocities, the first vector, or the first scalar of the particles that varies; with several iso
- * values, the iso value. The output field data holds "IsoValues", whose component has the name of the point array
- * that says which of them each point has, and the arrays of the input's.
+ * values, the iso value. The output field data holds the arrays of the input's field data, and
+ * "IsoValues", whose component has the name of the point array that gives each point's iso value.
  *
  * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h
  * describes ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and
@@ -83,7 +83,7 @@ struct mcor_surface;
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 
-/** Declares the setters and getters of contour values; `usual` is got where there are none. */
+/** Declares the setters and getters of contour values; getters return `usual` if there are none. */
 #define vtkSPHContoursMacro(name, number, values, usual)                                           \
   void Set##name(int i, double value) { this->values->SetValue(i, value); }                        \
   double Get##name(int i)                                                                          \
@@ -134,7 +134,7 @@ public:
   {
     SOLIDS_WEIGHT = 0, ///< count in the weight sum used for trimming
     SOLIDS_IGNORE = 1, ///< play no part
-    SOLIDS_WALL = 2,   ///< count there, and the surface ends at them
+    SOLIDS_WALL = 2,   ///< count in that weight sum, and the surface ends at them
     SOLIDS_AUTO = 3    ///< as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface
   };
 
@@ -185,8 +185,8 @@ public:
 
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
-   * the plain sum of the paper. That falls to zero at a free surface, and so has a second sheet
-   * along it wherever the iso value is lower than the scalar there.
+   * the plain sum of the paper. The plain sum falls to zero at a free surface, so it has a second
+   * sheet along the free surface wherever the iso value is lower than the scalar there.
    */
   vtkSPHFlagMacro(ShepardNormalization, 1);
 
@@ -257,9 +257,9 @@ public:
 
   /**
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
-   * fluid, with triangles that share the points of the lines. The other values divide it into bands. The cell
-   * array "BandValue" has the iso value at which a triangle's band begins, and that of a line. The point array
-   * "IsoValue" has it, too, and the scalar is interpolated as others are. Off by default. An error in 3-D.
+   * fluid, with triangles that share the points of the lines. The other values divide the region into
+   * bands. The cell array "BandValue" has the iso value of a line, and the one at which a triangle's band begins; so
+   * has the point array "IsoValue". The scalar is interpolated as other arrays are. Off by default. An error in 3-D.
    */
   vtkSPHFlagMacro(Filled, 0);
 
@@ -327,19 +327,19 @@ public:
   vtkSPHValueMacro(Widening, double, 1.0);
 
   /**
-   * The particles as a run with this filter's settings would take them, with the arrays Widening,
-   * the factors; WidenedSmoothingLength, the products; and, where volumes are computed,
-   * WideningVolume. Uniform cubes of the same size, these lengths and these volumes give the
-   * surface of Widening without it. False, and an error, where that fails. If several processes
-   * share the filter's runs, all call it together, and each gets those of its own particles.
+   * Writes the particles that a run with this filter's settings would take, with the arrays
+   * Widening (the factors), WidenedSmoothingLength (the products) and, if volumes are computed,
+   * WideningVolume. Without Widening, these lengths and volumes, and uniform cubes of the same
+   * size, give the same surface. Returns false, after an error, if that fails. If several processes
+   * share the filter's runs, all must call this together, and each gets its own particles.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
    * default. Off keeps the triangles beyond, except for those that NodeThreshold discards. The free
-   * surface is not trimmed. A trimmed one is a manifold with boundary, closed only where the fluid
-   * closes it.
+   * surface is not trimmed. A trimmed surface is a manifold with boundary, closed only where the
+   * fluid closes it.
    */
   vtkSPHFlagMacro(Trim, 1);
 
@@ -381,7 +381,7 @@ public:
 
   /**
    * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does
-   * not end at them. -1, the default: measured, as the median share at the solids that face the
+   * not end at solids. -1, the default: measured, as the median share at the solids that face the
    * fluid, so that the surface of a scalar ends there; for the free surface 0.5. At 0.5, solids
    * weigh as much as the fluid, about half way between the particles of both; greater shares are
    * farther into the wall. GetRunStatistics() reports the share in use.
@@ -495,7 +495,7 @@ protected:
   vtkNew<vtkContourValues> FreeSurfaceValues;
 
   int Solids = SOLIDS_AUTO;
-  bool DrawsFreeSurface = false; // as FreeSurface says, or, if it is automatic, as was found
+  bool DrawsFreeSurface = false; // what FreeSurface says, or, if that is automatic, what was found
 
   double FluidScalarRange[2] = { 0.0, 0.0 };
   double UsedCubeSize = 0.0;
@@ -507,7 +507,7 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output);
   bool TakeWidening(vtkRun& run, vtkSPHParticles& input);
-  /** Finds the arrays of FindWidening() for this process's particles, and their statistics. */
+  /** Finds the arrays that Widen() writes for this process's particles, and their statistics. */
   bool FindWidening(vtkRun& run, vtkSPHParticles& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,

@@ -121,7 +121,7 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
-// VTK 9.1 cannot make a vtkPointSet by its class's name.
+// VTK 9.1 cannot make a vtkPointSet from the name of its class, so `like` makes it.
 vtkSmartPointer<vtkDataObject> vtkSPHAlgorithm::NewOutput(
   const std::string& className, vtkDataObject* like)
 {

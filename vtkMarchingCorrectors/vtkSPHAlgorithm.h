@@ -51,8 +51,8 @@ struct vtkSPHRequest;
 
 ///@{
 /**
- * Declare SetX() and GetX() of a setting by VTK's macros, and for a flag XOn() and XOff(); those
- * without Choice in their names also the member X, with its default. What a run tells has GetX().
+ * Declare SetX() and GetX() of a setting, and XOn() and XOff() of a flag. Macros without Choice in
+ * their names also declare the member X, with its default. A text that a run sets has only GetX().
  */
 #define vtkSPHChoiceMacro(name, type)                                                              \
   vtkSetMacro(name, type);                                                                         \
@@ -156,7 +156,7 @@ public:
   ///@{
   /**
    * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Each that is set takes the place of that quantity alone: volumes
+   * (the default): found by name. Each name that is set decides on its own quantity only: volumes
    * that are found stay, unless mass and density are both set, or ComputeVolumes is on. Masses
    * and densities may have any units that give volumes in L^3; densities are used only with masses.
    * Mass and Density: one value for all particles; 0 (the default): use the array.
@@ -308,8 +308,8 @@ public:
 
   ///@{
   /**
-   * Leave out particles whose value in this point array is not from `low` to `high`, likewise. Of
-   * several arrays, all must agree; of several ranges of one array, any may hold. None by default.
+   * Leave out particles whose value in this point array is not from `low` to `high`, in the same
+   * way. A particle must pass for each array, by one of the array's ranges. None by default.
    */
   void AddOnly(const char* name, double low, double high)
   {
@@ -326,12 +326,12 @@ public:
   }
   ///@}
 
-  /** Returns the particles within those limits: the set itself if all are. */
+  /** Returns the particles that Within and AddOnly() keep: the set itself if they keep all. */
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid's particles. It leaves out the few (0.1 %, or 8) that are farther
-   * from the others' box than it is long. Collective if processes share a run. False if no
+   * Finds the box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the
+   * box of the others than this box is long. Collective if processes share a run. False if no
    * particle is fluid. densest: GetNextDensest(), of the particles at hand; may be null.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
@@ -433,7 +433,7 @@ public:
    * Defaults of a panel, from the particles as they are now: FindFluidBounds(), or 0 if unknown;
    * whether smoothing lengths must be estimated, because the particles have none by name or as
    * chosen; and the blocks that can be chosen as fluid array, beside point arrays, one a line.
-   * NextDensest: for lines along x, y and z, a point through which the densest one goes.
+   * NextDensest: for each of x, y and z, a point on the densest line along this axis.
    */
   double* GetNextBounds() VTK_SIZEHINT(6);
   double* GetNextDensest() VTK_SIZEHINT(9);
@@ -514,8 +514,8 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Warns, naming the block; once in a run for each kind, however many blocks there are. Kinds
-   * are those of the core (mcor_warning) and these.
+   * Warns, naming the block; once in a run for each kind, however many blocks there are. Kinds are
+   * the core's (mcor_warning) and these:
    */
   void WarnOnce(int kind, const std::string& message);
   enum

@@ -25,7 +25,7 @@
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
-// All processes take part in the run of each block.
+// All processes take part in the run of each block, so all must have the same number of blocks.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
   const double count = blocks ? static_cast<double>(vtkSPHNameBlocks(blocks).size()) : -1.0;
@@ -203,7 +203,7 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// Keeps the lowest values along each axis; every other of what is below 0 as above it.
+// Keeps, for each end of each axis, the few values nearest to it; values at upper ends are negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);
@@ -263,7 +263,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   }
   for (int a = 0; a < 3 && densest; ++a)
   {
-    // Columns along this axis, side by side.
+    // Divides the box into columns along this axis, side by side.
     constexpr int Columns = 16;
     const int across[2] = { (a + 1) % 3, (a + 2) % 3 };
     std::vector<std::int64_t> counts(static_cast<std::size_t>(Columns * Columns), 0);
@@ -301,7 +301,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   return true;
 }
 
-// All processes that share a run would have to ask together.
+// Without an answer if processes share a run, because all of them would have to ask together.
 double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =

@@ -56,7 +56,7 @@ vtkDataArray* FindArray(
 
 /**
  * Adds the ids of the pieces that stay, as active scalars if there are several: most users want to
- * tell pieces apart by colour. Returns them.
+ * tell pieces apart by colour. Returns the ids.
  */
 vtkSmartPointer<vtkIdTypeArray> AddIds(
   vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers, size_t pieces)
@@ -212,7 +212,7 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   return contents;
 }
 
-// New numbers of the pieces; -1: left out. A cavity goes with the piece around it.
+// Returns new numbers of the pieces; -1: left out. A cavity is left out with the piece around it.
 std::vector<vtkIdType> vtkSPHComponents::Choose(
   const vtkSPHPieces& pieces, const std::vector<Content>& contents) const
 {
@@ -258,7 +258,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     "z", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx",
     "vy", "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles = 16; // the other arguments are about particles, which may be
+  constexpr size_t withoutParticles = 16; // the other columns are about particles, which may be
                                           // absent
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];

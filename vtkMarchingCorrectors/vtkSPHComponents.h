@@ -88,8 +88,8 @@ public:
 
   ///@{
   /**
-   * Arrays of the particles; found by their usual names where empty, the default. Mass: one for
-   * all, where it is above 0.
+   * Arrays of the particles; empty (the default): found by their usual names. Mass: one mass for
+   * all particles, if it is above 0.
    */
   vtkSPHTextMacro(MassArrayName, "");
   vtkSPHValueMacro(Mass, double, 0.0);
@@ -98,8 +98,8 @@ public:
 
   ///@{
   /**
-   * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty
-   * by default: all count.
+   * Particles with another value than FluidValue in this array are solid, and do not count. Empty
+   * (the default): all count.
    */
   vtkSPHTextMacro(FluidArrayName, "");
   vtkSPHValueMacro(FluidValue, double, 0.0);
@@ -148,7 +148,7 @@ private:
   static std::string FindProblem(vtkPolyData* mesh);
   static vtkDataArray* FindIsoValues(vtkPolyData* mesh);
 
-  // For many processes together.
+  // These are for a surface that processes share.
   std::string SplitDistributed(
     vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const;
   vtkSmartPointer<vtkPointSet> GatherParticles(vtkSPHRanks& ranks, vtkPointSet* particles) const;

@@ -21,7 +21,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Returns the triangles of polygons, or lines. */
+/** A section: the triangles of its polygons, or its lines. */
 struct Shapes
 {
   std::string Name;
@@ -29,7 +29,7 @@ struct Shapes
   std::vector<double> Lines;
 };
 
-/** Lists sections: the cells with one name each, in the order of their first cells. */
+/** Lists sections, in the order of their first cells. Cells with one name are one section. */
 std::vector<Shapes> ListShapes(
   vtkDataSet* data, const std::function<std::string(vtkIdType)>& nameOf)
 {

@@ -12,7 +12,7 @@
  * Sections are those of the Add...() methods and the cells of the second input: polygons, with
  * normals by the right-hand rule, or outwards if they are a closed surface; lines, if particles lie
  * in a plane. Cells with the same entry in the cell array "Name" are one section; without such an
- * array all cells are. If there are no sections, it is the disc of Origin, Normal and Radius.
+ * array, all cells are one. Without any section, the disc of Origin, Normal and Radius is used.
  *
  * In two dimensions a section is its line in the plane of the particles, and areas are lengths.
  *

@@ -48,8 +48,8 @@ int vtkSPHMeter::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-// Requests all of both inputs, whatever piece of the table is wanted; if processes share a run, all
-// of the places.
+// Requests all of both inputs, whatever piece of the table is wanted. If processes share a run,
+// requests only all of the places.
 int vtkSPHMeter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
@@ -214,7 +214,7 @@ std::vector<vtkSPHMeter::Place> vtkSPHMeter::Merge(vtkRun& run, const std::vecto
   std::set<std::pair<std::string, std::string>> known;
   for (const std::vector<vtkRun::Named>& theirs : run.Gather(own))
   {
-    const auto before = known; // CheckNames() reports two of one process
+    const auto before = known; // CheckNames() reports equal places of one process
     for (const vtkRun::Named& place : theirs)
     {
       const std::vector<double>& numbers = place.second;

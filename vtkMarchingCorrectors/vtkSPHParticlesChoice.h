@@ -29,8 +29,8 @@ struct vtkSPHOnly
 };
 
 /**
- * Sums over neighbours where processes share the particles: writes a value for each of the process's
- * own, as vtkSPHSumNeighbors() does, and returns why that failed. Empty: there is one process.
+ * Sums over neighbours if processes share the particles: writes a value for each particle of this
+ * process, as vtkSPHSumNeighbors() does, and returns why that failed. Empty: there is one process.
  */
 using vtkSPHSumShared = std::function<std::string(vtkPointSet* points, const mcor_input& mine,
   const mcor_options& options, double ratio, double* values)>;
@@ -64,9 +64,9 @@ struct vtkSPHParticlesChoice
   std::string FluidArrayName;
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
-  std::string UnusedType; ///< a sentence: no fluid was chosen, and yet an array seems to tell it
-  vtkTypeBool IgnoreSolids = 0; ///< each filter has a setter of this, or another one that decides
-                                ///< it
+  std::string UnusedType; ///< a sentence: no fluid was chosen, although an array seems to tell it
+  vtkTypeBool IgnoreSolids = 0; ///< each filter has a setter of this, or a setting that decides
+                                ///< on it
   int Kernel = 0;
   int Dimension = 0;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

@@ -246,7 +246,7 @@ public:
   mcor_statistics Statistics = {};     // statistics of the last points
 
 private:
-  /** An array of the output, and that of its gradient, if wanted. */
+  /** An array of the output, and the array of its gradient, if wanted. */
   struct Pair
   {
     vtkSmartPointer<vtkDataArray> Values, Gradient;
@@ -424,8 +424,8 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   FinishOutput(*run, points ? probed : nullptr);
 }
 
-// Makes the best array active. The values of all particles decide: points that are not valid have a
-// value of their own.
+// Makes the best array active. The particles' values decide, because points that are not valid have
+// another value.
 void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
 {
   vtkPointData* from = run.Own->GetPointData();

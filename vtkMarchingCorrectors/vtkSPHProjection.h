@@ -6,17 +6,17 @@
  *
  * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight,
  * and gives the mean of this over each pixel of an image. Each kernel's integral is exact to 1e-6
- * of the largest that one particle adds to a pixel, be it much smaller or larger than a pixel, so
- * the image has all of the mass that falls into it.
+ * of the largest that one particle adds to a pixel, also if it is much smaller or larger than a
+ * pixel, so the image has all of the mass that falls into it.
  *
  * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
  * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
  * over the lines of sight, which needs masses, or densities and volumes. Otherwise the array has
- * the scalar's name. With WeightArrayName it is the mean of the scalar along the line of sight; NaN
- * where there is nothing.
+ * the scalar's name. With WeightArrayName the array is the mean of the scalar along the line of
+ * sight; NaN where there is nothing.
  *
- * One looks along Direction: by default along the constant axis of particles in a plane, else along
- * z. Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower
+ * The view is along Direction: by default along the constant axis of particles in a plane, else
+ * along z. Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower
  * end of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
  * matrix.
  *
@@ -64,18 +64,17 @@ public:
   ///@{
   /**
    * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along
-   * x, y or z, particles count whose positions are in the box along the line of sight, and those
-   * beside it that reach into it; else those in the box. Each counts with all of its kernel. Off
-   * by default.
+   * x, y or z, a particle counts if its position is between the box's sides along the line of sight
+   * and its kernel reaches between the other sides; else if its position is in the box. Each counts
+   * with all of its kernel. Off by default.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
   ///@}
 
   /**
-   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. By the
-   * array of masses, particles weigh what their masses are. Empty (the default): the integral
-   * itself.
+   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. With
+   * the array of masses, each particle counts by its mass. Empty (the default): the integral itself.
    */
   vtkSPHTextMacro(WeightArrayName, "");
 

@@ -37,7 +37,7 @@ constexpr double Margin = 0.03;
 /** How many points a volume has if its dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
-/** The range of a plane in a box, along the plane's axes u and v; empty if it misses the box. */
+/** The range of a plane in a box, along the plane's axes u and v; empty if they do not meet. */
 struct Rectangle
 {
   double U[3], V[3];
@@ -79,7 +79,7 @@ struct Rectangle
     }
     for (int edge = 0; edge < 24; ++edge)
     {
-      const int c = edge / 3, d = c | 1 << edge % 3; // d is c where c is the edge's end
+      const int c = edge / 3, d = c | 1 << edge % 3; // d is c if c is the edge's upper end
       if ((heights[c] < 0.0) != (heights[d] < 0.0))
       {
         const double part = heights[c] / (heights[c] - heights[d]);

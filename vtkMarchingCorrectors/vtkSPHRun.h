@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: one run of a filter over particles, by this process alone. That of many
- * processes is vtkSharedRun in ranks/. Filters do the same steps with both, in the order below.
- * In a shared run all processes call all of them, and each returns the same everywhere: false if
- * one of them failed, which all report, or the run was cancelled.
+ * Private to the module: one run of a filter over particles, by this process alone. A run of many
+ * processes is vtkSharedRun in ranks/. Filters take the same steps with both, in the order below.
+ * In a shared run all processes call all steps, and each step returns the same everywhere: false if
+ * it failed on any process, which all report, or if the run was cancelled.
  */
 #ifndef vtkSPHRun_h
 #define vtkSPHRun_h
@@ -35,8 +35,8 @@ public:
   ~vtkInternals();
 
   /**
-   * Makes a context for this device, or keeps the present one if it fits. This is number `place`
-   * of `count` processes on this machine. Returns an empty string, or why the device is not
+   * Makes a context for this device, or keeps the present one if it fits. This process is number
+   * `place` of `count` on this machine. Returns an empty string, or why the device is not
    * usable.
    */
   std::string Prepare(const std::string& device, int place, int count);
@@ -54,7 +54,7 @@ public:
   void EndRun();
 
   mcor_context* Context = nullptr;
-  /** What was made of an input, which serves while the input and `How` are the same. */
+  /** Data made of an input, which serve while the input and `How` are the same. */
   struct Made
   {
     vtkSmartPointer<vtkDataObject> Data;
@@ -62,7 +62,7 @@ public:
     std::string How;
     vtkTimeStamp Time;
 
-    /** Returns whether it serves; if not, the caller makes it anew. */
+    /** Returns whether the data serve; if not, the caller makes them anew. */
     bool Serves(vtkDataObject* from, const std::string& how);
   };
   Made Taken;  // particles among the cells of a mesh; how: whether any rank has vertices
@@ -74,7 +74,7 @@ public:
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
-    /** Keeps this value. Returns whether it is another one. */
+    /** Keeps this value. Returns whether it differs from the kept one. */
     bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false)
     {
       isOther = isOther || signature != this->Signature;
@@ -109,11 +109,11 @@ public:
   void operator=(const vtkRun&) = delete;
 
   virtual bool IsShared() const { return false; }
-  /** Whether this process tells what is to be told once. */
+  /** Whether this process reports what must be reported once. */
   virtual bool IsFirst() const { return true; }
   virtual void Sum(std::int64_t*, int) {}
   virtual vtkSPHMergeRanges MergeRanges() { return nullptr; }
-  /** Returns the lists of all processes, this one's among them, in one order. */
+  /** Returns the lists of all processes, also this one's, in the same order everywhere. */
   virtual std::vector<std::vector<double>> Gather(const std::vector<double>& mine)
   {
     return { mine };
@@ -143,8 +143,8 @@ public:
    * fluid. */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**
-   * Finds the period and, for many processes, everything global: for a surface, or for mcor_probe
-   * and mcor_derive.
+   * Finds the period and, for many processes, everything global. forSamples: for mcor_probe and
+   * mcor_derive; else for a surface.
    */
   virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
   /** Finds the period alone, and, from all particles, the smoothing length if it is estimated. */
@@ -154,17 +154,17 @@ public:
   /** Takes the points at which to evaluate, which may be null. */
   virtual void PlacePoints(vtkDataSet* points) { this->Points = points; }
   /**
-   * Sends particles, and points, to the processes that need them. Returns `mine`, or those that
-   * came, once they are collected; null if they are not usable.
+   * Sends particles, and points, to the processes that need them. Returns `mine`, or the particles
+   * that came, already collected; null if these are not usable.
    */
   virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }
-  /** Marks the particles that Share() sent to this process for its own; null: all are. */
+  /** Marks the particles of Share() that this process owns; null: it owns all. */
   virtual const std::uint8_t* MarkOwned() { return nullptr; }
   /** Calls the core: `call` gets a context for the device, and returns the core's status. */
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
-  /** Calls a function of the core that needs no context; it returns false if that fails. */
+  /** Calls a function of the core that needs no context; `call` returns false if this failed. */
   virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
-  /** Returns what such a function returns, which does not fail. */
+  /** Does the same with a function that cannot fail, and returns its result. */
   template <typename CallT>
   auto Ask(const CallT& call)
   {
@@ -178,8 +178,8 @@ public:
     return answer;
   }
   /**
-   * Sends what was found, a tuple for each of the points, or else of the particles, back to where
-   * these came from: to this process's `home`, which may be null.
+   * Sends results, a tuple for each point, or for each particle if there are no points, back to the
+   * process that these came from. home: where they belong on this process; may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
   /** Lists the first particle of all processes at which each interpolated array is not finite. */
@@ -192,14 +192,15 @@ public:
   bool IsQuiet = false;             ///< errors are not reported
   vtkSmartPointer<vtkPointSet> Own; ///< this process's particles
   std::int64_t Particles = 0;       ///< of all processes
-  bool HasFluid = false;            ///< any process
+  bool HasFluid = false;            ///< whether any process has fluid
+
   mcor_options Options = {};
   std::vector<double> IsoValues;      ///< of the options
-  vtkSmartPointer<vtkDataSet> Points; ///< those that this process evaluates
+  vtkSmartPointer<vtkDataSet> Points; ///< the points that this process evaluates
 
 protected:
   void Fail(const std::string& message);
-  /** Finds the period where the filter wants that. Returns false, after an error, if there is none. */
+  /** Finds the period if the filter wants that. Returns false, after an error, if there is none. */
   bool SetPeriod();
   /** Returns the bounds of the period that field data tell; empty if they tell none. */
   virtual std::vector<double> FindPeriod(std::string& problem);

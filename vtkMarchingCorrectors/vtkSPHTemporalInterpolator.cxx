@@ -54,11 +54,11 @@ public:
   }
 
   double Time = 0.0;                                     // requested time
-  std::vector<double> Times;                             // of its step, or of the two around it
+  std::vector<double> Times;                             // its step's, or the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
   std::vector<vtkSPHTemporalPair> Pairs;                 // one for each block
-  std::set<long> Ratios;                                 // of motion to velocities, as warned of
-  vtkTimeStamp ToldTime;                                 // when these began
+  std::set<long> Ratios;                                 // motion / velocities, as warned of
+  vtkTimeStamp ToldTime;                                 // when Ratios was last emptied
 };
 
 namespace
@@ -340,7 +340,7 @@ void vtkSPHTemporalInterpolator::Fill(
   }
   for (const std::string& warning : pair.Warnings)
   {
-    // One line for all intervals in which the times are wrong by one factor.
+    // Warns once for all intervals in which the times are wrong by the same factor.
     if (pair.Ratio == 0.0 ||
       told.Ratios.insert(std::lround(4.0 * std::log2(std::max(pair.Ratio, 0.01)))).second)
     {

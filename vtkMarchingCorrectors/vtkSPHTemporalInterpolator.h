@@ -109,8 +109,9 @@ public:
 
   ///@{
   /**
-   * How many times as far as their velocities say the particles moved between the last two steps,
-   * if a warning tells of it; else 0.
+   * The particles' motion between the last two steps, divided by the motion that their velocities
+   * give, if a warning tells of it; else 0.
+
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

@@ -202,7 +202,7 @@ void AddToRun(vtkFieldData*, vtkSPHHow, const char*, const T (&)[N])
 
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
-  // One component for each phase, one for building programs, and the total; 0 before the first run.
+  // Components: one for each phase, one for building programs, and the total; all begin at 0.
   constexpr int build = MCOR_PHASE_COUNT, total = build + 1;
   vtkSmartPointer<vtkDataArray> seconds = run->GetArray("Seconds");
   if (!seconds)

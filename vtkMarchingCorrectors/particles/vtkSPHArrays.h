@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: VTK arrays, read as the core reads them, and made of what it returns. */
+/** Private to the module: shows VTK arrays to the core, and makes VTK arrays of its results. */
 #ifndef vtkSPHArrays_h
 #define vtkSPHArrays_h
 
@@ -34,38 +34,38 @@ class vtkPointSet;
 /** Returns the array's name, empty for none. */
 std::string vtkSPHNameOf(vtkAbstractArray* array);
 
-/** Returns the array's name, or "" for entries that lists of arrays, as in ParaView's panel, show in place of one. */
+/** Returns the name, or "" for "(automatic)" and "(none)", which ParaView's lists of arrays show in place of a name. */
 std::string vtkSPHRealName(const std::string& name);
 
 /** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
-/** VTK's modification times are unique in a process: object and time identify a state. */
+/** Adds a state: VTK's modification times are unique in a process, so object and time identify it. */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
 /** Makes an array of `count` tuples that has this array's name, type and components. */
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
 
-/** Copies the tuples with these numbers, in this order, of all arrays, normals and ids, too. */
+/** Copies the tuples `ids`, in this order, of all arrays, also of normals and of global ids. */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(
   vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
 
-/** Adds all arrays, and replaces arrays of the same names; scalars become the active ones. */
+/** Adds all arrays, and replaces arrays of the same names; active scalars stay active. */
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
-/** Returns the points with these numbers, in this order. */
+/** Returns the points `ids`, in this order. */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPoints> vtkSPHTakePoints(
   vtkPoints* from, vtkIdList* ids);
 
 /** Makes a vertex of each point from 0 to count - 1. */
 vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
-/** Takes over a text of the core, which it frees; empty for null. */
+/** Copies a text of the core, and frees the core's; returns an empty text for null. */
 std::string vtkSPHTakeText(char* text);
 /** Does the same with a sentence of the core, and fills its slots, see vtkSPHAlgorithm::SetWord(). */
 std::string vtkSPHTakeText(mcor_message message);
-/** Fills the slots. */
+/** The function that gives the words for slots. */
 extern mcor_word vtkSPHWord;
 
 /** Hands a malloc'ed buffer over to a VTK array. */
@@ -127,7 +127,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAddTuple(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds counts of levels as a tuple each, up to the last level that has any. */
+/** Adds the count of each level as a tuple, up to the last level with a count above 0. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 
@@ -171,7 +171,7 @@ struct vtkSPHOwned : ResultT
   void operator=(const vtkSPHOwned&) = delete;
 };
 
-/** The ways in which a statistic of several parts or runs becomes one, see mcor_statistics.def. */
+/** How a statistic of several parts or runs is merged into one, see mcor_statistics.def. */
 enum vtkSPHHow
 {
   SAME,
@@ -180,7 +180,7 @@ enum vtkSPHHow
   OTHER
 };
 
-/** Adds the cost of a call of the core to that of earlier calls. Costs differ from run to run. */
+/** Adds the costs of a call of the core to the costs of earlier calls. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
 /**
@@ -189,7 +189,7 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics
  */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
-/** Arrays as the core lists them. Holds them, and copies of those whose values do not lie in one piece. */
+/** Arrays as the core lists them. Holds the arrays; copies them if their values do not lie in one piece. */
 class vtkSPHNamed
 {
 public:
@@ -239,7 +239,7 @@ public:
     return this->Floats ? static_cast<double>(this->Floats[i]) : this->Doubles[i];
   }
 
-  const vtkSmartPointer<vtkDataArray> Array; ///< itself, or its copy
+  const vtkSmartPointer<vtkDataArray> Array; ///< the array, or its copy
   const int Components;
 
 private:
@@ -258,8 +258,8 @@ inline bool vtkSPHComputesVolumes(const mcor_input& input)
 }
 
 /**
- * Turns ranges, each a least and a greatest value, into those of all processes that share a run;
- * empty: the process is alone.
+ * Merges ranges, each a least and a greatest value, over all processes that share a run; empty: the
+ * process is alone.
  */
 using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
 

@@ -94,7 +94,7 @@ struct Leaf
 std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 {
   std::vector<Leaf> leaves;
-  std::string whole; // blocks whose partitions are the blocks up to index `last`
+  std::string whole; // name of the block whose partitions are the blocks up to index `last`
   unsigned int last = 0;
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(tree->NewTreeIterator());
@@ -255,7 +255,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     joined->GetPointData()->AddArray(marks);
   }
   std::vector<vtkDataObject*> all = ListAll(tree);
-  std::reverse(all.begin(), all.end()); // of several arrays with one name the first stays
+  std::reverse(all.begin(), all.end()); // so that the first of several arrays with one name stays
   for (vtkDataObject* each : all)
   {
     joined->GetFieldData()->PassData(each->GetFieldData());

@@ -23,18 +23,18 @@ class vtkPointSet;
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
 
 /**
- * The particles of a data set, or of each of its blocks. Where there are vertices, here or
- * elsewhere, points that no vertex uses are nodes of a mesh, if there are other cells. Arrays of
- * the cells go to the points of the vertices, unless the points have an array of that name; also
- * where there are vertices alone, one for each point. The class stays, and cells are vertices. The
- * data set itself where that changes nothing.
+ * Returns the particles of a data set, or of each of its blocks. If a block has other cells, and
+ * any block or process has vertices (haveVertices), points without a vertex are nodes of a mesh,
+ * and are left out. Cell arrays become arrays of the vertices' points, unless the points have an
+ * array of that name, also if there are only vertices, one for each point. The class stays, and all
+ * cells of the result are vertices. Returns the data set itself if nothing changes.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);
 
 /**
  * Lists "Block 'NAME', index N" for each block that is there, in the order of iteration. NAME is
- * that of the block, or of the block that it is a partition of; N is the flat index that
+ * the name of the block, or of the block that it is a partition of; N is the flat index that
  * ParaView shows.
  */
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
@@ -59,7 +59,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
- * Gives each block the point arrays that `joined`, of vtkSPHJoinBlocks(), has and `before`
+ * Gives each block the point arrays that `joined`, made by vtkSPHJoinBlocks(), has and `before`
  * lacks.
  */
 void vtkSPHSplitBlocks(
@@ -69,8 +69,8 @@ void vtkSPHSplitBlocks(
 vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree);
 
 /**
- * Returns a sentence if the names of some blocks, but not of all, tell of walls, and yet each
- * block is contoured by itself; else an empty one.
+ * Returns a warning for blocks that are contoured one by one, if some of their names, but not all,
+ * tell of walls; else an empty text.
  */
 std::string vtkSPHFindWalls(const std::vector<std::string>& names);
 VTK_ABI_NAMESPACE_END

@@ -14,8 +14,8 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-constexpr double LeftOut = 0.01;         // this share of the area at either end
-constexpr vtkIdType MostSamples = 20000; // so many cells tell as much as all
+constexpr double LeftOut = 0.01;         // share of the area at either end
+constexpr vtkIdType MostSamples = 20000; // more cells tell no more
 
 double Measure(vtkDataSet* data, const vtkIdType* corners, vtkIdType count)
 {

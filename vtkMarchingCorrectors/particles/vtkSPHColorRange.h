@@ -15,8 +15,8 @@ class vtkDataArray;
 class vtkDataSet;
 
 /**
- * Finds the values between which 98 % of a surface's area lies; of lines, their length; of other
- * data, the points. A few fast drops or sharp corners then do not decide all colours.
+ * Finds the values between which 98 % of a surface's area lie, or of the length of lines, or of the
+ * points of other data. A few fast drops or sharp corners then do not decide all colours.
  */
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHColorRange
 {
@@ -25,8 +25,8 @@ public:
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**
-   * Finds the range of a point array, for vectors that of their magnitude. Where most values are
-   * equal it is that of all values. Returns false if no value is finite.
+   * Finds the range of a point array, or of its vectors' magnitudes; if most values are equal, the
+   * range of all values. Returns false if no value is finite.
    */
   bool Find(vtkDataArray* array, double range[2]) const;
 

@@ -22,7 +22,7 @@ struct vtkSPHFound
 {
   std::string SmoothingLength, Volume, Mass, Density, Velocity;
   std::string
-    Fluid; ///< it clearly tells which particles are fluid, see vtkSPHAlgorithm::SetDetectFluid()
+    Fluid; ///< clearly tells which particles are fluid, see vtkSPHAlgorithm::SetDetectFluid()
   double FluidValue = 0.0;
 };
 
@@ -43,23 +43,23 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 /** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
-/** What the names of a table's columns tell: mcor_tells_apart, and mcor_name_priority of positions. */
+/** Asks mcor_tells_apart, or mcor_name_priority of positions, about the name of a table's column. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
 VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
 
-/** Returns six bounds. Lengths alone are placed around the particles, which have this extent. */
+/** Returns a period as six bounds. Three lengths are placed around the particles' extent. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * Finds the period if many processes hold the particles: that of the first one whose field data
- * tell a period. `problem` becomes a sentence if another one tells a different period.
+ * Finds the period if many processes hold the particles: the first process whose field data tell a
+ * period decides. `problem` becomes a sentence if another process tells a different period.
  * Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
-/** Returns the bounds of all processes' particles; a process may have none. Collective. */
+/** Does so around the particles of all processes; a process may have none. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END

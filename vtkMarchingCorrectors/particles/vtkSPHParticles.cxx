@@ -41,7 +41,7 @@ vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
   return copy;
 }
 
-/** Returns the index of the array asked for, if it was not asked for by a name. */
+/** Returns the index of the requested array; -1 if it was requested by name, or is not there. */
 int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 {
   int index = request.Name.empty() && request.Array ? data->GetNumberOfArrays() - 1 : -1;
@@ -197,7 +197,7 @@ void vtkSPHParticles::TakeWidening(vtkDataArray* factors, vtkDataArray* volumes)
   if (volumes)
   {
     this->Core.volume = vtkSPHView(volumes);
-    this->Core.volume.name = nullptr; // they were computed, which the statistics say
+    this->Core.volume.name = nullptr; // the statistics then say that they were computed
   }
 }
 
@@ -264,7 +264,7 @@ std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& opti
   return status == MCOR_CANCELLED ? "" : problem;
 }
 
-// Particles that another process sent bring their values.
+// Particles that another process sent have these values as an array.
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, double ratio)
 {
   vtkPointData* arrays = this->Points->GetPointData();
@@ -311,7 +311,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, do
   return made.second;
 }
 
-// A density that is not used for volumes tells of a liquid, too.
+// A density tells of a liquid even if volumes are not made of it.
 bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
 {
   mcor_input core = {};
@@ -323,7 +323,7 @@ bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
   return mcor_has_free_surface(&core, ranks) != 0;
 }
 
-// The data set's own time is part of it: users change arrays in place and tell the data set.
+// The data set's own time counts, too: users change arrays in place, and call only its Modified().
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;

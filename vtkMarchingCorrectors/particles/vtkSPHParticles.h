@@ -22,8 +22,8 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 /**
- * A point array asked for by SetInputArrayToProcess: the array if there is one, and the name asked
- * for, empty if none was.
+ * A point array requested by SetInputArrayToProcess: the array, null if there is none, and the
+ * requested name, empty if there is none.
  */
 struct vtkSPHRequest
 {
@@ -46,7 +46,7 @@ struct vtkSPHWanted
   unsigned Wants = MCOR_WANT_SIZES; ///< bits of mcor_want
   vtkSPHRequest Scalar, ScalarDot;
   int ScalarComponent = MCOR_MAGNITUDE;
-  std::string Velocity, Weight;   ///< names; empty: found, none
+  std::string Velocity, Weight;   ///< names; empty: velocity is found, there is no weight
   std::vector<std::string> Taken; ///< names of computed arrays
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
@@ -55,15 +55,15 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Names in the choice the fluid that is detected, and in `first` the array to contour, if none was
- * named. All ranks do.
+ * Writes the detected fluid into the choice, and the array to contour into `first` if it has no
+ * name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);
 
 /**
- * Sums over neighbours by the core: smoothing lengths, if `ratio` is above 0, else densities, of the
- * first `count` particles. Returns an empty text, or why that failed; also an empty one if another
+ * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or densities
+ * of the first `count` particles. Returns why that failed; an empty text if it did not, or if another
  * rank failed.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
@@ -93,15 +93,15 @@ public:
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /** Returns the name under which values made from neighbours travel to other processes with the
-   * particles, which no array of a file has; and whether a name is such a one. */
+  /** Returns the name under which values computed from neighbours travel to other processes, a name
+   * that no file's array has; and whether a name is one of these. */
   static std::string NameMade(const std::string& name);
   static bool IsMade(const char* name);
   ///@}
 
   /**
-   * One sentence for each array that the core left out: notFinite[i] is the particle at which
-   * number i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
+   * Returns a sentence for each array that the core left out. notFinite[i]: the particle at which
+   * interpolated array i is not finite; below 0: none. `place`: what the arrays are left out of.
    */
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
@@ -124,7 +124,7 @@ public:
   std::string Error;
   std::string Unused; ///< a sentence, if something that is set has no effect
 
-  std::vector<vtkSPHAttribute> Interpolated;      // their order is that of Core.attributes
+  std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // arrays of identifiers, integers, strings
   std::vector<std::uint64_t> ParticlesSignature;  // equal signatures: same particles
   std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar

@@ -19,7 +19,7 @@ VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHSay(mcor_says code, const char* f
 #endif
   ;
 
-/** Returns the code of a sentence that has its words already. */
+/** Returns the code of a sentence whose slots are filled. */
 VTKMARCHINGCORRECTORS_EXPORT mcor_says vtkSPHCodeOf(const std::string& sentence);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Particles among the cells of a mesh.
+// Finds particles among the cells of a mesh.
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -26,7 +26,7 @@ bool IsVertex(int type)
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
 }
 
-/** The cells among which the vertices of a data set are; its first cells. */
+/** The list of cells that has a data set's vertices; these cells have the first numbers. */
 struct Cells
 {
   vtkCellArray* List = nullptr;

@@ -21,7 +21,7 @@ namespace
 {
 using Triple = std::array<double, 3>;
 
-/** How far from a side rounding may have moved a point on it, as a share of the period. */
+/** How far rounding may have moved a point off its side, as a share of the period. */
 constexpr double SideTolerance = 1e-5;
 }
 
@@ -82,8 +82,8 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   }
 }
 
-// Lists the edges that triangles do not run through as often one way as the other: a triangle at
-// each, and which of its corners the edge begins at. Points with the same number in `of` are one.
+// Lists the edges that triangles do not pass equally often in both directions: for each, a triangle
+// and the corner of it where the edge begins. Points with the same number in `of` are one.
 std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
   const std::vector<vtkIdType>& of) const
 {
@@ -116,10 +116,10 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
   return open;
 }
 
-// The surface goes on beyond a side at open edges that lie in it, unless a cap was trimmed there.
+// At open edges in a side, the surface goes on beyond the side, unless a cap was trimmed there.
 // Points of such edges on opposite sides are matched by their other two coordinates. Parts that meet
-// there form a group, in which each part has a shift in periods. If two ways to one part give it
-// different shifts, the group goes around the period.
+// at sides form a group, in which each part has a shift, a number of periods. If two ways to one
+// part give different shifts, the group goes around the period.
 void vtkSPHPieces::JoinSides(bool hasCaps)
 {
   const size_t count = this->Points.size();
@@ -141,7 +141,7 @@ void vtkSPHPieces::JoinSides(bool hasCaps)
   {
     const double period = this->Period[2 * a + 1] - this->Period[2 * a];
     const double tolerance = SideTolerance * period;
-    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // points that triangles use
+    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // range of the points that triangles use
     for (const auto& triangle : this->Triangles)
     {
       for (const vtkIdType point : triangle)
@@ -186,13 +186,13 @@ void vtkSPHPieces::JoinSides(bool hasCaps)
       }
       const vtkIdType twin = found->second;
       this->Twin[i] = this->Twin[twin];
-      // The part at the lower side continues, a period higher, in that at the upper side.
+      // The part at the lower side, moved up by a period, continues the part at the upper side.
       this->JoinParts(this->Root[twin], this->Root[i], a, members);
     }
   }
 }
 
-// Joins two groups; the first one's part lies a period of this axis higher.
+// Joins the groups of two parts; the part `lower` moves up by a period along this axis.
 void vtkSPHPieces::JoinParts(
   vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
 {
@@ -222,7 +222,7 @@ void vtkSPHPieces::JoinParts(
   this->GroupEndless[kept] |= this->GroupEndless[old];
 }
 
-// Moves a point to where its piece is in one.
+// Returns a triangle's corners at the place where its piece is not cut by the period's sides.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
   const auto& points = this->Triangles[triangle];
@@ -285,7 +285,7 @@ void vtkSPHPieces::NumberPieces()
   }
 }
 
-// A piece is closed if each edge is run through as often one way as the other.
+// A piece is closed if its triangles pass each edge equally often in both directions.
 void vtkSPHPieces::FindClosed()
 {
   for (const auto& edge : this->ListOpenEdges(this->Twin))
@@ -294,8 +294,8 @@ void vtkSPHPieces::FindClosed()
   }
 }
 
-// Measures about the middle of the bounds, since coordinates may be large. The centre is that of
-// the volume, or else of the area.
+// Measures relative to the middle of the bounds, because coordinates may be large. The centre is
+// the volume's centre; without a volume, the area's.
 void vtkSPHPieces::Measure()
 {
   std::vector<Triple> byArea(this->Pieces.size()), byVolume(this->Pieces.size());
@@ -347,7 +347,7 @@ void vtkSPHPieces::Measure()
 }
 
 // Moves each piece so that its centre is within the period, wherever the lattice's sides are. A
-// centre on a side, up to rounding, belongs to the lower one.
+// centre on a side, up to rounding, belongs to the lower side.
 void vtkSPHPieces::MoveHome()
 {
   std::vector<Shift> moves(this->Pieces.size());

@@ -31,13 +31,13 @@ struct vtkSPHPiece
 };
 
 /**
- * Finds the pieces: triangles that share points belong to one piece, also across the sides of a
- * period (bounds; 0 0: no period), where points have the same other coordinates, to the last
- * bit. A surface ends at planes of its lattice, which lie up to a cube from these bounds and a
- * period apart; where the surface passes the bounds, its own bounds are the sides. Caps there
- * end pieces. Pieces are sorted by area, the largest first. Each is placed so that its centre is within the period. Pieces of
- * several iso values are nested in each other, so each encloses particles, and cavities of its own
- * value, as if there were no others.
+ * Finds the pieces: triangles that share points belong to one piece. So do triangles at opposite
+ * sides of a period (bounds; 0 0: no period) if their points there have the same other coordinates,
+ * to the last bit. A surface ends at planes of its lattice, up to a cube away from these bounds; if
+ * it reaches beyond the bounds, its own bounds are the sides. Caps at the sides end pieces. Pieces
+ * are sorted by area, the largest first. Each is placed so that its centre is within the period.
+ * Pieces of several iso values are nested, so each encloses particles, and cavities of its own
+ * value, as if there were no other values.
  */
 class vtkSPHPieces
 {
@@ -51,8 +51,8 @@ public:
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
   /**
-   * Finds, for each point, the innermost piece of this iso value with a volume that encloses it; -1:
-   * that piece is a cavity, or there is none. without: for each point a piece to ignore; may be empty.
+   * Finds, for each point, the innermost piece around it that has this iso value and a volume; -1:
+   * this piece is a cavity, or there is none. without: for each point a piece to ignore; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     double isoValue, const std::vector<vtkIdType>& without = {}) const;
@@ -83,7 +83,7 @@ private:
   double Period[6];
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  std::vector<vtkIdType> Root;   // each point's representative: first by triangles; later one for each part
+  std::vector<vtkIdType> Root;   // the point that stands for each point's part
   std::vector<vtkIdType> Twin;   // the point that stands for all points a period apart
   std::vector<vtkIdType> Group;  // representatives of parts that meet across sides
   std::vector<Shift> GroupShift; // how many periods a part lies from its group's first part

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Which piece encloses a point: a ray along x leaves an enclosing piece once more than it enters
-// it. Triangles are listed in columns along x, by y and z, and a ray tests those of its column.
+// Finds which piece encloses a point: a ray along x leaves an enclosing piece once more than it
+// enters it. Triangles are listed in columns along x, and a ray tests the triangles of its column.
 #include "vtkSPHPieces.h"
 
 #include "vtkSMPTools.h"
@@ -18,8 +18,8 @@ using Triple = std::array<double, 3>;
 using Face = vtkSPHPieces::Face;
 
 /**
- * Finds where the edge between two corners passes y, and whether the point (y, z) lies below
- * that in z. Both triangles at an edge ask with the same numbers, so no ray slips between them.
+ * Whether the edge between two corners passes y, and the point (y, z) lies below it there. The
+ * result is the same for both triangles at an edge, so no ray slips between them.
  */
 bool IsBelow(const double* a, const double* b, double y, double z)
 {
@@ -141,13 +141,13 @@ private:
 };
 
 /**
- * Sets `innermost` to the piece of least volume (a cavity's without its sign) among it and those
- * around the point.
+ * Sets `innermost` to the piece of least volume, without sign, among the pieces around the point
+ * and the present `innermost`.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)
 {
-  // By piece: how often the ray leaves it, less how often it enters.
+  // For each piece: how often the ray leaves it, minus how often the ray enters it.
   std::vector<std::pair<vtkIdType, int>> turns;
   for (const size_t f : columns.At(point[1], point[2]))
   {
@@ -187,7 +187,7 @@ Triple WithinPeriod(const double period[6], const Triple& point)
 }
 }
 
-// Tries all images: from anywhere within the period to wherever the pieces are.
+// Lists the shifts that move a point within the period to each of its images where pieces may be.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
@@ -260,12 +260,13 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   return found;
 }
 
-// Rays go both ways along each axis. Each ends at the first face of such a piece, which it leaves
-// or enters; the majority decides, since an open piece has holes.
+// Rays go both ways along each axis. Each ends at the first face of a piece without a volume, which
+// it leaves or enters; the majority decides, since an open piece has holes.
 std::vector<vtkIdType> vtkSPHPieces::FindAround(
   const std::vector<Triple>& points, double isoValue) const
 {
-  std::vector<int> left(points.size(), 0); // rays that left, less those that entered
+  std::vector<int> left(points.size(), 0); // rays that left, minus rays that entered
+
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);

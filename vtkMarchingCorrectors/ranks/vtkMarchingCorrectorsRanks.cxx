@@ -79,7 +79,7 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
       (one.correction_deviation * one.correction_deviation +
         one.correction_mean * one.correction_mean);
     vertices += corrected;
-    // this one is a whole number
+    // the product is a whole number but for rounding
     evaluations += std::round(corrected * (one.iterations_mean + 1.0));
   }
   points = std::max(points, 1.0);
@@ -94,7 +94,7 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples per rank's range of keys: ranges come out even within about an eighth. */
+/** Samples for each rank's range of keys: ranges differ by about an eighth. */
 constexpr std::int64_t Samples = 64;
 
 /** Finds where the range of keys of each rank ends; the same on all ranks. */
@@ -150,7 +150,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   }
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  Numbers first(1, 0); // the last entry is the number behind all of them
+  Numbers first(1, 0); // the last entry follows all numbers
   for (const Key& key : distinct)
   {
     first.push_back(first.back() + weight(key));
@@ -195,8 +195,8 @@ struct NumbersInWhole
 };
 
 /**
- * Finds the number of each of this rank's points in the whole surface, which is its index where
- * one process makes all of it. Points with the same key are one. Does the same for this rank's
+ * Finds the number of each of this rank's points in the whole surface: the index that the point has
+ * if one process makes all. Points with the same key are one. Does the same for this rank's
  * triangles, whose keys ascend. Collective.
  */
 NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
@@ -204,7 +204,7 @@ NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
   static_assert(MCOR_TRIANGLE_KEY + 1 == MCOR_POINT_KEY, "a key and how many have it");
   const auto* first = reinterpret_cast<const Key*>(surface.point_keys);
   const Keys points(first, first + (first ? surface.point_count : 0));
-  Keys cells; // all triangles of one are on one rank, one behind the other
+  Keys cells; // all triangles of a cell are on one rank, one after the other
   const std::uint64_t* from = surface.triangle_keys;
   for (std::int64_t i = 0; from && i < surface.triangle_count; ++i, from += MCOR_TRIANGLE_KEY)
   {
@@ -224,8 +224,8 @@ NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
 }
 
 /**
- * Measures area and volume of the whole surface into `statistics`. numbers: those of this rank's
- * points. Collective.
+ * Measures area and volume of the whole surface into `statistics`. numbers: the numbers of this
+ * rank's points in the whole. Collective.
  */
 void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics)
@@ -280,8 +280,8 @@ bool Copy(vtkAbstractArray* from, T*& to)
 struct JoinedLines
 {
   /**
-   * Gathers the lines of all ranks. `numbers` are those of this rank's points and triangles in
-   * the whole. Sets the measures in the surface's statistics, on all ranks. Collective.
+   * Gathers the lines of all ranks. numbers: of this rank's points and triangles in the whole. Sets
+   * the measures in the surface's statistics, on all ranks. Collective.
    */
   JoinedLines(vtkSPHRanks& ranks, mcor_surface& surface, const NumbersInWhole& numbers,
     const mcor_plane& plane, bool isFilled)

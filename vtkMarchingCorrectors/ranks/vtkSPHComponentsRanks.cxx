@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Pieces of a surface of which each rank has a part. The first rank puts the surface together by
-// the numbers of its points and triangles, just as one process would have it, and sends each rank
-// the numbers of its pieces.
+// Finds the pieces of a surface that ranks share. The first rank joins the surface by the numbers
+// of its points and triangles, just as one process would have it, and sends each rank the numbers
+// of its pieces.
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
@@ -64,7 +64,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
   arrays.emplace_back(corners);
   arrays = vtkSPHGatherTuples(ranks, arrays, triangles);
   auto* wholeCorners = vtkDataArray::SafeDownCast(arrays.back());
-  wholeCorners->SetNumberOfComponents(1); // one after the other
+  wholeCorners->SetNumberOfComponents(1); // all corners, in order
   vtkNew<vtkCellArray> cells;
   cells->SetData(3, wholeCorners);
   whole->SetPolys(cells);
@@ -78,14 +78,14 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 }
 
 /**
- * Sends back what the first rank knows about the whole: the pieces. Returns the pieces of this
- * rank's elements. `numbers` become the elements' numbers among the ones that stay. Collective.
+ * Asks the first rank, which knows the `pieces` of all elements. Returns the pieces of this rank's
+ * elements. numbers: become their numbers among the elements that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)
 {
   vtkDataArray* given = data->GetGlobalIds();
-  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // of the first rank
+  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // first rank only
   for (vtkIdType i = 0; given && i < given->GetNumberOfTuples(); ++i)
   {
     wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));
@@ -132,7 +132,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   return ranks.GetRank() == 0 ? whole : nullptr;
 }
 
-// The first rank has all pieces, and all that the table says about them.
+// The first rank has all pieces and writes the table, so it needs all particles.
 vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
 {

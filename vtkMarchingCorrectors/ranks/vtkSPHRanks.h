@@ -9,19 +9,19 @@
  *  2. The core measures what is global over the particles of all (mcor_measure_globals).
  *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
  *     (vtkSPHRanksSpace.h).
- *  4. A particle is sent to each rank whose box its support, or an image of that, reaches, and a
- *     point to the rank whose box holds it (vtkSPHSendTuples).
- *  5. Each rank calls the core for its box, as one process may for any box; globals make this part
- *     that of the whole, to the last bit.
+ *  4. A particle is sent to each rank whose box its support, or an image of it, reaches, and a
+ *     point to the rank whose box holds the point (vtkSPHSendTuples).
+ *  5. Each rank calls the core for its box, as one process may for any box; thanks to the globals,
+ *     the result is this part of the whole surface, to the last bit.
  *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
  *     callback ends their calls (vtkSPHSharedRun.cxx).
- *  7. What was found at points and particles goes back, by the lists that sent them, to the rank
- *     that they came from (vtkSPHPutTuples).
- *  8. A surface stays where it was made; its points and triangles get the numbers that they have in
- *     the whole surface, by their keys, of which each rank sorts a range
+ *  7. Results at points and particles go back to the rank that these came from, by the lists that
+ *     sent them (vtkSPHPutTuples).
+ *  8. A surface stays where it was made. Its points and triangles get their numbers in the whole
+ *     surface by their keys; each rank sorts a range of the keys
  *     (vtkMarchingCorrectorsRanks.cxx).
- *  9. What needs all of a surface (lines, pieces, a file) is done by the first rank, to which
- *     tuples are sent, and put in the order of these numbers (vtkSPHGatherTuples).
+ *  9. The first rank does what needs all of a surface (lines, pieces, a file): it gets all tuples,
+ *     and puts them in the order of these numbers (vtkSPHGatherTuples).
  * 10. No rank returns while another goes on: all agree first on what one of them has found.
  *
  * All functions except the getters are collective: all ranks call them in the same order. Built
@@ -42,7 +42,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** A list for each rank, or from each. */
+/** A list for each rank, or from each rank. */
 using vtkSPHRanksLists = std::vector<std::vector<vtkIdType>>;
 
 class vtkSPHRanks
@@ -62,9 +62,8 @@ public:
   std::int64_t GetBytesSent() const { return this->BytesSent; }
 
   /**
-   * Returns true if no rank failed, that is, `sentence` is empty everywhere. Else `sentence`
-   * becomes, on all ranks, that of the first rank that failed, whose number it names unless all
-   * say the same.
+   * Returns true if no rank failed, that is, `sentence` is empty everywhere. Else all ranks get the
+   * sentence of the first rank that failed, with the rank's number unless all ranks say the same.
    */
   bool Agree(std::string& sentence)
   {
@@ -99,16 +98,16 @@ public:
     return true;
   }
 
-  /** Comes in place of further exchanges: the others' next one does nothing, and says so. */
+  /** Is called in place of an exchange. If a rank stops, the others' exchange does nothing. */
   bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
   /**
-   * Merges ranges, each a least and a greatest value; an empty range is infinite the wrong way
-   * round.
+   * Merges ranges, each a least and a greatest value; an empty range goes from infinity to
+   * -infinity.
    */
   void ReduceRanges(double* ranges, int count)
   {
-    const auto negateGreatest = [ranges, count] // the sign is reversed, so that one message does
+    const auto negateGreatest = [ranges, count] // with the sign reversed, one message is enough
                                                 // for both
     {
       for (int i = 1; i < 2 * count; i += 2)
@@ -121,7 +120,7 @@ public:
     negateGreatest();
   }
 
-  /** Gathers one value from each rank, in the order of ranks; none if a rank has stopped. */
+  /** Gathers one value from each rank, in the order of ranks; nothing if a rank has stopped. */
   template <typename T>
   std::vector<T> Gather(const T& mine)
   {

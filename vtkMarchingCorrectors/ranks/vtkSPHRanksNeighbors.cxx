@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Sums over neighbours that several ranks have. Space is divided among the ranks, and each gets the
-// particles in its box. Its smoothing lengths without the others' particles are too long, so the
-// spheres of these lengths hold all neighbours: it asks the other ranks for the particles there.
+// Sums over neighbours that several ranks have. Each rank gets the particles in its box of space.
+// Smoothing lengths from these particles alone are too long, so spheres with these radii hold all
+// neighbours: the rank asks the other ranks for the particles in the spheres.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
@@ -21,12 +21,12 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** So many support radii around a particle must be known, see mcor_find_smoothing_lengths. */
+/** How many support radii around a particle must be known, see mcor_find_smoothing_lengths. */
 constexpr double Around = 1.25;
 /** Allows for the rounding of places in periods. */
 constexpr double Rounding = 1.0001;
 
-/** The arrays of an input that travel, as far as it has them. */
+/** The arrays of an input that travel. */
 using Members = std::vector<mcor_array mcor_input::*>;
 
 /** Makes a VTK array of an array of the core, which it borrows; empty for a constant. */
@@ -42,7 +42,7 @@ vtkSmartPointer<vtkDataArray> Borrow(const mcor_array& array, vtkIdType count)
   return made;
 }
 
-/** The input with these particles, which all play a part, in place of the rank's own. */
+/** Returns the input with these particles, none of them solid, in place of the rank's own. */
 mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const mcor_input& like)
 {
   mcor_input input = like;
@@ -70,8 +70,8 @@ Cell CellOf(std::int64_t level, const double at[3])
 }
 
 /**
- * Adds the cell that a sphere's middle is in, and those of its images that reach into the period. The
- * sphere lies within this cell and the 26 around it.
+ * Adds the cell of a sphere's centre, and the cells of its images that reach into the period. The
+ * sphere lies within its cell and the 26 cells around it.
  */
 void AddCells(
   const vtkSPHRanksSpace& space, const double at[3], double radius, std::vector<Cell>& cells)
@@ -96,7 +96,7 @@ void AddCells(
   }
 }
 
-/** Sorts, and leaves each one once. */
+/** Sorts the cells, and keeps each once. */
 void SortOnce(std::vector<Cell>& cells)
 {
   std::sort(cells.begin(), cells.end());
@@ -135,9 +135,9 @@ std::vector<vtkIdType> ListWithin(
 }
 
 /**
- * Gets the particles of other ranks that may lie in the spheres around this rank's own, and puts them
- * behind these. order: the places of its own among all; those whose spheres leave its box come
- * first, and their count is returned. Collective.
+ * Gets the particles of other ranks that may lie in the spheres around this rank's particles, and
+ * appends them to these. order: becomes the new order of this rank's particles: first those whose
+ * spheres leave its box. Returns how many these are. Collective.
  */
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)
@@ -155,7 +155,7 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
     space.Enter(at);
     const double radius = Rounding * radii[static_cast<std::size_t>(i)];
     reached.clear();
-    if (radius > 0.0 && std::isfinite(radius)) // else the core reports it
+    if (radius > 0.0 && std::isfinite(radius)) // the core reports any other radius
     {
       space.FindReached(at, radius, reached);
     }
@@ -201,7 +201,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   if (this->Filter->DetectPeriod)
   {
     this->Own = points;
-    std::string ignored; // SetPeriod() reports it
+    std::string ignored; // SetPeriod() reports the problem
     const std::vector<double> period = this->FindPeriod(ignored);
     std::fill_n(options.periodic, 6, 0.0);
     std::copy(period.begin(), period.end(), options.periodic);
@@ -222,7 +222,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     }
   }
   std::string problem =
-    isFinite ? "" : vtkSPHSumNeighbors(mine, options, ratio, 0, values); // the core names it
+    isFinite ? "" : vtkSPHSumNeighbors(mine, options, ratio, 0, values); // the core names the place
   if (!ranks.Agree(problem))
   {
     return problem;
@@ -264,7 +264,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   arrays = vtkSPHSendTuples(ranks, arrays, to, &from);
   const vtkIdType own = arrays[0]->GetNumberOfTuples();
 
-  // Sums for the first particles, with all as neighbours. Returns whether all ranks have done that.
+  // Computes sums for the first `count` particles, with all as neighbours. Returns false if a rank
+  // failed.
   const auto sum = [&](vtkIdType count, double* sums)
   {
     this->CallAside(
@@ -304,7 +305,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
       found->SetValue(order->GetId(k), sums[static_cast<std::size_t>(k)]);
     }
   }
-  if (!isGood) // a rank that has the particle in question knows its number
+  if (!isGood) // the rank that the particle came from knows its number
   {
     std::string known = vtkSPHSumNeighbors(mine, options, ratio, mine.count, values);
     return ranks.Agree(known) ? problem : known;

@@ -198,7 +198,7 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
   }
   auto* theirs = vtkDataArray::SafeDownCast(came.back());
   vtkNew<vtkIdList> places;
-  vtkIdType count = 0; // numbers go from 0 on
+  vtkIdType count = 0; // numbers begin at 0
   for (vtkIdType i = 0; i < theirs->GetNumberOfTuples(); ++i)
   {
     places->InsertNextId(static_cast<vtkIdType>(theirs->GetComponent(i, 0)));
@@ -225,7 +225,7 @@ struct Form
   }
 };
 
-/** Returns the forms of the positions and of all point arrays. */
+/** The forms of the positions and of all point arrays. */
 using Layout = std::vector<Form>;
 }
 
@@ -303,7 +303,7 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
       const auto theirs = std::find_if(
         other.begin() + 1, other.end(), [&form](const Form& one) { return form.IsLike(one); });
       const bool isThere = theirs != other.end();
-      // Numbers of several types become doubles, as where one process joins the pieces of a file.
+      // Numbers of several types become doubles, as when one process joins the pieces of a file.
       form.Type = isThere && form.Type != theirs->Type ? VTK_DOUBLE : form.Type;
       return !isThere;
     };

@@ -30,12 +30,12 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
 /** Adds an array, which gets the role (scalars, vectors, ...) that array i has in `like`. */
 void vtkSPHAddLike(
   vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to);
-/** Makes points of such arrays, with the roles that they have in `like`. */
+/** Makes points of the arrays that vtkSPHListArrays() lists, with the roles of those of `like`. */
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 
 /**
  * Sends to each rank the tuples listed for it. The arrays must have the same forms on all ranks.
- * Returns arrays of what has arrived, in the order of ranks; from: how many tuples from each.
+ * Returns arrays of the tuples that came, in the order of ranks; from: how many came from each.
  * Collective.
  */
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
@@ -54,10 +54,10 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
   vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers);
 
 /**
- * Takes this rank's particles, without those that vtkGhostType marks as another rank's, and
- * those that the choice leaves out. `data` may be null. All ranks get the same point arrays in
- * one order: those that all ranks with particles have, with the same number of components, as
- * doubles where types differ. Field data stay. taken: the particles' indices in `data`.
+ * Takes this rank's particles, except particles that vtkGhostType marks as another rank's, or that
+ * the choice leaves out. `data` may be null. All ranks get the same point arrays in one order: the
+ * arrays that all ranks with particles have, with the same number of components, as doubles if
+ * types differ. Field data stay. taken: the particles' indices in `data`.
  * Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
@@ -67,8 +67,8 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used);
 
 /**
- * Sends to each rank the particles listed for it. Returns what has arrived, in the order of
- * ranks; from: how many from each. The particles are those of vtkSPHTakeParticles(). Collective.
+ * Sends to each rank the particles listed for it, which vtkSPHTakeParticles() has made. Returns the
+ * particles that came, in the order of ranks; from: how many came from each. Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPointSet* particles,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);

@@ -13,7 +13,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Cubes along an edge of a brick. Cuts may lie anywhere, but those between bricks cost least. */
+/** Cubes along an edge of a brick. Cuts may lie anywhere, but cuts between bricks cost least. */
 constexpr double BrickCubes = 4.0;
 
 /** Samples for each rank's share of the work: shares come out even within some percent. */
@@ -28,7 +28,7 @@ constexpr double CellLengths = 2.0;
 /** The cost of a cube with surface, in costs of a particle. */
 constexpr double CubeWork = 40.0;
 
-/** A cell has far fewer particles than another if it has less than one in so many. */
+/** A cell has far fewer particles than another if it has less than 1 / FarFewer of their number. */
 constexpr std::int64_t FarFewer = 4;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
@@ -79,8 +79,8 @@ void vtkSPHRanksSpace::Enter(double at[3]) const
   }
 }
 
-// Finds how far a particle reaches by its scaled and widened support, and, of a large particle, by
-// what it needs more than the least margin: levels are those of the lengths before widening.
+// Returns how far a particle reaches: its scaled and widened support, and, for a large particle,
+// the margin that it needs beyond the least margin. Lengths before widening decide on the margin.
 double vtkSPHRanksSpace::ReachOf(const mcor_input& input, std::int64_t i) const
 {
   const mcor_options& options = *this->Options;
@@ -198,7 +198,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   return radii;
 }
 
-// A sample stands for `step` of the work; where there is little, all of it is sampled.
+// A sample stands for `step` of the work; if there is little work, all of it is sampled.
 void vtkSPHRanksSpace::Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places)
 {
   std::int64_t all = 0, before = 0;
@@ -226,8 +226,8 @@ void vtkSPHRanksSpace::Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksP
   this->Cut(samples.begin(), samples.end(), 0, ranks.GetCount(), this->Whole);
 }
 
-// Cuts a box, which so many ranks from the first one on share, across the longest side of the
-// samples' bounds, at the side of a brick that leaves the work below nearest to the goal.
+// Divides a box among `count` ranks from `first` on. Cuts it across the longest side of the
+// samples' bounds, at the side of a brick where the work below the cut is nearest to the goal.
 void vtkSPHRanksSpace::Cut(
   Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box)
 {
@@ -269,7 +269,7 @@ void vtkSPHRanksSpace::Cut(
   }
   const double brick = BrickCubes * this->Globals->measured.cube;
   const double at = middle == end ? 0.0 : middle->At[axis];
-  const auto sideOf = [at, brick](double further) // of the brick, or of the next one
+  const auto sideOf = [at, brick](double further) // 0: of the brick; 1: of the next one
   { return brick > 0.0 ? (std::floor(at / brick) + further) * brick : at; };
   const std::int64_t less = goal - workUntil(findEnd(sideOf(0.0)));
   const std::int64_t more = workUntil(findEnd(sideOf(1.0))) - goal;
@@ -283,8 +283,8 @@ void vtkSPHRanksSpace::Cut(
   this->Cut(middle, end, first + lower, count - lower, high);
 }
 
-// If there are more ranks than bricks, some boxes are empty: the core wants a box, so it gets one
-// where there is nothing.
+// If there are more ranks than bricks, some boxes are empty. The core needs a box, so it gets a box
+// at a place where there is nothing.
 vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
 {
   const vtkSPHRanksBox& box = this->Boxes[Index(rank)];
@@ -347,7 +347,7 @@ void vtkSPHRanksSpace::FindReached(const double at[3], double radius, std::vecto
   }
 }
 
-// Adds the ranks, of so many from the first one on, whose boxes overlap this box.
+// Adds the ranks whose boxes overlap this box, among `count` ranks from `first` on.
 void vtkSPHRanksSpace::FindOverlaps(
   const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const
 {
@@ -417,8 +417,8 @@ struct CoarseGrid
   }
 
   /**
-   * Estimates how many surfaces, each as large as a side of the cell, pass through it, from the
-   * cell and the six around it.
+   * Estimates how many surfaces, each as large as a side of the cell, pass through the cell, from
+   * this cell and the six around it.
    */
   int CountSurfaces(const mcor_options& options, std::size_t cell) const
   {

@@ -28,7 +28,7 @@ struct vtkSPHRanksPlace
 };
 
 /**
- * Space as the run has it: in a box, and in periods. Share() divides it among ranks by a k-d tree
+ * The space of a run, in its box and periods. Share() divides it among ranks by a k-d tree
  * over samples of the work, with cuts between the lattice's bricks. All ranks have the same
  * samples, and so the same tree.
  */
@@ -36,7 +36,7 @@ class vtkSPHRanksSpace
 {
 public:
   vtkSPHRanksSpace() = default;
-  /** Reads the options and globals, those of all particles, again in Share(). */
+  /** Keeps both arguments, which Share() reads again. The globals are of all ranks' particles. */
   vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
 
   double First[3] = { 0.0, 0.0, 0.0 }; ///< where the first period begins
@@ -75,11 +75,11 @@ public:
   /** Returns the rank whose box holds a place, or an image of it. */
   int FindOwner(const double at[3]) const;
 
-  /** Lists, for each rank, those of this rank's points that its box holds. */
+  /** Lists, for each rank's box, the points of this rank that lie in it. */
   vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
   std::int64_t OwnedParticles = 0; ///< number of all ranks' particles that lie in this rank's box
-  std::int64_t Particles = 0;      ///< number of these particles, and of copies of others'
+  std::int64_t Particles = 0;      ///< the same, with copies of other ranks' particles
   std::int64_t Work = 0;           ///< work of the particles in this rank's box
 
 private:
@@ -94,24 +94,25 @@ private:
 
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;
-  double Margin = 0.0; ///< the least by which a support may miss a box that needs the particle
+  double Margin = 0.0; ///< a box may need any particle whose support misses it by less
   vtkSPHRanksBox Whole = {};
   struct Plane
   {
     int Axis;
     double At;
   };
-  std::vector<Plane> Planes; ///< by rank: the upper side of the lower of two groups, where the second group begins with
-                             ///< this rank
+  std::vector<Plane> Planes; ///< by rank: the cut between two groups of ranks, where the
+                             ///< upper group begins with this rank
   std::vector<vtkSPHRanksBox> Boxes; ///< by rank
 };
 
 /**
- * Returns the work of each of this rank's particles: 1, or 0 for those that the surface does not
- * depend on (solids, if it uses none), and a share of the surface's cost where the surface is
- * expected: in cells of a coarse grid that have values on both sides of an iso value around them, or, for a free surface, far fewer
- * particles beside them. The number of cells does not grow with the particles. The result is the
- * same to the last bit however particles are spread over ranks. Collective.
+ * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on it
+ * (solids, if it uses none), and a share of the surface's cost if a surface is expected there. It is
+ * expected in cells of a coarse grid that have values on both sides of an iso value in or around
+ * them, or, for a free surface, far fewer particles beside them. The number of cells does not grow
+ * with the particles. The result is the same to the last bit however particles are spread over
+ * ranks. Collective.
  */
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: waiting for other ranks, and their parts of a surface. MPI's own calls
- * keep a processor busy while they wait, which slows down ranks that compute on it.
+ * Private to the project: waits for other ranks, and joins their parts of a surface. MPI's own
+ * calls keep a processor busy while they wait, which slows down ranks that compute on it.
  */
 #ifndef vtkSPHRanksWait_h
 #define vtkSPHRanksWait_h
@@ -30,8 +30,8 @@ VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* particles);
 
 /**
- * Returns when all ranks have called it: whether all of them go on. With every message a rank hears
- * of twice as many others.
+ * Returns when all ranks have called this, and says whether all go on. Each message doubles the
+ * number of ranks that a rank has heard of.
  */
 inline bool vtkSPHAwaitRanks(vtkMPIController* controller, bool goesOn = true)
 {

@@ -46,7 +46,7 @@ public:
   Callbacks(const Callbacks&) = delete;
   void operator=(const Callbacks&) = delete;
 
-  /** Called by all ranks after the core's call, however that ended. */
+  /** All ranks call this after the core's call, also if the core failed. */
   void End(bool failed)
   {
     if (!this->Stopped)
@@ -205,7 +205,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   return good;
 }
 
-// The box ends where the particles do; along periods it is without end.
+// The box ends at the places, or where the particles end before them; along periods it is infinite.
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;
@@ -221,7 +221,7 @@ void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double h
   }
 }
 
-// Takes the points with finite coordinates, and the box around those of all ranks.
+// Takes the points with finite coordinates, and sets the box around the points of all ranks.
 void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 {
   const vtkSPHRanksSpace space(this->Options, this->Globals);

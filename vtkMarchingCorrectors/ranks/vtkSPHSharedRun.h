@@ -62,8 +62,8 @@ public:
 
   /** Sends particles, which `core` describes, to the ranks whose boxes need them. */
   void Scatter(const mcor_input& core, vtkPointSet* particles);
-  /** Replaces this rank's particles by those of all ranks, as far as warnings read them: they read
-   * no positions. */
+  /** Replaces this rank's particles by all ranks' particles, without positions, which warnings do
+   * not read. */
   void OfAll(mcor_input& core, mcor_options& options) const;
   /** Names of statistics, and this rank's numbers. */
   using Shares = std::vector<std::pair<const char*, std::int64_t>>;
@@ -74,15 +74,15 @@ public:
 
   vtkSPHRanks Ranks;
   mcor_globals Globals = {};
-  std::vector<std::int64_t> Work; ///< the work of each of its own particles; empty: 1 each
+  std::vector<std::int64_t> Work; ///< the work of each of this rank's particles; empty: 1 each
   vtkSPHRanksSpace Space;
-  vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
+  vtkSmartPointer<vtkPolyData> Near; ///< the particles that this rank's box needs
 
 protected:
   std::vector<double> FindPeriod(std::string& problem) override;
 
 private:
-  /** Whether this rank's box holds what was sent to it. */
+  /** Whether this rank's box holds point i of those that were sent to the rank. */
   bool Owns(vtkDataSet* sent, vtkIdType i) const
   {
     return this->Space.FindOwner(sent->GetPoint(i)) == this->Ranks.GetRank();
@@ -90,11 +90,11 @@ private:
 
   std::unique_ptr<vtkSPHParticles> Input;
   std::vector<std::uint8_t> Owned;
-  vtkSmartPointer<vtkPolyData> Places;        ///< its points with finite coordinates
-  std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< numbers of these points
-  std::vector<vtkIdType> Numbers;             ///< numbers of Places, or of its particles, among the
-                                              ///< given ones
-  std::vector<vtkIdType> From;                ///< how many of these came from each rank
+  vtkSmartPointer<vtkPolyData> Places;        ///< this rank's points with finite coordinates
+  std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< the work at these points
+  std::vector<vtkIdType> Numbers;             ///< numbers of Places, or of the particles, in the
+                                              ///< data that this rank was given
+  std::vector<vtkIdType> From;                ///< how many points or particles came from each rank
 };
 VTK_ABI_NAMESPACE_END
 

@@ -127,8 +127,8 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   this->ChooseActive(output, merge);
 }
 
-// Ids are of VTK's own type, as vtkContourFilter makes them: with others, some filters take a mesh
-// for non-manifold. The bands of lines come before those of triangles, as lines do.
+// Ids are of VTK's own type, as vtkContourFilter makes them: with other types, some filters think a
+// mesh is not a manifold. Band values of lines come first, because VTK numbers lines first.
 void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& s, vtkPolyData* output)
 {
   vtkNew<vtkIdTypeArray> corners;
@@ -203,8 +203,8 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 }
 
 // Chooses the active scalars: an attribute of the particles, if it varies on the surface (the
-// contoured one varies by rounding alone), or the iso value if there are several. Colours are those
-// of magnitudes.
+// contoured one varies by rounding alone), or the iso value if there are several. Vectors count by
+// their magnitudes.
 void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const vtkSPHMergeRanges& merge) const
 {

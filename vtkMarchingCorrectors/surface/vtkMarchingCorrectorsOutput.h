@@ -50,13 +50,12 @@ public:
    */
   double FindLargestFloat(int precision) const;
   /**
-   * Adds statistics and parameters. They depend on the input and the options alone, but for the
-   * costs.
+   * Adds statistics and parameters. All but the costs depend on the input and the options alone.
    */
   void AddRun(vtkFieldData* run) const;
 
   /**
-   * Adds triangles, lines, and the iso values that they are between. Takes over the surface's
+   * Adds triangles and lines, and their band values if there are bands. Takes over the surface's
    * triangles.
    */
   static void BuildCells(mcor_surface& surface, vtkPolyData* output);

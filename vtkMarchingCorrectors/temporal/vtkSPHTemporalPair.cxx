@@ -25,7 +25,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-const vtkIdType Grain = 8192;       // so many particles are worth a thread
+const vtkIdType Grain = 8192;       // particles that are worth a thread
 const vtkIdType FewParticles = 100; // fewer particles tell nothing about the unit of velocities
 
 std::string Text(double value)
@@ -297,9 +297,8 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-// Returns the distance that the particles moved along their mean velocities, over the distance that
-// these would have moved them. Sums are made slice by slice and then in order: they are the same
-// with any number of threads.
+// Warns if the particles moved much less or more, along their mean velocities, than these say. Sums
+// are made slice by slice, and slices are added in order, so threads do not change the result.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

@@ -25,7 +25,7 @@ struct vtkSPHTemporalChoice
   double Period[3] = { 0.0, 0.0, 0.0 }; // 0: not periodic
 };
 
-/** Copies the points and point arrays alone, with a vertex for each point if the set has cells. */
+/** Copies only the points and point arrays, with a vertex for each point if the set has cells. */
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output);
 
 class vtkSPHTemporalPair
@@ -42,7 +42,7 @@ public:
 
   std::string Error;
   std::vector<std::string> Warnings; // warnings of the last Match(); empty if it kept the match
-  double Ratio = 0.0; // the motion over that of the velocities, where a warning tells it; else 0
+  double Ratio = 0.0; // motion / motion by the velocities, if a warning tells it; else 0
   std::string IdName, VelocityName;  // names of the arrays used
 
 private:

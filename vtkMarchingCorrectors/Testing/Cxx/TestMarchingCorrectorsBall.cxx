@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The free surface of a ball of particles: closed, and as large as the ball.
+// Checks that the free surface of a ball of particles is closed, and as large as the ball.
 #include "vtkMarchingCorrectors.h"
 
 #include "vtkDataArray.h"

@@ -21,9 +21,9 @@
  * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs
  * are empty and safe to free. The library never prints, never exits and keeps no global state. A
  * context may be used by one thread at a time; several contexts by several threads at once. A call
- * starts helper threads on the processors that its thread may use: on the built-in device they wait
- * for the context's next call, and end with the context; else they are up to 15, and end before the
- * call returns.
+ * starts helper threads on the processors that its thread may use. On the built-in device, these
+ * wait for the context's next call, and end with the context. On other devices there are up to 15,
+ * which end before the call returns.
  *
  * Lengths are in the unit of the particle positions ("length unit L"). */
 
@@ -51,7 +51,7 @@ extern "C"
     MCOR_CANCELLED         /* the progress callback asked to stop */
   } mcor_status;
 
-  /* What a sentence of this library says: a code for each row of mcor_says.def. */
+  /* A code for each sentence of this library; the sentences are the rows of mcor_says.def. */
   typedef enum mcor_says
   {
     MCOR_SAYS_NOTHING = 0,
@@ -71,22 +71,22 @@ extern "C"
   void mcor_free_message(mcor_message* message);
 
   /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
-   * stands behind the name in the slot, or "". Returns 0 if there is no word: the
-   * member's name is then the word, and what names no member stays as it is, with its braces. */
+   * stands behind the name in the slot, or "". Returns 0 if there is no word: then a member's own
+   * name is the word, and a slot that names no member stays as it is, with its braces. */
   typedef int (*mcor_word)(
     void* user, const char* name, const char* value, char* word, size_t size);
-  /* The words of C, "cube_size" and "precision=double"; and those of panels, "Cube Size" and "Field
-   * Precision double". */
+  /* mcor_member_word gives the words of C, "cube_size" and "precision=double"; mcor_label_word
+   * gives the words of panels, "Cube Size" and "Field Precision double". */
   int mcor_member_word(void* user, const char* name, const char* value, char* word, size_t size);
   int mcor_label_word(void* user, const char* name, const char* value, char* word, size_t size);
-  /* Returns the text with its slots filled; word NULL: mcor_member_word. Free it with free(). NULL
-   * if memory ran out. */
+  /* Returns the text with its slots filled, to be freed with free(); NULL if memory ran out. word
+   * NULL: mcor_member_word. */
   char* mcor_fill_slots(const char* text, mcor_word word, void* user);
   /* The code's name, "ISO_OUTSIDE", and its text, with formats and slots; NULL if there is none. */
   const char* mcor_says_name(mcor_says code);
   const char* mcor_says_text(mcor_says code);
-  /* The code of a sentence in the words of any interface; MCOR_SAYS_NOTHING if it is none of this
-   * library's. */
+  /* Returns the code of a sentence in the words of any interface; MCOR_SAYS_NOTHING if the sentence
+   * is not of this library. */
   mcor_says mcor_code_of(const char* sentence);
 
   /* Element type of an array. */
@@ -130,7 +130,7 @@ extern "C"
   } mcor_seed_mode;
 
   /* How nodes are connected on an ambiguous face (two above the iso value and two below,
-   * diagonally) and inside a cell. Both give the same vertices, and a manifold. */
+   * diagonally) and inside a cell. Either way gives the same vertices, and a manifold. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
@@ -151,18 +151,18 @@ extern "C"
   typedef enum mcor_capping
   {
     MCOR_CAP_NONE = 0,   /* the default */
-    MCOR_CAP_PERIOD = 1, /* those of the period */
-    MCOR_CAP_BOX = 2     /* and those of the box */
+    MCOR_CAP_PERIOD = 1, /* the sides of the period */
+    MCOR_CAP_BOX = 2     /* the sides of the period and of the box */
   } mcor_capping;
 
-  /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
+  /* The quantity by which trimming tells where the fluid ends: about 1 inside, without a unit. */
   typedef enum mcor_boundary_detection
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
     /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x -
      * x_j), the inverse of the renormalisation matrix (Marrone et al. 2010), over the same
-     * particles. Set vertex_threshold, too: 0.3 trims about where a weight of 0.5 does, 0.75 inside
-     * the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged. */
+     * particles. Set vertex_threshold, too: 0.3 trims about where a weight of 0.5 does; 0.75 trims
+     * 0.9 smoothing lengths inside a flat surface. Near 0.5 the border is ragged. */
     MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
@@ -176,12 +176,13 @@ extern "C"
     double constant;  /* the value of all particles where data and memory are NULL */
     const char* name; /* for messages; may be NULL */
 
-    /* For programs with an OpenCL context of their own: a cl_mem of any context, in which the values
-     * are where data is NULL. Those of the first particle begin at byte `offset`, and of each next
-     * one `stride` bytes later; 0: they are packed. Calls on a mcor_context map the arrays of
-     * mcor_input for reading (on a CPU without a copy; from a GPU they pass through the host, which
-     * checks and measures all particles); commands that write to them must have finished. Functions
-     * without a context, and arrays elsewhere, do not read them. See mcor_store for results. */
+    /* For programs with an OpenCL context of their own: a cl_mem of any context, which holds the
+     * values if data is NULL. The values of the first particle begin at byte `offset`, of each next
+     * particle `stride` bytes later; stride 0: values are packed. Calls on a mcor_context map such
+     * arrays of mcor_input for reading (on a CPU without a copy; from a GPU they pass through the
+     * host, which checks and measures all particles); commands that write to them must have
+     * finished. `memory` is not read by functions without a context, nor in arrays outside of
+     * mcor_input. See mcor_store for results. */
     void* memory;
     size_t offset, stride;
   } mcor_array;
@@ -190,7 +191,7 @@ extern "C"
   int mcor_is_given(const mcor_array* array);
 
 #define MCOR_MAGNITUDE (-1)
-/* In mcor_input.solid. */
+/* A mark in mcor_input.solid. */
 #define MCOR_ABSENT 2
 
   typedef struct mcor_input
@@ -207,26 +208,26 @@ extern "C"
     int estimate_smoothing_length;
 
     /* Factors of the smoothing lengths, at least 1, as mcor_widen makes them; not given: 1. Kernels
-     * are as long as the products; cubes, their levels and the statistics follow the smoothing
-     * lengths. Volumes must be known: where they are computed, those that mcor_widen returns. As an
-     * attribute, too, the factors are carried to the surface. */
+     * use smoothing length x factor; cubes, their levels and the statistics use the smoothing
+     * length. Volumes must be given: if they would be computed, give the volumes that mcor_widen
+     * returns. To have the factors on the surface, make them an attribute, too. */
     mcor_array widening;
 
     /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if
      * both are given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j
      * sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the
      * sum is low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j =
-     * the kernel's standard deviation along an axis, d = the dimension. Solids fill that side: of
-     * their share of g, as much counts, from none to all of it, as makes |g| least; F_j = 1 for
-     * solids themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids
-     * unless the free surface ends at them. Computed volumes next to walls therefore differ between
-     * the fields. */
+     * the kernel's standard deviation along an axis, d = the dimension. Solids fill that side: g
+     * contains their part times the factor from 0 to 1 that makes |g| least; F_j = 1 for solids
+     * themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless
+     * the free surface ends at them. Computed volumes next to walls therefore differ between the
+     * fields. */
     mcor_array volume, mass, density;
 
-    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. Of 2 or more components,
-     * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
-     * NULL, A is the dot product of the two vectors. Values above about 1e30 need double precision;
-     * above 1e290, another unit. */
+    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. If it has 2 or more components,
+     * scalar_component selects one of them, MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data
+     * is not NULL, A is the dot product of the two vectors. Values above about 1e30 need double
+     * precision; values above 1e290 need another unit. */
     mcor_array scalar;
     int scalar_component;
     mcor_array scalar_dot;
@@ -234,8 +235,8 @@ extern "C"
     /* [count], borrowed; nonzero: a solid (wall) particle. NULL: all particles are fluid. Solid
      * particles never take part in the field. They count in the weight used for trimming unless
      * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. MCOR_ABSENT:
-     * the particle is left out of everything. Nothing of absent particles, and of solids that play
-     * no part, is looked at, so they may hold NaN. */
+     * the particle is left out of everything. Arrays may hold NaN for absent particles, and for
+     * solids that play no part, because these values are not used. */
     const uint8_t* solid;
     int ignore_solids;
 
@@ -244,7 +245,7 @@ extern "C"
     const mcor_array* attributes; /* [attribute_count] */
     int attribute_count;
 
-    /* Reuse: equal nonzero numbers in two successive calls promise that these are the same:
+    /* Reuse: equal nonzero numbers in two successive calls promise that the following is the same:
      * positions, smoothing lengths, their factors, volumes and solids (particles_version), the
      * scalar (scalar_version), or all attributes (attributes_version; mcor_probe keeps them on the
      * device). Reuse saves time and never changes the result. 0: never reuse. */
@@ -287,9 +288,9 @@ extern "C"
 
   typedef struct mcor_options
   {
-    /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are
-     * those of two dimensions (volumes are areas, masses are per unit of depth), and lines are
-     * extracted in place of a surface. 0 (the default): 2 if exactly one coordinate is the same for
+    /* 2: x, y or z is exactly the same for all particles, so they lie in a plane; sums are
+     * two-dimensional (volumes are areas, masses are per unit of depth), and lines are extracted in
+     * place of a surface. 0 (the default): 2 if exactly one coordinate is the same for
      * all particles, else 3; see mcor_statistics.dimension. In the plane, squares take the place of
      * cubes, and a period along the constant axis is ignored. */
     int dimension;
@@ -313,13 +314,14 @@ extern "C"
      * with a node of fluid weight below 0.001. */
     double node_threshold;
     mcor_boundary_detection boundary_detection;
-    /* Triangles are trimmed where the weight (or the boundary eigenvalue) is lower; default 0.5.
-     * With MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001, or
-     * below 0.05 with M'4, whose negative lobes give the mean poles. */
+    /* Triangles are trimmed where the weight (or the boundary eigenvalue) is below this; default
+     * 0.5. With MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001,
+     * or below 0.05 with M'4, whose negative lobes give the mean poles. */
     double vertex_threshold;
-    /* Above 0: the surface, a free surface too, also ends where the solids' share of the weight
-     * exceeds this, unless solids are ignored; 0.5: where they weigh more than the fluid. 0: it
-     * does not end at solids. Or MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED. */
+    /* Above 0: any surface, even a free surface, also ends where the solids' share of the weight
+     * exceeds this, unless solids are ignored; 0.5: where solids weigh more than the fluid. 0: the
+     * surface does not end at solids. Or MCOR_WALL_SHARE_AUTO (default) or
+     * MCOR_WALL_SHARE_MEASURED. */
     double wall_share;
     int preview; /* nonzero: vertices by linear interpolation, no correction */
     /* In two dimensions, nonzero: triangles fill the region above the lowest iso value within the
@@ -330,11 +332,11 @@ extern "C"
      * smallest size. In three dimensions this is an error. */
     int filled;
     /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices
-     * of one node of the virtual grid that edges of triangles join are merged, and then moved along
-     * the gradient onto the surface, not along lattice edges. That is undone where it would change
-     * the pieces or turn a triangle over; the widest corner of a sliver that is left starts anew
-     * from the middle of its neighbours. Points on the sides of periods, at caps and on borders
-     * stay, and are those without this option. Cannot be combined with `filled`. */
+     * that belong to one node of the virtual grid, and that edges of triangles join, are merged.
+     * The merged vertex moves onto the surface along the gradient, not along a lattice edge. A
+     * merge is undone if it would change the pieces or turn a triangle over. The widest corner of a
+     * sliver that is left starts anew from the middle of its neighbours. Points on the sides of
+     * periods, at caps and on borders do not change. Cannot be combined with `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; mcor_spell_out sets what this stands for */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
@@ -344,12 +346,12 @@ extern "C"
      * before a run fails for lack of memory. */
     int64_t memory_limit;
 
-    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are
-     * in the box, box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side
-     * make up the whole surface. Sides may be infinite. A box may be flat (y0 = y1) only around
-     * particles in that plane. Lattice, ranges and smallest h are measured over all particles; only
-     * those that reach the box are evaluated. mcor_probe and mcor_derive read the box only with
-     * globals. */
+    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the result is the part of the surface in cells
+     * whose centres are in the box, box[2 a] <= x < box[2 a + 1] along axis a, with the same bits;
+     * boxes side by side make up the whole surface. Sides may be infinite. A box may be flat (y0 =
+     * y1) only around particles in that plane. Lattice, ranges and smallest h are measured over all
+     * particles; only those that reach the box are evaluated. mcor_probe and mcor_derive read the
+     * box only with globals. */
     double box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
@@ -364,8 +366,8 @@ extern "C"
      * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of
      * whole_box). These caps share the points of the surface's border; their other points are
      * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
-     * Trimming also cuts caps, and leaves its own border open, as is that at solids (see wall_share).
-     * With caps, all cubes have the smallest size.
+     * Trimming also cuts caps. The trimmed border stays open, and so does the border at solids (see
+     * wall_share). With caps, all cubes have the smallest size.
      * With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
      * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be
      * combined with MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the
@@ -373,9 +375,9 @@ extern "C"
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
-     * particles, of which the input needs to hold only those whose supports miss the box by no more
+     * particles. The input then needs only the particles whose supports miss the box by no more
      * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
-     * support of those. The surface is, to the last bit, that of all particles. Borrowed until
+     * supports of these. The surface has the same bits as with all particles. Borrowed until
      * return. For mcor_probe and mcor_derive: the result of mcor_measure_probe_globals. Their
      * results are valid in the box and on its sides; elsewhere they are meaningless, or 0 for
      * particles two cubes or more away from the box. */
@@ -384,18 +386,19 @@ extern "C"
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
      * measure over the inputs of all ranks; each particle must be in exactly one of them. (A rank
      * without particles has count 0, and data that are not NULL where the other ranks have data.)
-     * The result is, to the last bit, that of all particles in one input, except for not_finite,
-     * the lowest number that such a particle has on its rank. mcor_extract needs these globals;
-     * each cell must be in the box of exactly one rank. Functions that do not mention ranks do not
-     * read them. Borrowed until return. */
+     * The result has the same bits as for all particles in one input, except for not_finite, the
+     * lowest number that such a particle has on its rank. mcor_extract needs these globals; each
+     * cell must be in the box of exactly one rank. Functions that do not mention ranks do not read
+     * them. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
-    /* What progress reports while a driver builds programs, which may take a minute; if that is
-     * known, ", about 5 s to come" follows. The built-in device's are built ahead. */
+    /* What progress reports while a driver builds programs, which may take a minute; if the rest of
+     * the time is known, ", about 5 s to come" follows. Programs of the built-in device are built
+     * ahead. */
 #define MCOR_BUILDING "building the OpenCL program (first time only)"
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
@@ -420,13 +423,14 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
-    /* Particles that are left out because they are too far away from all others for the virtual
-     * grid: at most 0.1 %, or 8; number and position of the first of them. */
+    /* far_particles: how many are left out because they are too far away from all others for the
+     * virtual grid (at most 0.1 % of all, or 8); far_first, far_place: number and position of the
+     * first one. */
     int64_t far_particles, far_first;
     double far_place[3];
     /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
-     * lowest iso value: alone they have no free surface. 0 where volumes are computed, and of
-     * scalars. */
+     * lowest iso value: alone they have no free surface. 0 if volumes are computed, and if a scalar
+     * is contoured. */
     int64_t lone_particles;
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
@@ -436,27 +440,27 @@ extern "C"
      * as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
-    /* Fluid particles that are inside with their length and outside with the widened one: the sums of mcor_widen, with
-     * s = 1 and with the factor. mcor_widen in a box counts those next to it, too. */
+    /* Fluid particles that the sum of mcor_widen puts inside with s = 1, but outside with their
+     * factor. In a box, mcor_widen also counts particles next to the box. */
     int64_t widening_outside;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
     double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; or 0 */
     double plane_extent;    /* of the positions of all particles along it */
     int dimension;          /* 2 or 3, see mcor_options.dimension */
-    double cube_size;       /* unit L; the shortest of: */
+    double cube_size;       /* unit L; the shortest of cube_edges */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
-    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box;
-     * of ranks that share a vertex, one counts it. Counts of bricks, nodes, faces and evaluations
-     * include the work done around the box. */
+    /* With a box, the lattice and all counts of cells, triangles and vertices are for the box
+     * alone; a vertex that ranks share is counted by one of them. Counts of bricks, nodes, faces
+     * and evaluations include the work done around the box. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not
-     * exclude; with adaptive cubes, the cells of leaves through which the surface passes. Pairs:
-     * the cells between them. And how many of these cells the surface does not use. These and the
-     * following counts are summed over iso values. */
+     * exclude; with adaptive cubes, the cells of leaves through which the surface passes. Pair
+     * seeds: the cells between the two particles. seed_cells_not_intersected: how many of these
+     * cells the surface does not use. These and the following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
@@ -490,17 +494,17 @@ extern "C"
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
-      /* linear: left at the linear cut, off the iso value; */
+      /* trim vertices that are left at the linear cut, off the iso value */
       trim_vertices_linear;
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* The key of a point: the number of the iso value and the kind of the point, then its place: its
-   * lattice edge; of a merged point the node, and which of the pieces there; of a cut the two
-   * points between which it lies; of a point of a cap the square. The points of a surface have
-   * different keys, in ascending lexicographic order. In the surface of a box, points have the same
-   * keys as in the whole surface. */
+  /* The key of a point: the number of the iso value and the kind of the point, then its place. The
+   * place of a merged point is the node and the number of the piece there; of a cut, the two points
+   * between which it lies; of a cap's point, the square; of any other point, its lattice edge. The
+   * points of a surface have different keys, in ascending lexicographic order. In the surface of a
+   * box, points have the same keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
   /* The key of a triangle: the number of the iso value, then its cell or the square of a cap.
@@ -520,8 +524,8 @@ extern "C"
     /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
      * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on
      * its left, seen against the constant axis. A closed line ends with its first point. Open lines
-     * come first. Normals lie in the plane; with `filled`, all are those of the triangles, along
-     * the constant axis. Counts of triangles in the statistics are those of lines between two
+     * come first. Normals lie in the plane; with `filled`, all normals are those of the triangles,
+     * along the constant axis. Where statistics count triangles, they count lines between two
      * points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
@@ -540,14 +544,14 @@ extern "C"
     /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or eigenvalue) is the
      * vertex threshold or the solids' share the wall share; 2: the same, but left at the linear
      * cut; 4: on a lattice edge next to a cell that the node threshold discarded; 8: belongs to a
-     * cap alone, see capping, or is a node that is filled around. */
+     * cap alone, see capping, or is a node inside the filled region. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
-    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: those
-     * of a sphere of radius R are 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In
-     * two dimensions the mean curvature is that of the line, 1 / R for a circle. Of caps they are
+    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: a
+     * sphere of radius R has 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In two
+     * dimensions the mean curvature is that of the line, 1 / R for a circle. On caps both are
      * meaningless. */
     double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
@@ -571,10 +575,10 @@ extern "C"
    * there is no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* Why the last call on this context that failed did so, in one sentence, with C's words in its
-   * slots; "" if none failed. Valid until the next call on the context. */
+  /* Says in one sentence, with C's words in its slots, why the last failed call on this context
+   * failed; "" if none failed. Valid until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
-  /* The same with its code, and slots to be filled. */
+  /* Returns the same sentence with its code; its slots are not filled yet. */
   mcor_message mcor_last_message(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
@@ -603,12 +607,12 @@ extern "C"
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
 
-  /* Whether a table's column of this name tells particles, or kinds of them, apart by whole numbers:
-   * one that ends as "id", "type", "index", ... */
+  /* Whether a table's column of this name tells particles, or kinds of them, apart by whole
+   * numbers: it ends in "id", "type", "index", ... */
   int mcor_tells_apart(const char* name);
 
   /* Whether an array of this name, with whole numbers from low to high over all particles, clearly
-   * tells which particles are fluid: one that holds 0 and 1, or the codes of DualSPHysics. *fluid
+   * tells which particles are fluid, because it holds 0 and 1, or the codes of DualSPHysics. *fluid
    * becomes the value of fluid particles. */
   int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
@@ -649,8 +653,8 @@ extern "C"
 
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
-  /* With `smooth`, sets `compact`, and `widen` to 2 if that is 1. Call it when the options are
-   * complete; with `smooth`, mcor_widen and mcor_extract fail without it. */
+  /* With `smooth`, sets `compact` unless `filled` is set, and sets `widen` to 2 if it is 1. Call it
+   * when the options are complete; with `smooth`, mcor_widen and mcor_extract fail without it. */
   void mcor_spell_out(mcor_options* options);
 
   /* Extracts the surface. *surface is overwritten; free what it held before the call. */
@@ -658,11 +662,11 @@ extern "C"
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
 
-  /* Writes an array of a result, from->data [count][components], to an OpenCL buffer, to->memory, in
-   * its type, at its offset and stride; bytes between the values stay. Where types are the same,
-   * bytes are copied, so that whole numbers may pass as floats of their size. The array is written
-   * when the call returns. Fails with MCOR_INVALID_ARGUMENT if the buffer is too small, or the
-   * components differ. */
+  /* Writes an array of a result, from->data [count][components], to an OpenCL buffer, to->memory,
+   * with the type, offset and stride of `to`; bytes between the values stay. If both types are the
+   * same, bytes are copied, so that whole numbers may pass as floats of their size. The array is
+   * written when the call returns. Fails with MCOR_INVALID_ARGUMENT if the buffer is too small, or
+   * the components differ. */
   mcor_status mcor_store(
     mcor_context* context, const mcor_array* from, int64_t count, const mcor_array* to);
 
@@ -694,20 +698,21 @@ extern "C"
   /* Finds smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the
    * h_i, unit L, that solve h_i^d sum_j W(x_i - x_j, h_i) = eta^d, to 1e-6 of h_i; d is the
    * dimension. The sum goes over all particles that play a part, fluid and solid, j = i
-   * included. `count`: the particles that get a length are the first ones; the others, such as
-   * those of other ranks, are neighbours only. 0 for particles that play no part. None is longer
-   * than the extent of all. Reads the positions and solids of the input, and of the options
-   * sph_kernel, dimension, periodic and ranks. Not with M'4, whose sum does not grow with h. *why:
-   * why it failed; no message if it did not.
-   * Ranks: each particle is among the first ones of one rank, which may lack some of its neighbours.
-   * The length is then too long; it is that of one process, to the last bit, where all particles and
-   * images within 1.25 times its support radius are there. */
+   * included. Only the first `count` particles get a length; the others, such as particles of other
+   * ranks, are neighbours only. Particles that play no part get 0. No length exceeds the extent of
+   * all particles. Reads positions and solids of the input, and sph_kernel, dimension, periodic and
+   * ranks of the options. Fails with M'4, whose sum does not grow with h. *why: why the call failed;
+   * no message if it did not.
+   * Ranks: each particle is among the first ones of one rank, which may lack some of the particle's
+   * neighbours. Its length is then too long; it has the same bits as in one process if all particles
+   * and images within 1.25 times its support radius are there. */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
     double eta, int64_t count, double* lengths, mcor_message* why);
 
-  /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles,
-   * unit of mass / L^d. Reads positions, masses, solids, and smoothing lengths [count] of the
-   * input, and the same options. Ranks must have all particles within the support radii. */
+  /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i), unit of mass / L^d, over the
+   * same particles as mcor_find_smoothing_lengths. Reads positions, masses, solids, and smoothing
+   * lengths [count] of the input, and the same options. Ranks must have all particles within the
+   * support radii. */
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
     int64_t count, double* densities, mcor_message* why);
 
@@ -724,9 +729,9 @@ extern "C"
   /* Warns of how long a run of `cells` cells may take. */
   mcor_message mcor_describe_estimate(double cells);
 
-  /* Words for panels, with six digits: the smoothing length and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array
-   * Density"; area and volume, or length and area, "" where there is no surface. Free them with
-   * free(). NULL if memory ran out. */
+  /* Return words for panels, with numbers of six digits: the smoothing length and the volume in
+   * use, "0.02 to 0.045 (array h)", "array Mass / array Density"; area and volume, or length and
+   * area, "" if there is no surface. Free them with free(). NULL if memory ran out. */
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
   char* mcor_describe_measures(const mcor_statistics* statistics);
@@ -735,20 +740,22 @@ extern "C"
   typedef enum mcor_warning
   {
     MCOR_WARN_NEIGHBOURS =
-      0, /* far too few or too many, or far too large, see neighbours_median, filled_median */
+      0, /* far too few or too many neighbours (neighbours_median), or too large volumes
+          * (filled_median) */
     MCOR_WARN_PLANE,     /* the particles lie in a plane, as in a 2-D simulation */
     MCOR_WARN_ISO_VALUE, /* outside the range of the field */
     MCOR_WARN_TRIMMED,   /* a threshold leaves nothing of the surface */
     MCOR_WARN_PRECISION, /* positions are rounded too much, see position_error */
-    MCOR_WARN_TOLERANCE, /* vertices are off the iso value by more than rounding, see vertices_above_tolerance */
+    MCOR_WARN_TOLERANCE, /* vertices are off the iso value, see vertices_above_tolerance */
     MCOR_WARN_FAR,       /* particles far away are left out, see far_particles */
-    MCOR_WARN_PERIOD,    /* the particles go farther than the period */
-    MCOR_WARN_COARSE,    /* positions were rounded by about their distances before they came here */
+    MCOR_WARN_PERIOD,    /* the particles extend farther than the period */
+    MCOR_WARN_COARSE,    /* the input's positions are rounded by about the particles' distances */
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* The warning with numbers; no message if there is no such warning. Pass the input, options and surface of mcor_extract. The last three kinds
-   * hold for any call; they read nothing of the surface but its statistics. */
+  /* Returns the warning with its numbers; no message if there is nothing to warn of. Pass the
+   * input, options and surface of mcor_extract. The last three warnings hold for any call; they
+   * read nothing of the surface but its statistics. */
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
@@ -762,7 +769,7 @@ extern "C"
    * coordinate, in magnitude, is `largest`. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
 #define MCOR_PARTICLE_TYPES 8
-/* The array that marks, in blocks joined to one set, the particles of blocks with names of walls. */
+/* In blocks joined to one set, this array marks the particles of blocks that are named as walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
   /* The field at given points. Owned; free with mcor_free_samples. */
@@ -811,12 +818,12 @@ extern "C"
   {
     mcor_gauge_state state;
     int outside;        /* 1: no particle's support reaches the line */
-    double first, last; /* where fluid ends first, and last; the line's length if it does not end
-                              * before that; NaN where dry */
+    double first, last; /* where fluid ends for the first and for the last time; the line's length
+                         * if it does not end; NaN where dry */
     double depth;       /* length of the line in fluid; 0 where dry */
     double place[3];    /* of `last`; NaN where dry */
-    int64_t first_crossing; /* of this line, among all */
-    int64_t crossing_count; /* whichever way the line goes through the surface */
+    int64_t first_crossing; /* index of this line's first crossing in mcor_gauges.crossings */
+    int64_t crossing_count; /* this line's crossings, into fluid and out of it */
   } mcor_gauge_reading;
 
   /* Owned; free with mcor_free_gauges. */
@@ -829,16 +836,16 @@ extern "C"
     mcor_statistics statistics;
   } mcor_gauges;
 
-  /* Where lines cross the free surface, that is, where the weight sum equals the level, which is
-   * the iso value (above 0; 0.5 if there is none). There is fluid where the sum is at least the
-   * level. Solids count in the sum, unless they are ignored, and the fluid ends where their share
-   * of it exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line is
-   * sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
-   * neighbouring samples show that an extremum may cross the level; then crossings are solved for.
-   * lines: [count]. The options of mcor_probe apply, except field, and iso_values and wall_share
-   * do, too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM,
-   * level_limit 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; all
-   * get all readings. *gauges is overwritten. */
+  /* Finds where lines cross the free surface, that is, where the weight sum equals the level, which
+   * is the iso value (above 0; 0.5 if there is none). There is fluid where the sum is at least the
+   * level. Solids count in the sum, unless they are ignored, and the fluid ends where the solids'
+   * share exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line is sampled
+   * at a quarter of the smallest (scaled) smoothing length, or more finely where neighbouring
+   * samples show that an extremum may cross the level; then crossings are solved for. lines:
+   * [count]. The options of mcor_probe apply, except field; iso_values and wall_share apply, too.
+   * Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM, level_limit 0 and
+   * MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; each rank gets all
+   * readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
@@ -852,9 +859,9 @@ extern "C"
     MCOR_SECTION_RECTANGLE = 0,
     MCOR_SECTION_DISC = 1, /* the centre, and the normal, of any length */
     MCOR_SECTION_BOX =
-      2, /* the lowest and the highest corner; the section is its sides, with normals outwards */
-    /* three points each; the normal follows the right-hand rule, but points outwards if they are a
-     * closed surface */
+      2, /* the lowest and the highest corner; the section is the box's sides, normals outwards */
+    /* three points each; the normal follows the right-hand rule, but points outwards if the
+     * triangles form a closed surface */
     MCOR_SECTION_TRIANGLES = 3,
     /* Two points each, in two dimensions only. The normal points to the right of the way from the
      * first to the second one, seen with the plane's first axis (x; y where x is constant) to the
@@ -883,7 +890,7 @@ extern "C"
     int outside;        /* 1: no particle's support reaches the section */
     double area;        /* A, unit L^2 */
     double volume_flux; /* the integral of v . n */
-    double mass_flux;   /* of rho v . n; NaN without densities */
+    double mass_flux;   /* the integral of rho v . n; NaN without densities */
     double velocity;    /* volume_flux / area; NaN where the area is 0 */
   } mcor_flux_reading;
 
@@ -905,21 +912,22 @@ extern "C"
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
 
-  /* An image of column integrals: where it looks. */
+  /* Where an image of column integrals looks, and what it shows. */
   typedef struct mcor_view
   {
     /* Direction of the line of sight; its length and sign do not matter. All 0: the constant
      * axis of a plane, else z. */
     double direction[3];
-    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there
-     * is none. Sides may be infinite. The image is the box as it is seen. If the line of sight is
-     * x, y or z, a particle counts if its position along it is in the box and its kernel reaches
-     * the image; otherwise, if its position is in the box. Each counts with all of its kernel. */
+    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, or along axes without one, all that
+     * particles reach. Sides may be infinite. The image is the box as it is seen. If the line of
+     * sight is x, y or z, a particle counts if its position along this axis is in the box and its
+     * kernel reaches the image; otherwise, if its position is in the box. It counts with its whole
+     * kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what
-     * the pixel sees of the kernel; by the array of masses, sum m A F / sum m F. data NULL: column
-     * integrals. */
+     * the pixel sees of the kernel; if masses are the weight, sum m A F / sum m F. data NULL: the
+     * image shows column integrals. */
     mcor_array weight;
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
@@ -930,20 +938,20 @@ extern "C"
     int size[2];       /* pixels along the image's axes; 0, 0: there is nothing to see */
     double* values;    /* [size[1]][size[0]], means over pixels: scalar unit x L; NaN where a mean has no weight */
     double axes[9];    /* three unit vectors: along a row, from row to row, and the line of sight */
-    double low[3];     /* where the image begins, along these axes; its place along the line of sight is the nearest one
-                        * of what counts */
+    double low[3];     /* where the image begins along these axes; along the line of sight, the
+                        * nearest place of what counts */
     double pixel[2];   /* sides of a pixel, unit L */
     mcor_statistics statistics;
   } mcor_projection;
 
-  /* Column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of the largest
-   * that one particle adds to a pixel; without a scalar, of the density, which is the mass: the
-   * image then has the mass that falls into it, times 1 / pixel area. In two dimensions, the sum
-   * itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and progress
-   * apply, and where volumes are computed those of mcor_probe do. The result has the same bits for
-   * any order of the particles. Ranks get all of the image; they need boxes and globals (of
-   * mcor_measure_probe_globals) only where volumes are computed or h is estimated, and then
-   * `counted`, so that each particle counts once. *projection is overwritten. */
+  /* Computes column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of
+   * the most that one particle adds to a pixel. Without a scalar, integrates the density: a pixel
+   * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
+   * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
+   * progress apply; if volumes are computed, all options of mcor_probe do. The result has the same
+   * bits for any order of the particles. Each rank gets the whole image; ranks need boxes, globals
+   * (of mcor_measure_probe_globals), and `counted`, so that each particle counts once, only if
+   * volumes are computed or h is estimated. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   /* Finds the image without its values. */
@@ -955,23 +963,23 @@ extern "C"
   typedef struct mcor_widening
   {
     int64_t count;  /* of particles */
-    double* factor; /* [count]; 1 of solids */
+    double* factor; /* [count]; 1 for solids */
     double* volume; /* [count], of the original lengths; NULL where they are not computed */
-    uint8_t* outside; /* [count], whether statistics.widening_outside counts the particle */
+    uint8_t* outside; /* [count], 1 if statistics.widening_outside counts the particle */
     mcor_statistics statistics;
   } mcor_widening;
 
   /* Makes a smoother surface possible: flat surfaces become flat, and drops, threads and sheets
-   * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps of
-   * 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
-   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; or less 0.08
-   * for particles with many neighbours, all on one side. The factor is then reduced to 1
-   * where neighbours are few (drops, threads), and to at most the Shepard mean of the factors
-   * around the particle; in a corner of deep water it rises towards that mean (mcor_widen.c has the
-   * whole rule). The surface of an input with these factors and volumes has the cubes of the
-   * original lengths; with uniform cubes it is, to the last bit, that of the products of smoothing
-   * lengths and factors in cubes of the same size. Reads the options of mcor_extract; a box only with globals,
-   * which are those of mcor_measure_globals with level_limit 0: results are then valid for
+   * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps
+   * of 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
+   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1, or minus 0.08
+   * for particles with many neighbours, all on one side. The factor is then reduced to 1 where
+   * neighbours are few (drops, threads), and to at most the Shepard mean of the factors around the
+   * particle; in a corner of deep water it rises towards that mean (mcor_widen.c has the whole
+   * rule). The surface of an input with these factors and volumes has the cubes of the original
+   * lengths; with uniform cubes it is, to the last bit, that of the products of smoothing lengths
+   * and factors in cubes of the same size. Reads the options of mcor_extract; a box only with
+   * globals, which are those of mcor_measure_globals with level_limit 0: results are then valid for
    * particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 /
    * h_scale) around, or 1 + widen where volumes are known. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,

@@ -212,7 +212,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   free(far.solid);
   context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
-  context->box.of_points = context->box.has_points = false; /* a probe's */
+  context->box.of_points = context->box.has_points = false; /* the points were those of a probe */
   if (status != MCOR_OK || !is_all)
   {
     context->kept.grid = context->kept.value = context->kept.nodes = false;

@@ -3,9 +3,9 @@
 #ifndef mcor_find_h
 #define mcor_find_h
 
-/* Particles as files and programs have them, a list of named arrays, and what is said about them by
- * hand; made of both: an mcor_input, which array serves for what, and sentences about what is
- * missing or passed over.
+/* Makes an mcor_input of particles as files and programs have them, a list of named arrays, and of
+ * what a user says about these. Also tells which array serves for what, and in sentences, what is
+ * missing or not used.
  *
  *   mcor_found found;
  *   if (mcor_find_input(&request, &positions, arrays, count, NULL, &found) == MCOR_OK)
@@ -24,7 +24,7 @@ extern "C"
 #pragma GCC visibility push(default)
 #endif
 
-  /* Types of elements. The first two are those of mcor_type. */
+  /* Types of elements. The first two are the types of mcor_type. */
   typedef enum mcor_element
   {
     MCOR_ELEMENT_FLOAT32 = 0,
@@ -79,7 +79,7 @@ extern "C"
     MCOR_WANT_FLOW = 16,      /* velocity and, where it is known, density as attributes */
     MCOR_WANT_COLUMN = 32, /* for mcor_project: the scalar, if there is one, and mass or density */
     MCOR_WANT_LIST = 64,   /* a list of what is found: a missing smoothing length is no error */
-    MCOR_WANT_FLUID = 128  /* where no fluid is given, a look at arrays that may tell it */
+    MCOR_WANT_FLUID = 128  /* if no fluid is given, a look at arrays that may tell it */
   } mcor_want;
 
   /* A range in which the values of an array must be. */
@@ -96,21 +96,22 @@ extern "C"
     const char* names[MCOR_ROLE_COUNT];
     double values[MCOR_ROLE_VALUES]; /* one value for all particles; 0: none */
     int find; /* nonzero: arrays that are not given are found by their names */
-    /* Volumes are not taken from the arrays that were found, but computed. */
+    /* Nonzero: volumes are computed, not taken from arrays. */
     int compute_volumes;
-    double particle_volume;        /* of all particles, where nothing else tells volumes; 0: none */
+    double particle_volume;        /* of each particle, if nothing else tells volumes; 0: none */
     int estimate_smoothing_length; /* as in mcor_input */
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
-    /* The value of fluid particles in the array that is given; and whether to take what MCOR_WANT_FLUID
-     * finds. Of blocks that are one set, the name may be "Block: NAME". */
+    /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
+     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: whether to take
+     * what MCOR_WANT_FLUID finds. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
-    int free_surface;      /* the scalar is the weight sum; without effect but in sentences */
+    int free_surface;      /* nonzero: the free surface is contoured, so no scalar is looked for */
     int scalar_component;  /* as in mcor_input */
     int active;            /* the array to contour if it is fit and none is given; -1: none */
-    int not_on_points;     /* bit 1 << role: the array given is not one of the particles */
+    int not_on_points;     /* bit 1 << role: the array that is given is not an array of particles */
     double within[6];      /* bounds of the particles that count, unless all are 0 */
     const mcor_only* only; /* [only_count]; of several ranges of one array, any may hold */
     int only_count;
@@ -118,9 +119,9 @@ extern "C"
      * attributes. The array of iso values has the name of what is contoured, unless a computed one
      * has it. */
     const char *taken, *excluded;
-    int filled; /* nonzero: of a filled region, whose iso values are no values of the scalar */
-    int has_iso_values; /* nonzero: there is such an array, so none of its name is an attribute */
-    const char* label;  /* what the scalar calls the component; NULL: X, Y, Z or a number */
+    int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
+    int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
+    const char* label;  /* the name of the scalar's component; NULL: X, Y, Z or a number */
   } mcor_request;
 
   /* Made by mcor_find_input; free it with mcor_free_found. Indices are those of the arrays given;
@@ -128,25 +129,25 @@ extern "C"
   typedef struct mcor_found
   {
     mcor_input input; /* ready to use, until this is freed */
-    /* The array that serves for what. Of the quantities, only those that the input has. */
+    /* The array of each role; for quantities, only if the input has them. */
     int which[MCOR_ROLE_COUNT];
-    mcor_array views[MCOR_ROLE_COUNT]; /* the arrays as the core reads them, or values given; known
-                                        * quantities, even if the input lacks them; of FLUID the name */
+    mcor_array views[MCOR_ROLE_COUNT]; /* each role's array as the core reads it, or its value; all
+                                        * quantities, even unused ones; for FLUID only a name */
     double fluid_value;
-    int64_t fluid_count; /* of these particles */
-    int* attributes;     /* [input.attribute_count], of which arrays the input's attributes are */
+    int64_t fluid_count; /* number of fluid particles */
+    int* attributes;     /* [input.attribute_count], the array of each attribute of the input */
     int* nearest; /* [nearest_count], arrays that cannot be interpolated: whole numbers, text */
     int nearest_count;
     mcor_named made[2]; /* "Velocity" of vx, vy and vz; "Density" of mass and volume; or no name */
     /* What is still to be summed over neighbours: mcor_take_lengths, mcor_take_densities. */
     int needs_lengths, needs_densities;
     mcor_message error;       /* what is missing or not usable */
-    mcor_message unused_type; /* an array that seems to tell fluid from solids is not used */
+    mcor_message unused_type; /* which array seems to tell fluid from solids, but is not used */
     mcor_message unused;      /* what is given by hand and has no effect */
     char* no_fluid;           /* why no particle is fluid, without a full stop; NULL: some are */
     char*
       scalar_name; /* "Pressure", "Velocity_Magnitude", "Velocity_X", "A_Dot_B"; "": no scalar */
-    const char* iso_value_name; /* this or, if it is taken, "IsoValue" */
+    const char* iso_value_name; /* the scalar's name or, if it is taken, "IsoValue" */
     void** own;                 /* [own_count], memory that belongs to this */
     int own_count;
   } mcor_found;
@@ -159,13 +160,13 @@ extern "C"
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
   void mcor_free_found(mcor_found* found);
 
-  /* The rule of precedence, as bits 1 << role: which of volume, mass and density makes the volumes; 0:
-   * none, so they are request->particle_volume or computed. What is given by hand takes the place of
-   * that quantity alone, so known volumes stay, unless mass and density are both given, or volumes
-   * are to be computed. known: all that is given or found. */
+  /* Returns, as bits 1 << role, which of volume, mass and density make the volumes; 0: none, so
+   * volumes are request->particle_volume or computed. What is given by hand replaces only the same
+   * quantity, so known volumes stay, unless mass and density are both given, or volumes are to be
+   * computed. known: all that is given or found. */
   unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known);
-  /* Says what is given by hand and yet not used; volumes: the name of the array that is used, or
-   * NULL. */
+  /* Says what is given by hand but not used; volumes: the name of the array of volumes that is
+   * used, or NULL. */
   mcor_message mcor_describe_unused(
     const mcor_request* request, unsigned given, unsigned used, const char* volumes);
 
@@ -179,8 +180,8 @@ extern "C"
    * fit; -1: none is fit. */
   int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
 
-  /* The usual name that comes first among these arrays of so many components, which have a value
-   * for each of `tuples` particles; -1: none. */
+  /* Returns the array that has the most usual name of the quantity, among arrays with `components`
+   * components and `tuples` tuples of numbers; -1: none. */
   int mcor_find_named(
     const mcor_named* arrays, int count, mcor_quantity quantity, int components, int64_t tuples);
 

@@ -3,8 +3,7 @@
 #ifndef mcor_internal_h
 #define mcor_internal_h
 
-/* Functions by which phases call each other. Each phase has one file here, and one of the same
- * name among the kernels. */
+/* Functions that files of the core call in each other. */
 
 #include "mcor_say.h"
 #include "mcor_state.h"
@@ -64,7 +63,7 @@ mcor_status mcor_fail(
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
 /* Fills slots into out [size], as snprintf does; returns the length. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
-/* No word is longer; a name that stands in a slot is cut. */
+/* The room for a slot's word, with the final 0; a longer word is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
 /* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. [0]: in space, [1]: in a plane. */
@@ -72,12 +71,12 @@ typedef struct mcor_kernel_row
 {
   const char *name, *norm_text, *support_text, *neighbours[2];
   double support, norm, variance[2];
-  double plane_factor; /* its norm in two dimensions over that in three */
-  bool is_tensor;      /* a product of three, along the axes */
+  double plane_factor; /* norm in two dimensions / norm in three */
+  bool is_tensor;      /* w is a product of three functions, one along each axis */
 } mcor_kernel_row;
 const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
-/* Fails where memory of the host could not be allocated. */
+/* Fails for lack of host memory unless all was allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
 /* Makes room for one more element behind the first `count` of an array, which has room for
  * `room` elements of `width` bytes. */
@@ -118,10 +117,11 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 /* The most lattice nodes along an axis, for which single-precision fixed point resolves 2^-9
  * cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
-/* For a lattice around a box alone: the most cubes from one end of the particles to the other,
- * for those of long supports. Fixed point then resolves 2^-7 cubes. */
+/* The most cubes along an axis for a lattice that is cut to a box or to points, around which long
+ * supports may reach far. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
-/* The most nodes along an axis, and cells, for which keys have bits; see MCOR_RING_CELL. */
+/* Keys have bits for this many nodes along an axis, and for this many cells in all; see
+ * MCOR_RING_CELL. */
 #define MCOR_NODE_LIMIT (1 << 21)
 #define MCOR_KEY_LIMIT 4.6e18
 
@@ -137,7 +137,7 @@ static inline int64_t mcor_source_of(const mcor_context* context, int64_t i)
   return context->source ? context->source[i] : i;
 }
 
-/* Returns the number of batches, above 0, that so many particles or triangles need. */
+/* Returns the number of batches that `count` particles or triangles, at least 1, need. */
 static inline int mcor_batches(const mcor_context* context, int count)
 {
   return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
@@ -204,7 +204,7 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 typedef mcor_status (*mcor_body)(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
 
-/* Runs the body; once more if memory ran out and some could be freed. */
+/* Runs the body; runs it again if memory ran out and some could be freed. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
@@ -215,7 +215,7 @@ void mcor_release_all_data(mcor_context* context);
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
-/* Frees buffers; empty ones stay so. */
+/* Frees buffers; they may be empty already. */
 #define MCOR_RELEASE(context, ...)                                                                 \
   mcor_release_all(context, (mcor_buffer* const[]){ __VA_ARGS__ },                                 \
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
@@ -239,8 +239,8 @@ mcor_status mcor_gather_records(mcor_context* context, const void* records, int6
 /* mcor_statistics.c. Begins a report of progress from one fraction of the call to another; the report may cancel the
  * call. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* Called between two launches, or steps of a loop of the host: reports progress if it is time
- * to, a bit nearer to the end. */
+/* Called between two launches, or steps of a loop of the host: if the last report is old enough,
+ * reports progress that is a bit nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
 /* The observer of calls that report progress. */
 mcor_status mcor_observe_call(mcor_context* context, bool compiles);
@@ -318,8 +318,8 @@ mcor_status mcor_correct(mcor_context* context);
 /* Evaluates the boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
-/* Returns whether the mesh is trimmed; the quantity that trimming compares, at the vertices on lattice edges; its
- * threshold. */
+/* Return whether the mesh is trimmed; whether by the boundary eigenvalue; the quantity that
+ * trimming compares, at the vertices on lattice edges; and the threshold of this quantity. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
@@ -337,7 +337,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
-/* all: also vertices that no triangle uses. */
+/* Appends the mesh to the surface. all: also the vertices that no triangle uses. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
 /* mcor_surface.c. Prepares the surface's attributes: finds those to leave out, and the
@@ -361,9 +361,9 @@ mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
 /* Moves a triangle and its keys to another place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
-/* Returns the key of a brick, whose level's blocks the rung numbers; and of a node, whose level is
- * node[3]. Keys are in the order of slots and vertices: by level, block, brick and node, each by
- * z, y, x. The key of a cell is that of its lowest node. */
+/* Return the key of a brick (rung: the one of its level) and of a node (its level is in node[3]).
+ * Keys have the order of slots and vertices: by level, block, brick and node, each by z, y, x. A
+ * cell has the key of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 {
   uint64_t block = 0, number = 0;
@@ -395,9 +395,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 #define MCOR_CASE_ROWS 1200
 typedef struct mcor_case_table
 {
-  /* First row << 6 | ambiguous faces, bit axis * 2 + side. Bit i of a row's number from there:
-   * whether the corners above are joined on the i-th ambiguous face; so none are in the first
-   * row. Rows with tunnels come last. */
+  /* First row << 6 | ambiguous faces, bit axis * 2 + side. If bit i of the number of a row after
+   * the first row is set, the corners above are joined on the i-th ambiguous face; the first row
+   * joins none. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_CASE_ROWS];
@@ -412,7 +412,7 @@ mcor_status mcor_upload_case_table(mcor_context* context);
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
     MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
 
-/* Returns an edge of the virtual grid in cubes, exactly as a number of the device. */
+/* Returns the length of the virtual grid's edge in cubes; the device holds this number exactly. */
 static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 {
   return ldexp((double)lattice->step[axis], -lattice->fix_bits);

@@ -19,7 +19,7 @@ extern "C"
   /* One component of an attribute, over fluid particles. */
   typedef struct mcor_global_component
   {
-    double largest;     /* absolute value */
+    double largest;     /* greatest absolute value; 0 if it does not vary */
     double low, high;   /* range; low > high without fluid particles */
     int varies;         /* 0: all values, also at solids, are the same */
     int64_t not_finite; /* the first particle at which its attribute is not finite, as attribute_not_finite in
@@ -40,7 +40,7 @@ extern "C"
     double low[3], high[3];          /* of positions minus and plus scaled support radii */
     double x_low[3], x_high[3];      /* range of the positions of fluid particles */
     double h_min, h_max;             /* range of the smoothing lengths of fluid particles */
-    double support_min, support_max; /* the greatest scaled support radius of all particles that take part */
+    double support_min, support_max; /* range of scaled support radii of particles that take part */
     double h_estimate;               /* 0: not asked for */
     int64_t lone_count;                /* lone_particles of mcor_statistics */
     double widening_min, widening_max; /* range of the factors of fluid particles; 0: there are none */
@@ -49,15 +49,16 @@ extern "C"
     double scalar_min, scalar_max;                /* over fluid particles */
     int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */
     double cube;        /* cube size, or the longest of its edges; ignored where it is given */
-    double edge[3];     /* edges of the cubes along x, y, z; likewise */
+    double edge[3];     /* edges of the cubes along x, y, z; ignored where the cube size is given */
     double wall_share;  /* the wall share, if the options ask for it; 0: not measured */
     mcor_plane plane;
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
     int64_t far_count, far_first;         /* far_particles and far_first of mcor_statistics */
     double far_place[3];
     int
-      cut; /* the lattice surrounds only the box or the points, because one around all particles would be too large */
-    double cut_high[3]; /* where the box or points end then; `high` lies beyond */
+      cut; /* nonzero: a lattice around all particles would be too large, so it surrounds only the
+            * box or the points */
+    double cut_high[3]; /* if cut, where the box or points end; `high` lies beyond */
   } mcor_measure;
 
   /* Facts about all particles, which a call with only some of them needs for its box of the
@@ -98,15 +99,15 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The box that the boxes of all ranks are parts of, as mcor_options.box; all 0: without end,
-     * except that of a period. A vertex that several ranks have is counted by one of them. */
+    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: it has no
+     * sides but those of a period. A vertex that several ranks have is counted by one of them. */
     double whole_box[6];
   };
 
   /* mcor_create_context for one of `count` processes or threads that run side by side on a
-   * machine; place: its number, from 0. Unless a number names the device, they take turns among
-   * those of its platform and kind, and those that share a CPU take a share of its processors
-   * each. The result does not depend on this. */
+   * machine; place: its number, from 0. Unless a number names the device, the processes take turns
+   * among the devices of its platform and kind; processes on one CPU device take a share of its
+   * processors each. The result does not depend on this. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
@@ -138,10 +139,10 @@ extern "C"
   typedef struct mcor_measures
   {
     double origin[3];       /* any point; for the same bits, the first one of the whole surface */
-    int64_t triangle_count; /* 1: reduce by the sum, */
-    double area_most, volume_most; /* by the greatest, */
-    double area, volume;           /* 2: by the sum, which is exact in any order, */
-    int64_t open;                  /* by the sum, which may wrap around; 0: closed */
+    int64_t triangle_count; /* 1: reduce by the sum */
+    double area_most, volume_most; /* 1: reduce by the greatest */
+    double area, volume;           /* 2: reduce by the sum, which is exact in any order */
+    int64_t open;                  /* 2: reduce by the sum, which may wrap around; 0: closed */
   } mcor_measures;
 
   /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call

@@ -20,7 +20,7 @@ static const struct
 #include "mcor_says.def"
 };
 
-/* label: in panels; "": the name in VTK's filters, in words. */
+/* label: the words in panels; "": the words are made of property, the name in VTK's filters. */
 static const struct
 {
   const char *slot, *label, *property;
@@ -147,8 +147,8 @@ char* mcor_fill_slots(const char* text, mcor_word word, void* user)
   return out;
 }
 
-/* Returns how many characters of the text, those outside of formats and slots, stand in the sentence
- * in this order; 0 if not all do. */
+/* Returns how many characters the text has outside of formats and slots, if the sentence has all
+ * these pieces in this order; else 0. */
 static size_t mcor_match(const char* text, const char* sentence)
 {
   size_t all = 0;

@@ -30,7 +30,8 @@ typedef struct mcor_lattice
   int levels; /* of cubes; 1: all have one size */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where a period begins, from origin */
-  /* The blocks of each level, and the end; with uniform cubes, higher levels are larger cubes. */
+  /* Where each level's blocks begin, and the end. With uniform cubes, higher levels serve the
+   * particles of longer supports. */
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
@@ -45,8 +46,8 @@ typedef struct mcor_space
   const char* evaluate; /* the kernel for nodes */
 } mcor_space;
 
-/* One of a few particles that stand for all: those whose positions have the least hashes. h,
- * volume: of fluid particles alone; volume is 0 where volumes are computed. */
+/* A particle of the sample that stands for all: the particles whose positions have the least
+ * hashes. Solids have no h and volume here; volume is 0 if volumes are computed. */
 typedef struct mcor_sample
 {
   uint64_t hash;
@@ -56,7 +57,7 @@ typedef struct mcor_sample
 #define MCOR_SAMPLES 256
 typedef struct mcor_sample_list
 {
-  int count, most;              /* number of samples, at most MCOR_SAMPLES */
+  int count, most;              /* number of samples; its limit, at most MCOR_SAMPLES */
   mcor_sample of[MCOR_SAMPLES]; /* in the order of hashes */
 } mcor_sample_list;
 
@@ -67,10 +68,10 @@ typedef struct mcor_stage_data
   mcor_buffer values;                      /* real: values of one component, in input order */
   mcor_buffer density;                     /* masses, while volumes are computed */
   mcor_buffer flags, keys;                 /* in use while coincident particles are sought */
-  mcor_buffer found;                       /* int: what a kernel has found in any particle */
+  mcor_buffer found;                       /* int: what a kernel has found in all particles */
 } mcor_stage_data;
 
-/* [III-A] */
+/* [III-A] The search grid. */
 typedef struct mcor_grid
 {
   int count; /* particles on the device */
@@ -126,7 +127,7 @@ typedef struct mcor_mesh
 {
   mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
-  int march_count; /* vertices on lattice edges; sorted by level, as are those of the boundary */
+  int march_count; /* vertices on lattice edges; sorted by level, as the trim boundary's are */
   int
     vertex_count; /* first the vertices on lattice edges, then those on the trim boundary, and from
                    * cap_first on those of caps */
@@ -145,8 +146,8 @@ typedef struct mcor_mesh
                                                   * each level */
 } mcor_mesh;
 
-/* A set of bricks of one level of adaptive cubes. Clusters are 4^3 of them, aligned to multiples of
- * 4: by their numbers, see mcor_cluster_key, masks x + 4 y + 16 z. */
+/* A set of bricks of one level of adaptive cubes. clusters: for each cluster of 4^3 bricks, aligned
+ * to multiples of 4, by its number (mcor_cluster_key), a mask: bit x + 4 y + 16 z is a brick. */
 typedef struct mcor_brick_set
 {
   mcor_table clusters;
@@ -157,8 +158,8 @@ typedef struct mcor_brick_set
 typedef struct mcor_tree
 {
   const mcor_lattice* lattice;
-  int top;       /* highest level of leaves; bricks have one more */
-  bool is_plane; /* all bricks are of the lowest layer */
+  int top;       /* highest level of leaves; bricks go one level higher */
+  bool is_plane; /* all bricks are in the lowest layer */
   /* The first period, in bricks of each level; 0: none along this axis. */
   int period[MCOR_TREE_LEVEL_LIMIT + 2][3], period_first[MCOR_TREE_LEVEL_LIMIT + 2][3];
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
@@ -176,7 +177,7 @@ typedef struct mcor_adaptive
   mcor_buffer cells, finer; /* int4, uint: the listed leaves, in order; which bricks around each are
                              * finer */
   mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
-  mcor_buffer mixed;        /* uchar: whether they have nodes on both sides */
+  mcor_buffer mixed;        /* uchar: whether each leaf has nodes on both sides of the iso value */
   mcor_buffer proofs;       /* uchar: state of each slot */
   mcor_buffer quadrants;    /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;         /* int: loops that lie in one face between leaves */
@@ -219,7 +220,7 @@ typedef struct mcor_point_batch
   cl_int first[3], bricks[3]; /* the bricks that hold the points: the fewer, the shorter the keys */
 } mcor_point_batch;
 
-/* [III-D.3] */
+/* [III-D.3] Trimming. */
 typedef struct mcor_trim_data
 {
   mcor_buffer eigenvalue;       /* real, at vertices; the vertex threshold may apply to it */
@@ -230,7 +231,7 @@ typedef struct mcor_trim_data
                                  * them */
 } mcor_trim_data;
 
-/* A sort has these, as large as the particles; flags, order: of mcor_unique. */
+/* Buffers of a sort, as large as the particles; mcor_unique uses flags and order. */
 typedef struct mcor_sort_data
 {
   mcor_buffer keys, values, histogram, order, flags;
@@ -241,7 +242,7 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
-  double low, high;    /* range over fluid particles, for a probe: its means lie within */
+  double low, high;    /* range over fluid particles, for a probe, whose means lie within */
 } mcor_component;
 
 /* The components of attributes that vary, and which of them the device holds. */
@@ -272,7 +273,7 @@ typedef struct mcor_box
   int
     halves[6]; /* the owned cells' box with adaptive cubes: from and to along x, y, z, in halves of
                 * the smallest cubes */
-  bool of_points;  /* the box of a probe's points, which is `points`: x from, to, y ... */
+  bool of_points;  /* whether this is the box of a probe's points, `points`: x from, to, y ... */
   bool has_points; /* whether `points` is known */
   double points[6];
   int whole_first[3], whole_last[3], whole_halves[6]; /* the cells that any rank owns */
@@ -284,8 +285,8 @@ typedef struct mcor_box
 /* The iso value under way. Filling has none: its points are evaluated for 0. */
 typedef struct mcor_iso
 {
-  int number; /* index in options.iso_values; behind the last one while filling adds points */
-  double value, relative; /* the iso value of the caller; relative to A0, as the device has it */
+  int number; /* index in options.iso_values; iso_count while filling adds points */
+  double value, relative; /* the iso value of the caller; the same minus A0, as the device has it */
 } mcor_iso;
 
 /* The call under way; options are NULL between calls. */
@@ -293,9 +294,9 @@ typedef struct mcor_run
 {
   const mcor_options* options;
   bool uses_solids; /* whether solid particles must be on the device */
-  double widest; /* factor of the lengths of sums at particles, see mcor_widen.c; 0: no such sums */
+  double widest; /* greatest factor of lengths in sums at particles, see mcor_widen.c; 0: no sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
-  struct mcor_far* far; /* particles that are left out because of that; NULL: none */
+  struct mcor_far* far; /* particles that are left out so that it fits; NULL: none */
   struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; or NULL */
   mcor_statistics* statistics;
   mcor_iso iso;
@@ -317,7 +318,7 @@ typedef struct mcor_kept
 {
   mcor_input input;
   mcor_options options;
-  mcor_globals globals; /* the globals of that call, without arrays; 0: none were given */
+  mcor_globals globals; /* the last call's globals, without arrays; 0: none were given */
   uint64_t splits;      /* hash of the globals' split bricks */
   bool uses_solids;     /* whether solid particles are on the device */
   bool grid, value;
@@ -341,10 +342,10 @@ struct mcor_context
 
   /* The particles. */
   mcor_kept kept;
-  mcor_sample_list samples[2]; /* number of fluid particles measured, and of solids */
+  mcor_sample_list samples[2]; /* of fluid particles, of solids */
   mcor_measure measure;
   mcor_lattice lattice;
-  mcor_plane plane; /* volume factor and space of the present call */
+  mcor_plane plane; /* the plane and the space of the present call */
   mcor_space space;
   mcor_box box;
   mcor_stage_data stage;

@@ -53,7 +53,7 @@ typedef struct mcor_legal
 #define FROM(least, greatest) { .low = least, .high = greatest }
 // clang-format on
 
-/* Whether "table|field" has a word of this number, from 0 on. */
+/* Whether a list such as "table|field" has a word of this number; the first word is number 0. */
 static bool mcor_has_word(const char* words, double number)
 {
   for (double i = 0; words && i < number; ++i)

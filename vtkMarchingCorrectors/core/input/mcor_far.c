@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are so far away that the virtual grid around all of them would be too long. A call
- * has then failed where the grid was measured, and runs once more without particles in the way:
- * with a box, or with the points of a probe, without all that do not reach these; else without
- * those that are farthest away, where they are few. Which ones depends on all particles alone, so
- * ranks agree. */
+/* Particles that are so far away that the virtual grid around all of them would be too long. Such a
+ * call fails where the grid is measured, and runs once more without some particles. With a box, or
+ * with a probe's points, it leaves out all particles that do not reach these; otherwise the ones
+ * that are farthest away, if they are few. The choice depends on the particles of all ranks
+ * together, so ranks agree. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -18,7 +18,7 @@
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
-/* How far particles may be from a probe's points. */
+/* How far, in cubes, a support may end from a probe's points and still be kept. */
 #define MCOR_POINTS_SLACK 0.5
 /* How many cubes of the grid lie around a region. */
 #define MCOR_REGION_MARGIN 16
@@ -41,7 +41,7 @@ typedef struct mcor_far_job
   double reach, slack; /* per smoothing length: the support radius, and how much farther a particle
                         * is needed */
   double margin;       /* of mcor_reach_around */
-  double radius;       /* the least distance at which a particle still counts */
+  double radius;       /* all particles within this distance of the region stay */
   double centre[3],
     half; /* without a region: the grid's middle, and how far it may go from there */
   mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
@@ -95,8 +95,8 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Around a box or points: keeps all particles that reach them, and those that volumes, pairs and
- * nearest particles there need. */
+/* Keeps all particles that reach the box or the points, and the particles that are needed there for
+ * volumes, pairs and nearest particles. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;
@@ -107,7 +107,7 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
       options, mcor_needs_density(job->input), context->run.widest, job->all.most[0], job->margin);
     return mcor_mark_far(context, job);
   }
-  /* There is no fluid. A run needs some, wherever that is. */
+  /* No fluid reaches the region. A run needs some, so the first sample's place keeps its fluid. */
   for (int64_t i = 0; i < job->input->count; ++i)
   {
     bool same = !(job->input->solid && job->input->solid[i]);
@@ -120,7 +120,7 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   return MCOR_OK;
 }
 
-/* Keeps what is around the middle of a sample of the fluid. */
+/* Keeps the particles around the middle of a sample of the fluid. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, bool* good)
 {
   const mcor_sample_list* samples = &context->samples[0];

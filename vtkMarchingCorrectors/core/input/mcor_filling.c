@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Whether the free surface is what users want to see first. */
+/* Finds whether the free surface is what users want to see first. */
 
 #include "mcor_input.h"
 #include "mcor_parts.h"
@@ -14,12 +14,11 @@
 #define MCOR_FILLING_CELLS 32
 /* The fluid fills its bounds if it reaches this share of the cells. */
 #define MCOR_FILLING_SHARE 0.98
-/* The densities of a liquid are within this factor, the low sums at its surface included. */
+/* The densities of a liquid differ by at most this factor, even if they are low at its surface. */
 #define MCOR_LIQUID_RANGE 2.0
 
-/* The ranges of x, y, z, smoothing length and density of the fluid, each with the sign of the
- * greatest value changed, so that one reduction finds all; and how many fluid particles and solids
- * there are. */
+/* least: the least x, y, z, smoothing length and density of the fluid, then minus the greatest of
+ * each, so that one reduction finds all. counts: the numbers of fluid particles and of solids. */
 typedef struct mcor_filling
 {
   double least[10];

@@ -269,7 +269,8 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
 static const char* const mcor_quantity_words[MCOR_ROLE_VALUES] = { "smoothing length", "volume",
   "mass", "density" };
 
-/* Finds what is given of a quantity, else an array with a usual name. Returns whether it is given. */
+/* Finds the value or the array that is given for a quantity, else an array with a usual name.
+ * Returns whether something is given. */
 static bool mcor_find_quantity(mcor_finder* f, mcor_role role)
 {
   mcor_found* found = f->found;
@@ -427,7 +428,8 @@ static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
   return (f->request->not_on_points & 1 << role) != 0;
 }
 
-/* Finds the array of the scalar, which may be summed instead. Returns -1 if there is no array, or none is needed. */
+/* Finds the array of the scalar. Returns -1 if there is none, or if the scalar is summed instead.
+ * */
 static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
 {
   mcor_found* found = f->found;
@@ -556,7 +558,7 @@ static void mcor_find_array(mcor_finder* f)
   }
 }
 
-/* Finds the array that a projection integrates, mass or, without masses, density; and the weight of a mean. */
+/* Finds the masses of a projection or, without masses, the densities; and the weight of a mean. */
 static void mcor_find_column(mcor_finder* f)
 {
   mcor_found* found = f->found;

@@ -127,8 +127,8 @@ static bool mcor_chooses_particles(const mcor_finder* f, const char* name)
   return chooses;
 }
 
-/* Finds the first array that clearly tells which particles are fluid, by the most usual name; or one that is not used
- * although it seems to. */
+/* Finds the array with the most usual name that clearly tells which particles are fluid; without
+ * one, names an array that seems to tell it but is not used. */
 static void mcor_look_for_fluid(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -188,8 +188,8 @@ static bool mcor_has_within(const mcor_request* request)
   return has;
 }
 
-/* Whether a particle is in some range of an array. Of several ranges of one array, any may hold; `first` is their
- * first. */
+/* Whether a particle is in one of the ranges that are given for an array. first: the first of these
+ * ranges. */
 static bool mcor_is_in_a_range(const mcor_finder* f, int first, const mcor_named* array, int64_t i)
 {
   const double value = mcor_element_at(array, i, 0);
@@ -249,7 +249,7 @@ static char* mcor_describe_choice(const mcor_finder* f)
   const bool has = mcor_has_within(request);
   double b[6];
   for (int side = 0; side < 6;
-       ++side) /* a side just off 0 is how the point 0, 0, 0 can be chosen */
+       ++side) /* a tiny side stands for 0, because six zeros would choose no box */
   {
     b[side] = fpclassify(request->within[side]) == FP_SUBNORMAL ? 0 : request->within[side];
   }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Whether the particles lie in a plane. */
+/* Finds whether the particles lie in a plane. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -66,7 +66,7 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
   job->slices[slice] = spread;
 }
 
-/* mcor_check_input reports what is wrong otherwise. */
+/* If this is false, mcor_check_input says later what is wrong. */
 bool mcor_has_positions(const mcor_input* input)
 {
   return input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && input->positions.data &&
@@ -142,14 +142,14 @@ static mcor_status mcor_refuse_plane(
   return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(NOT_IN_PLANE));
 }
 
-/* Particles sampled in the search for twins. */
+/* How many particles are tested for a twin, a particle with the same place in the plane. */
 #define MCOR_TWIN_SAMPLES 32
-/* The share of the spacing, of particles strewn evenly over the plane, that a step of single
- * precision must have to have flattened them. */
+/* Rounding may have flattened the particles if a step of single precision is longer than this share
+ * of the spacing that they have if they are spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
 /* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
- * about the particles' spacing, and most particles lie on others. */
+ * about the particles' spacing, and most of the tested particles have a twin. */
 static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* input,
   const mcor_findings* spread, const mcor_plane* plane, bool* rounding)
 {
@@ -203,7 +203,7 @@ static void mcor_set_plane(mcor_context* context, mcor_plane plane)
   context->space = spaces[plane.axis > 0];
 }
 
-/* With ranks and globals, all ranks find the same. */
+/* Takes the plane of the globals, or looks for one; all ranks find the same plane. */
 static mcor_status mcor_look_for_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

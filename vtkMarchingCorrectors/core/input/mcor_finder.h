@@ -9,7 +9,7 @@
 /* The most names that a quantity has. */
 #define MCOR_NAMES 14
 
-/* Values that stand in the place of an index. */
+/* Stands for the positions in the place of an index. */
 #define MCOR_FIND_POSITIONS (-2)
 
 /* The state of mcor_find_input. */
@@ -38,21 +38,22 @@ static inline bool mcor_has_error(const mcor_finder* f)
   return f->found->error.code != MCOR_SAYS_NOTHING;
 }
 
-/* Returns what is given by hand for a role, or NULL; panels show words in place of none. */
+/* Returns the name that is given by hand for a role; NULL if it is "", or "(automatic)" or "(none)"
+ * of panels. */
 const char* mcor_given_name(const mcor_finder* f, mcor_role role);
 
 /* Finds the array of this name without checking it; -1: there is none. */
 int mcor_find_by_name(const mcor_finder* f, const char* name);
-/* Finds the array of this name, with a number for each particle if components is 1; 0: any vector.
- * words: what it is for. */
+/* Finds the array of this name; -1 and an error if it is missing or does not suit. components: 1:
+ * it must have one number for each particle; 0: any number of components. words: what it is for. */
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
 const mcor_named* mcor_named_of(const mcor_finder* f, int index);
 /* Reads any element as a double. */
 double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
 
-/* mcor_find_fluid.c. Chooses the array and value of fluid, or finds that one is not used. All ranks
- * call it. */
+/* mcor_find_fluid.c. Finds the array and the value that mark fluid, or an array that seems to mark
+ * it but is not used. All ranks call it. */
 void mcor_find_fluid(mcor_finder* f);
 /* Marks solid and absent particles, and counts the fluid. */
 void mcor_mark_particles(mcor_finder* f);

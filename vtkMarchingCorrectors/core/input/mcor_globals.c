@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Measures over all particles: handed out, and taken back by calls that have only some of the
- * particles. */
+/* Measures all particles, for later calls that have only some of the particles. */
 
 #include "mcor_input.h"
 #include "mcor_plane.h"
@@ -21,7 +20,7 @@ mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    /* Finds the first particle that is not finite: of the rank where its number is least. */
+    /* Finds the least number that a particle that is not finite has on any rank. */
     int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
     MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &not_finite, 1));

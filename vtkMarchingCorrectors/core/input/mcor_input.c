@@ -72,7 +72,8 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
   return places->count;
 }
 
-/* Elements that are tested together; one by one, each test would wait for the one before. */
+/* How many elements are tested together; if they were tested one by one, each test would wait for
+ * the one before. */
 #define MCOR_ELEMENTS 4
 
 MCOR_VECTOR_LOOPS void mcor_widen_range(const double* x, int count, double* low, double* high)
@@ -258,7 +259,8 @@ int64_t mcor_find_not_finite(
   return mcor_find_illegal(context, array, solid, MCOR_SKIP_SOLIDS, count, false, &component);
 }
 
-/* Returns the power of 2 just above all components of particle i; 0 if they are 0 or not finite. */
+/* Returns the exponent of the power of 2 just above all components of particle i; 0 if they are 0
+ * or not finite. */
 static int mcor_exponent_of(const mcor_array* array, int64_t i)
 {
   double largest = 0;
@@ -274,7 +276,7 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
-/* Sums of squares between these have lost nothing. */
+/* In sums of squares between these limits, no square has overflowed or vanished. */
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 

@@ -22,7 +22,7 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
                                   : (double)((const float*)array->data)[at];
 }
 
-/* Whether a particle is used. Solids are not where they are ignored, nor for a free surface that
+/* Whether a particle is used. Solids are not used if they are ignored, nor for a free surface that
  * does not end at them. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
@@ -30,16 +30,16 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
     (context->kept.uses_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Whether a particle counts as a neighbour, and where dimensions are found: unused solids count,
- * too. */
+/* Whether a particle counts as a neighbour, and when the dimension is found. Here all solids count
+ * unless they are ignored. */
 static inline bool mcor_is_present(const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
     (!input->ignore_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Which particles a look at values skips, by their mark in mcor_input.solid: those of this mark
- * and above. */
+/* The particles that a search of values skips: those with this mark in mcor_input.solid or a
+ * greater one. */
 typedef enum mcor_skip
 {
   MCOR_SKIP_SOLIDS = 1,
@@ -51,7 +51,7 @@ static inline bool mcor_is_skipped(const uint8_t* solid, mcor_skip skip, int64_t
   return solid && solid[i] && (skip == MCOR_SKIP_SOLIDS || solid[i] == MCOR_ABSENT);
 }
 
-/* Returns the positions, whatever number of components the caller says that they have. */
+/* Returns the positions with 3 components, even if the caller has set another number. */
 static inline mcor_array mcor_positions_of(const mcor_input* input)
 {
   mcor_array positions = input->positions;
@@ -67,7 +67,7 @@ static inline int mcor_chunk_of(int64_t rest)
   return rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
 }
 
-/* Returns b if it is less (or more), and a where b is no number. */
+/* Return the least, the greatest of two numbers; a if b is NaN. */
 static inline double mcor_least(double a, double b)
 {
   return b < a ? b : a;
@@ -78,7 +78,7 @@ static inline double mcor_most(double a, double b)
   return b > a ? b : a;
 }
 
-/* mcor_check.c. Fails, as the sides of a box are no interval. */
+/* mcor_check.c. Fails and says that two sides of a box are not an interval. */
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
 
 /* Kernels count in int, also a little beyond the last particle. */
@@ -102,8 +102,8 @@ typedef struct mcor_places
 /* Reads the next chunk of [first, last); returns its count, 0 at the end. */
 int mcor_read_places(const mcor_context* context, const mcor_input* input, int64_t first,
   int64_t last, mcor_places* places);
-/* Reads at most MCOR_CHUNK values. A derived scalar that is too large for a number is not
- * finite. */
+/* Reads at most MCOR_CHUNK values of the scalar. A magnitude or dot product that is too large
+ * becomes infinite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* What a loop, or a slice of it, finds: ranges (an empty one has least > most), sums of whole
@@ -133,18 +133,18 @@ void mcor_widen_range(const double* x, int count, double* low, double* high);
  * is NULL; without any: DBL_MAX, -DBL_MAX. */
 void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, int component, double range[2]);
-/* Finds the largest absolute value in a range, or of one component; 0 without any. */
+/* Returns the largest absolute value in a range; 0 if the range is empty. */
 static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
-/* Returns the largest magnitude of a component, over particles that are not absent, and over
- * finite values of ignored solids. */
+/* Returns the largest magnitude of a component over all particles but absent ones. Ignored solids
+ * count, too, if their values are finite. */
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If too
- * many are in the way, ends with the status and sentence of before. */
+/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If
+ * this would be too many particles, fails with the sentence about the lattice. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
@@ -158,19 +158,19 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
 /* Marks the same particles in a call with globals: those beyond the bounds of the others. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
-/* Finds the bounds of a lattice that is cut: `low` and `high` of the positions of all that is
- * used. */
+/* Finds the bounds of a lattice that is cut. low, high: the bounds of the positions of all
+ * particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
-/* Adds to the sentence about a lattice that is too large which particle has a smoothing length far
- * from the others, if one has. */
+/* If a particle's smoothing length is far from all others, adds this to the sentence about a
+ * lattice that is too large. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that
  * is not finite, or not above 0 where it must be; -1: none. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive, int* component);
-/* Reads fluid particles alone. */
+/* Finds the first fluid particle with a component that is not finite; -1: none. */
 int64_t mcor_find_not_finite(
   mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
 
@@ -181,19 +181,21 @@ size_t mcor_count_components(const mcor_input* input);
 mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 
-/* Returns a value near the median of the scalar of fluid particles, measured earlier. */
+/* Finds a value near the median of the scalar of fluid particles, whose range is measured already.
+ * */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
-/* mcor_neighbour_sums.c. Returns w(q), without the norm; of a tensor kernel, for one axis. */
+/* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, one axis' factor. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
-/* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. Fewer samples
- * take less time. */
+/* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
+ * most samples of fluid; fewer take less time. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
 
 /* Hashes a position: particles with the least hashes stand for all. */
 uint64_t mcor_hash_position(const double x[3]);
 
-/* Estimates one smoothing length for all particles from the spacing of samples, which take it. */
+/* Estimates one smoothing length for all particles from the spacing of the samples, and sets it as
+ * their h. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
 /* Computes the cube root of a number above 0, with the same bits on every machine, unlike cbrt

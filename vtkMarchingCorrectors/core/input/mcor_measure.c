@@ -12,11 +12,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- Neighbours: how many a fluid particle has, and how near the nearest one is. ---- A few
- * watched particles suffice to notice wrong smoothing lengths. A watch sees all positions while
- * they are measured, and at its end sets the measure's neighbours, spacing, filled and h_median. If
- * the watched particles lie in a plane that is tilted in space, it also finds whether all others
- * do. */
+/* ---- Neighbours: how many a fluid particle has, and how near the nearest one is ---- */
+
+/* A few watched particles suffice to notice wrong smoothing lengths. A watch sees all positions
+ * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
+ * h_median. If the watched particles lie in a tilted plane, it also finds whether all others do. */
 
 #define MCOR_WATCHED 32 /* bits of a mask */
 #define MCOR_WATCH_CELLS 64
@@ -113,7 +113,7 @@ static bool mcor_watch_reaches(const mcor_watch* watch, const double low[3], con
   return all;
 }
 
-/* low, high: bounds of the positions. */
+/* Watches the positions of a chunk. low, high: their bounds. */
 static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
   const double low[3], const double high[3])
 {
@@ -254,7 +254,7 @@ enum
   MCOR_SUPPORTS = 7,
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
-  MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
+  MCOR_FACTORS = 12, /* factors of the smoothing lengths of fluid particles */
 
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
@@ -266,7 +266,7 @@ enum
 #define MCOR_MOST_FACTOR 256.0
 
 /* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all lengths
- * are one, the extremes may be taken first: rounding keeps the order of numbers. */
+ * are the same, only the extreme places count, because rounding keeps the order of numbers. */
 static void mcor_measure_chunk(const mcor_places* chunk, bool is_widened, bool solids, double reach,
   const double low[3], const double high[3], mcor_findings* r)
 {
@@ -334,7 +334,7 @@ typedef struct mcor_measuring
   const mcor_context* context;
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
-  double peak;  /* W(0) of a kernel of length 1; 0: it is not asked for */
+  double peak;  /* W(0) of a kernel of length 1; 0: lone particles are not counted */
   double level; /* the lowest iso value */
   mcor_watch watch;
   mcor_findings slices[MCOR_SLICES];

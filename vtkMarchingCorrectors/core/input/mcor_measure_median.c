@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values in the middle: the median of the scalar, relative to which the device has its values; a
+/* Values in the middle: the median of the scalar, which the device subtracts from all values; a
  * default iso value; and the median of a few numbers. Medians of particles are found by counting
  * values in bins, then counting again within the bin that holds the median. The result depends
  * neither on the order of the particles nor on how ranks share them. */
@@ -88,9 +88,9 @@ static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks
   return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
 }
 
-/* Narrows the bins to the one that holds the value of this number in ascending order, until few
- * values are in it. A bin ends where its values do, so that a huge outlier does not move the
- * median away from them. */
+/* Narrows the bins' range to the bin that holds one value, until fewer than `many` values are in
+ * it. number: the value's index in ascending order. A bin's range ends at its least and its
+ * greatest value, so that a huge outlier does not move the median. */
 static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ranks,
   mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {
@@ -198,7 +198,7 @@ int mcor_find_iso_value(
   return found;
 }
 
-/* ---- Of a few numbers ---- */
+/* ---- The median of a few numbers ---- */
 
 int mcor_compare_doubles(const void* a, const void* b)
 {

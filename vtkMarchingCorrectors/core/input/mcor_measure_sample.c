@@ -64,7 +64,7 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
     mcor_read_positions(input, first, count, x);
-    for (int i = 0; i < count; ++i) /* alone, so that processors hash several at once */
+    for (int i = 0; i < count; ++i) /* a loop of its own, so that processors hash several at once */
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
       hash[i] = mcor_hash_position(at);
@@ -162,8 +162,8 @@ typedef struct mcor_spacing
 {
   const mcor_input* input;
   double scale;             /* a power of 2 that brings all coordinates below 1 */
-  mcor_sample_list samples; /* numbers of fluid and solid particles */
-  /* samples of this rank, samples of all */
+  mcor_sample_list samples; /* samples of the fluid, then of solids */
+  /* The neighbours of each sample: on this rank, on all ranks. */
   mcor_neighbours nearest[MCOR_SAMPLES], merged[MCOR_SAMPLES];
 } mcor_spacing;
 
@@ -218,8 +218,8 @@ double mcor_cube_root(double value)
   return ldexp(root, exponent / 3);
 }
 
-/* Takes 1.3 times the median spacing: that of a lattice with as many particles within the distance
- * of the 32nd neighbour. */
+/* The estimate is 1.3 times the median of the samples' spacings. A sample's spacing is that of a
+ * lattice with as many particles within the distance of its 32nd neighbour. */
 static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, double* estimate)
 {
   double spacing[MCOR_SAMPLES], largest[3];

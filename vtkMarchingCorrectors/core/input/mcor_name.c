@@ -208,7 +208,7 @@ static bool mcor_are_periods(const double bounds[6])
   return some;
 }
 
-/* Reads one edge for all axes, or one each. */
+/* Reads the lengths of BoxSize: one for all axes, or one for each axis. */
 static bool mcor_find_box_size(
   const mcor_field_data* arrays, int count, int edges, double period[6], int* which)
 {

@@ -123,7 +123,7 @@ static int mcor_images_of(
 }
 
 /* Marks the particles that may reach the box, by one test of each coordinate that the box
- * limits. The exact test of the images finds all of these, but for a few. */
+ * limits. Only few of them fail the exact test of their images later. */
 static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count)
 {
   const mcor_reach_box* reach = staging->reach;
@@ -158,11 +158,11 @@ static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count
   }
 }
 
-/* Gaps between marked particles up to this length are read, too, rather than jumped over. */
+/* Gaps of fewer particles between marked ones are read, too, not jumped over. */
 #define MCOR_STAGE_GAP 8
 
-/* Finds the next run of particles to read at once, from *begin on; returns its length, 0 at the
- * end. */
+/* Finds the next run of particles to read at once, and sets *begin to its beginning; returns its
+ * length, 0 at the end. */
 static int mcor_next_run(const mcor_staging* staging, int64_t* begin, int64_t last)
 {
   const uint8_t* images = staging->images;
@@ -343,7 +343,7 @@ static double mcor_stage_weight(double size, double inv_h)
 }
 
 /* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy, or
- * that has changed: outside of the measured bounds, on which everything that follows relies. */
+ * that has changed: it lies outside of the measured bounds, on which all later steps rely. */
 static void mcor_stage_chunk_at(
   const mcor_staging* staging, mcor_stage_slice* slice, mcor_stage_chunk* chunk, int64_t* to)
 {
@@ -396,7 +396,7 @@ static void mcor_stage_images(const mcor_staging* staging, mcor_stage_slice* sli
 {
   mcor_images images = { 0 };
   double period[3] = { 0 };
-  bool one = staging->images != NULL; /* image number of each particle in `out` */
+  bool one = staging->images != NULL; /* without periods, each marked particle has one image */
   for (int a = 0; a < 3 && staging->reach; ++a)
   {
     period[a] = ldexp(staging->reach->period[a], staging->reach->fix_bits);

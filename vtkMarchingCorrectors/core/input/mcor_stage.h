@@ -9,11 +9,11 @@
 /* One slice of the input, as it is staged. */
 typedef struct mcor_stage_slice
 {
-  int64_t used, to; /* images; where they begin */
+  int64_t used, to; /* number of images that are staged; where they begin */
   int64_t heavy;    /* the first particle whose weight is too large, or -1 */
   bool changed;     /* values differ from the measured ones: another thread writes to the arrays */
   double largest_weight;
-  double inv_h, size;       /* those of the first image */
+  double inv_h, size;       /* values of the first image */
   bool one_inv_h, one_size; /* whether all images have these */
   double farthest;          /* the largest reach, in cubes, of the particles that reach the box */
 } mcor_stage_slice;
@@ -29,7 +29,7 @@ typedef struct mcor_staging
   void* x[3];                           /* fix */
   void *inv_h, *size;                   /* real; size: volume, mass or 1, negative for solids */
   void* level;                          /* uint8_t */
-  mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of these six, once there are any */
+  mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of the six arrays above, once these are mapped */
   int view_count;
   double size_scale;        /* see mcor_size_scale */
   double h_max;             /* the largest support that was measured, with rounding */
@@ -41,11 +41,11 @@ typedef struct mcor_staging
 
 /* Returns the factor from the input's volume or mass to the device's. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input);
-/* context and input are set. */
+/* Stages the input. The caller has set context and input. */
 mcor_status mcor_stage(mcor_staging* staging);
 
-/* Returns how many digits shorter than fixed-point numbers the positions of particles with this
- * support are, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
+/* Returns by how many bits the positions of particles with this support are shorter than
+ * fixed-point numbers, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
 
 #endif

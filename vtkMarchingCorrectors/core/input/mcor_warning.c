@@ -20,9 +20,9 @@ typedef struct mcor_suspicion
   const mcor_surface* surface;
 } mcor_suspicion;
 
-/* Bounds of smoothing length over distance of the nearest particle, which hardly depends on free
- * surfaces and walls. It is 1 for a lattice of that spacing, up to 1.7 for most solvers, and up
- * to 2.2 for DualSPHysics; Wendland kernels bear more. */
+/* Bounds of the ratio smoothing length / distance of the nearest particle, which hardly depends on
+ * free surfaces and walls. The ratio is up to 1.7 for most solvers, and up to 2.2 for DualSPHysics;
+ * Wendland kernels bear more. */
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
 #define MCOR_MOST_RATIO_WENDLAND 2.6
@@ -33,7 +33,7 @@ typedef struct mcor_suspicion
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
-/* In two dimensions they are counted per square; the lattices are the same. */
+/* The same limits in two dimensions: neighbours per (support / smoothing length)^2. */
 #define MCOR_MANY_IN_PLANE 5.6
 #define MCOR_ROW_NEIGHBOURS 3.5
 
@@ -45,8 +45,8 @@ static bool mcor_is_wendland(mcor_sph_kernel kernel)
 /* Volumes that fill the supports this many times over are not in the unit of the positions. */
 #define MCOR_MOST_FILLED 10.0
 
-/* Suggests the kernel for which such particles, with `ratio` smoothing lengths to the nearest
- * one, would be usual: the one of many neighbours, or the one that reaches farther. */
+/* Suggests the kernel for which this ratio of smoothing length to spacing would be usual: the
+ * quintic spline, which reaches farther, for few neighbours; a Wendland kernel for many. */
 static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
 {
   return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
@@ -286,11 +286,11 @@ static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
                  "{node_threshold 0} and {vertex_threshold 0}.");
 }
 
-/* A share of the smallest smoothing length. Nobody sees less, and where the field is off by more than
- * its tolerance, another warning says so. */
+/* Errors of positions below this share of the smallest smoothing length need no warning, because
+ * nobody sees them. If they move the field by more than its tolerance, another warning says so. */
 #define MCOR_MOST_POSITION_ERROR 1e-4
 
-/* A share of the cube size; less where the grid is short. */
+/* Nor do errors below this share of the cube size, which short grids have. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
 static mcor_message mcor_warn_precision(const mcor_suspicion* s)
@@ -398,7 +398,8 @@ mcor_message mcor_describe_unused_type(
   return mcor_say(MCOR_SAY(TYPE_UNUSED), name, list, name, seems);
 }
 
-/* Steps of coordinates as a share of the cube size: some triangles are far smaller than cubes. */
+/* The longest step between two coordinates, as a share of the cube size; some triangles are far
+ * smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
 mcor_message mcor_describe_single_points(double largest, double cube_size)

@@ -1,18 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Boxes. A run over a box owns the cells in it, and makes their part of the surface to the last
- * bit.
+/* Boxes. A call with a box owns the cells in it, and makes their part of the surface with the same
+ * bits as in the whole surface.
  *
- * Everything global is measured over all particles: lattice, ranges, shifts, levels. Only those
- * particles are on the device that reach a place where the field is evaluated. A ring of cells
- * around the owned ones is examined, too, since pinched edges, the border that the node threshold
- * leaves, and normals from triangles depend on it. The ring's triangles leave the surface at the
- * very end, see mcor_triangle_cell.c.
+ * Lattice, ranges, shifts and levels are global: they are measured over all particles. The device
+ * has only the particles that reach a place where the field is evaluated. A ring of cells around
+ * the owned cells is examined, too, because pinched edges, the border that the node threshold
+ * leaves, and normals from triangles depend on it. The ring's triangles are removed from the
+ * surface at the very end, see mcor_triangle_cell.c.
  *
- * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds there are too low, but what
- * they say of nodes within the ring holds. Nothing is examined there: cubes and bricks are made
- * void.
+ * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds of cubes that extend beyond
+ * the ring are too low, but true for the nodes within it. Cubes and bricks beyond the ring are made
+ * void, so that they are not examined.
  *
  * A probe whose search grid is not kept owns the cells around its points. */
 
@@ -24,7 +24,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* All zeros mean no box. */
+/* Whether there is a box: all zeros mean no box. */
 static bool mcor_is_box(const double sides[6])
 {
   bool is_box = false;
@@ -56,23 +56,23 @@ void mcor_move_period(mcor_options* options)
   }
 }
 
-/* How far from the ring's nodes the field is evaluated, in cubes: trimming may move a vertex by
- * 3/4. */
+/* The field is evaluated up to this distance, in cubes, from the ring's nodes: trimming may move a
+ * vertex by 3/4. */
 #define MCOR_BOX_MARGIN 1.25
 
 /* A particle whose support misses a box by more than this, in cubes, is not needed there. */
 #define MCOR_GLOBALS_MARGIN(ring) ((ring) + 2)
 
-/* The margin with adaptive cubes, in cubes of the particle's level; a particle reaches no larger
+/* The margin with adaptive cubes, in cells of the particle's level; a particle reaches no larger
  * cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away
- * from the box; trimming may move a vertex by another 3/4 of a cell, to where cells are half as
- * large. For a wider ring see mcor_level_ring. */
+ * from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as large. For
+ * a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* The margin of a probe's points: rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
 
-/* How far apart the particles of a pair may be, in smoothing lengths, rounded up. */
+/* Greatest distance between the particles of a pair, in smoothing lengths, rounded up. */
 #define MCOR_PAIR_REACH 1.001
 
 #define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, (r)->ring, (r)->ring)
@@ -89,12 +89,12 @@ double mcor_box_slack(const mcor_options* options)
 
 /* ---- Cells ---- */
 
-/* Further than any cell, in halves of a cube. */
+/* A side further out than any cell, in halves of a cube. */
 #define MCOR_NO_SIDE (1 << 30)
 
-/* Writes the sides of the box between `low` and `high` for cells of all levels, whose centres
- * are at whole numbers of halves. A side that is NULL, or that of the lattice with several
- * levels, is without end, since large cells stick out of the lattice. */
+/* Writes the sides of the box from `low` to `high` in halves of a cube, because cells of all levels
+ * have their centres there. With several levels, a side is infinite, or at the period's end, if
+ * `sides` is NULL or if it is the lattice's side, because large cells stick out of the lattice. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
@@ -128,8 +128,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
   }
 }
 
-/* A cell is owned if its centre is in the box. So the side of a box may lie on the lattice's
- * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
+/* A cell is owned if its centre is in the box. Therefore rounding of a side that lies on the
+ * lattice's nodes does not matter, and boxes that share a side share no cell. */
 void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;
@@ -149,8 +149,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     if (box->of_points)
     {
-      /* The cells of a probe's points; all of a period where points lie beyond it, as these are
-       * moved into it. */
+      /* Takes the cells of a probe's points; the whole period if points lie beyond it, because they
+       * are moved into it. */
       const double *points = box->points + 2 * a, edge = lattice->edge[a];
       const double origin = (double)lattice->origin[a], rounding = 0.25 / (double)lattice->step[a];
       const double low = points[0] / edge - origin, high = points[1] / edge - origin;
@@ -163,7 +163,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
-    /* Finds the cells that any rank owns; all where there is no end. */
+    /* Finds the cells that any rank owns; all cells, if the whole surface has no box. */
     const double* whole =
       options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
     double all[2] = { first, last };
@@ -194,7 +194,7 @@ mcor_status mcor_void_cubes(mcor_context* context)
 mcor_status mcor_void_bricks(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  /* leaves were chosen within the box */
+  /* adaptive leaves are chosen within the box */
   return !context->box.is_part || mcor_is_adaptive(&context->lattice)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
@@ -274,10 +274,10 @@ int mcor_list_images(
   {
     const double low = box->low[a] - reach - at[a], high = box->high[a] + reach - at[a];
     const double period = box->period[a];
-    /* A value is not finite here only if another thread writes to the arrays. */
+    /* Values are finite here, unless another thread changes the arrays. */
     const bool wraps = period > 0 && isfinite(low) && isfinite(high);
     const bool is_near = wraps || (period <= 0 && low <= 0 && high >= 0);
-    images->first[a] = wraps ? (int)ceil(low / period) : 0; /* otherwise 0 is the only image */
+    images->first[a] = wraps ? (int)ceil(low / period) : 0; /* else 0 is the only image */
     images->last[a] = wraps ? (int)floor(high / period) : 0;
     const int along = is_near ? images->last[a] - images->first[a] + 1 : 0;
     count *= along > 0 ? along : 0;
@@ -305,13 +305,15 @@ double mcor_reach_margin(
 double mcor_reach_around(
   const mcor_options* options, int computes_volumes, double widest, double reach, double margin)
 {
-  /* A volume is found from all particles within the particle's own, unscaled support. */
+  /* A volume depends on all particles within the particle's own, unscaled support. */
   const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
-  /* The nearest particle may have a support that ends before the box; it is nearer than the
-   * particles that reach it. So is the other particle of a pair, which is within a smoothing length. */
+  /* The support of the nearest particle may end before the box, but the particle is nearer than the
+   * particles that reach the box. The same is true for the other particle of a pair, which is
+   * within a smoothing length. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
-  /* A factor is found from sums with widened supports at the particle and at those around it. */
+  /* A factor depends on sums with widened supports, at the particle and at the particles around
+   * it. */
   const double factors = widest > 0 ? fmax(volumes, reach) * (1 + widest) + margin : 0;
   return reach > 0 ? fmax(fmax(volumes, nearest), factors) : 0;
 }
@@ -324,8 +326,8 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
   return period > 0 ? rounded - floor((rounded - first) / period) * period : fixed;
 }
 
-/* Returns where the field is evaluated, in cubes from the lattice's origin, in numbers that single
- * precision can hold. */
+/* Finds the box in which the field is evaluated, in cubes from the lattice's origin; without a box,
+ * 1e30, which single precision can hold. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;
@@ -366,7 +368,7 @@ bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
   return true;
 }
 
-/* Frees what a call leaves on the host. */
+/* Frees the host's memory of a call. */
 void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);

@@ -3,56 +3,56 @@
 #ifndef mcor_box_h
 #define mcor_box_h
 
-/* The box of a call, for its phases, see mcor_box.c. Where all of the lattice is owned, these
+/* The box of a call, for its phases, see mcor_box.c. If the call owns the whole lattice, these
  * functions do nothing. */
 
 #include "mcor_internal.h"
 
-/* mcor_lattice.c. Lays the virtual grid over everything that the particles' supports reach. */
+/* mcor_lattice.c. Lays the virtual grid over all that the particles' supports reach. */
 mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options);
 
 /* Limits the cells along an axis, [side[0], side[1]), to those of the box. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
-/* Finds the cells that the call owns; the lattice is known. */
+/* Finds the cells that the call owns. The lattice must be known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* Where particles, or their images whole periods away, are needed; for staging. In cubes from the
- * lattice's origin. */
+/* The box in which particles, or their images whole periods away, are needed; for staging. In cubes
+ * from the lattice's origin. */
 typedef struct mcor_reach_box
 {
   double low[3], high[3];     /* where the field is evaluated */
   double support;             /* support radius / smoothing length */
-  double radius;              /* the least support radius to assume; set later */
+  double radius;              /* a smaller support radius counts as this; set later */
   double unit;                /* 2^-fix_bits */
   int top, ring;              /* top: highest level of adaptive cubes */
-  double period[3], first[3]; /* period: 0: open; the others: where one begins */
+  double period[3], first[3]; /* period: its length, or 0; first: where a period begins */
   int fix_bits;
-  bool is_empty; /* no particle matters */
+  bool is_empty; /* no particle is needed */
 } mcor_reach_box;
 
-/* Images of a particle: by axis, how many whole periods each is from the particle's place in the
- * first period. */
+/* Images of a particle: along each axis, from `first` to `last` periods away from the particle's
+ * place in the first period. */
 typedef struct mcor_images
 {
   int first[3], last[3];
 } mcor_images;
 
-/* Returns how near to the box a particle must be to be needed, from its kernel's length and its
- * level of adaptive cubes. */
+/* Returns the distance from the box up to which a particle is needed, from its kernel's length and
+ * its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells of the particles at which sums are wanted; returns false where all are. Of a
- * particle's images only that in the period counts, or that on its upper side where the lower one
- * is not in the box. */
+/* Finds the cells whose particles need sums; returns false if all particles do. Of a particle's
+ * images, only the one in the period counts; or the one on the upper side, if the lower side is not
+ * in the box. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* Finds where particles are needed. Returns false if they are needed everywhere. */
 bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach);
-/* Converts a position to the device's units; with a period it is rounded as on the device, and
+/* Returns a position in the device's units; with a period, it is rounded as on the device, and
  * moved into the first period. */
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
-/* Lists the images that matter; returns their number. */
+/* Lists the images that are needed; returns their number. */
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
@@ -67,38 +67,40 @@ int mcor_list_images(
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* box.ring: how many cells around the owned ones are examined, too. This is the usual number. */
+/* The usual box.ring: the number of cells around the owned cells that are examined, too. */
 #define MCOR_BOX_RING 1
-int mcor_ring_of(const mcor_options* options); /* with a box */
-/* How far from a box a particle matters beyond its support, in cubes of its level. */
+int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
+/* Returns how far beyond its support from a box a particle is needed, in cells of its level. */
 double mcor_box_slack(const mcor_options* options);
-/* The ring with adaptive cubes, in cells of each level. A wide ring counts double, because the way
- * there may lead through larger cells. */
+/* Returns the ring with adaptive cubes, in cells of each level. A wide ring counts double, because
+ * the cells between may be larger. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
 
-/* Seeds: makes cubes of one size, or bricks, void where they are off the box. */
+/* Seeds: make cubes of one size, or bricks, void if they are outside the box. */
 mcor_status mcor_void_cubes(mcor_context* context);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction. Keeps, of the marched bricks' cells, those of the box and its ring: beyond it the
- * device lacks particles, or has images of some. */
+/* Extraction. Keeps, of the marched bricks' cells, those of the box and its ring; beyond, the
+ * device lacks particles or has images of them. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
-/* Finds the owned ones among any cells, and counts those of them that are in other masks. */
+/* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that
+ * are also in `within`. */
 mcor_status mcor_find_owned(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer** owned);
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
-/* mcor_triangle_cell.c. Whether triangles carry their cells; which vertices this call counts, each
- * MCOR_OWN or not; counts the owned triangles of [first, last). */
+/* mcor_triangle_cell.c. mcor_follows_cells: whether triangles keep their cells; mcor_find_counted:
+ * which vertices this call counts (MCOR_OWN); mcor_count_owned_triangles counts the owned triangles
+ * of [first, last). */
 bool mcor_follows_cells(const mcor_context* context);
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
-/* Output: makes room for the keys and flags of `more` further triangles of the surface. */
+/* Output: makes room for the keys and flags of `more` triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
 mcor_status mcor_crop_surface(

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The virtual grid [III-B], and periodic boxes: one period, which images of the particles reach,
- * see mcor_box.c. */
+/* The virtual grid [III-B], and periodic boxes: the grid covers one period, which images of the
+ * particles also reach, see mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
@@ -12,17 +12,17 @@
 #include <float.h>
 #include <math.h>
 
-/* The least support radius, in cubes. Below it, hardly any node would see a particle. */
+/* The least support radius, in cubes. With a smaller one, particles would reach hardly any node. */
 #define MCOR_LEAST_SUPPORT 1e-3
 
-/* Cube sizes for which volumes, areas and gradients are finite numbers above 0. */
+/* Limits of the cube size, so that volumes, areas and gradients are finite numbers above 0. */
 #define MCOR_LEAST_CUBE 1e-100
 #define MCOR_MOST_CUBE 1e100
 
-/* By which share a period may miss a whole number of cubes. */
+/* Greatest relative error of a period that counts as a whole number of cubes. */
 #define MCOR_PERIOD_ERROR 1e-9
 
-/* How many numbers of units of an edge are tried. */
+/* Most numbers of units of an edge that are tried. */
 #define MCOR_STEP_TRIES (1 << 17)
 
 /* Adaptive cubes may shrink by this factor to keep all their levels. */
@@ -54,7 +54,7 @@ static int64_t mcor_count_cubes(
   return 0;
 }
 
-/* Finds edges that divide the periods and are no longer than a cube, all equal if possible. */
+/* Finds edges that divide the periods and are at most a cube long; if possible, all are equal. */
 static mcor_status mcor_fit_edges(
   mcor_context* context, const double length[3], int axis, double cube, double edge[3], int* top)
 {
@@ -66,8 +66,9 @@ static mcor_status mcor_fit_edges(
       MCOR_SAY(PERIOD_TOO_LONG), cube, least, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
     fewest[a] = (int64_t)least;
   }
-  /* With adaptive cubes a period is a whole number of bricks of the level above the highest one, so
-   * that levels repeat with it. Drops levels where cubes would have to shrink too much. */
+  /* With adaptive cubes, a period is a whole number of bricks of the level above the highest, so
+   * that bricks repeat with the period. Leaves out levels for which cubes would have to shrink too
+   * much. */
   int levels = *top;
   int64_t count = 0;
   for (; count == 0 && *top > 0; *top -= count == 0)
@@ -82,8 +83,8 @@ static mcor_status mcor_fit_edges(
     edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
     return MCOR_OK;
   }
-  /* Where no cube divides all periods, each has cells of its own: as few as are no longer than the
-   * cube along any axis, and whole bricks as above. */
+  /* If no cube divides all periods, each period has its own edges, in whole bricks as above: as few
+   * as possible, none longer than the cube. */
   for (bool fits = false; !fits; levels -= !fits)
   {
     const int64_t unit = levels > 0 ? (int64_t)MCOR_BRICK << (levels + 1) : 1;
@@ -112,7 +113,7 @@ static mcor_status mcor_check_digits(mcor_context* context, double low, double h
   return MCOR_OK;
 }
 
-/* May lower *top, the highest level. */
+/* Finds the edges and the periods in cells. May lower *top, the highest level. */
 static mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
 {
@@ -127,8 +128,8 @@ static mcor_status mcor_fit_period(
     lattice->period[a] = 0;
     axis = length[a] > 0 ? a : axis;
   }
-  /* Forces one size: large cubes would stick out of periods and boxes and leave no flat side to
-   * close. */
+  /* Caps need cubes of one size: large cubes would stick out of periods and boxes, without a flat
+   * side to close. */
   *top = options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX) ? 0 : *top;
   if (axis < 0)
   {
@@ -136,7 +137,7 @@ static mcor_status mcor_fit_period(
   }
   MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
-  /* How far from the period an image may be and still be needed, L; see mcor_stage. */
+  /* Greatest distance, unit L, from the period at which an image is needed, see mcor_stage. */
   const double reach = m->support_max +
     mcor_reach_around(options, true, context->run.widest, m->support_max, 0) + 8 * longest;
   const double margin = longest *
@@ -172,18 +173,18 @@ static mcor_status mcor_fit_period(
 /* The least edge, in cubes: 15/16, rounded down a bit. */
 #define MCOR_STEP_RANGE 16
 
-/* Chooses the edges in fixed-point units. Particles keep their positions in units of the edge
- * along each axis, so for right distances the edges must be to each other as their numbers of
- * units are. Among the last 1 / MCOR_STEP_RANGE of numbers for the longest edge, takes the one
- * for which they are so best, to about 1e-8. */
+/* Chooses the edges in fixed-point units. Positions count in units along each axis, so distances
+ * are right if the edges have the same ratios as their numbers of units. Tries the greatest 1 /
+ * MCOR_STEP_RANGE of the possible numbers for the longest edge, and takes the best, whose ratios
+ * are right to about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  /* The trailing zeros that an edge needs as a fixed-point number: nodes must be as round as the
-   * particles with long supports, and whole numbers of units in a double. */
+  /* spared: the trailing zeros that an edge needs as a fixed-point number. Nodes must have as many
+   * as the particles with the longest supports, and a double must hold them exactly. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
@@ -218,8 +219,8 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
 
 /* ---- The lattice ---- */
 
-/* Whether keys have enough bits for all nodes and cells of a lattice, as far as there are
- * surfaces. */
+/* Whether keys have enough bits for all nodes and cells of the lattice, up to where surfaces may
+ * be. */
 static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, int top)
 {
   const double unit = top > 0 ? ldexp(MCOR_BRICK, top + 1) : MCOR_BLOCK_CUBES;
@@ -253,7 +254,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     --top;
   }
   lattice->levels = top + 1;
-  /* Whole bricks of all levels, and space around them for finer bricks beside. */
+  /* The lattice consists of whole bricks of all levels, with space around for finer bricks beside
+   * them. */
   const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
@@ -289,7 +291,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
   MCOR_FAIL_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
     MCOR_SAY(GRID_TOO_LONG_AT_ALL), cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
+  /* Adaptive cubes need the last bit, too: with very different smoothing lengths, lattices are
+   * long. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
   while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {

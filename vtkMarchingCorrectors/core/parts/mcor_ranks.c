@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Exchange between ranks in a call. Ranks exchange only data that do not depend on how particles
- * are spread over them: least and greatest values, exact sums, and records that are then sorted
- * or used as a set. */
+/* Exchange between ranks in a call. Ranks exchange only data that do not depend on which rank has
+ * which particles: least and greatest values, exact sums, and records that are then sorted or used
+ * as a set. */
 
 #include "mcor_internal.h"
 
@@ -13,7 +13,8 @@ mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
-/* Skips the call if count is 0 (no fluid, so no samples); all ranks agree on count. */
+/* Calls nothing if count is 0 (without fluid, there are no samples); count is the same on all
+ * ranks. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

@@ -3,25 +3,25 @@
 #ifndef mcor_fill_h
 #define mcor_fill_h
 
-/* Filling, in two dimensions: triangles of the region above the lowest iso value, divided by the
- * lines of the others. See mcor_fill_lines.c. */
+/* Filling, in two dimensions: makes triangles of the region above the lowest iso value, divided by
+ * the lines of the other iso values. See mcor_fill_lines.c. */
 
 #include "mcor_cap_job.h"
 
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line
 {
-  double iso, value; /* iso: relative to A0, as the device has it; value: the caller's iso value */
+  double iso, value; /* iso: relative to A0, as on the device; value: the caller's iso value */
   int iso_number;
   int vertex_count, cut_count;
   mcor_table edges;        /* the line's vertices by lattice edge */
   mcor_table joined;       /* lowest nodes of ambiguous squares that join their nodes above */
-  double *offset, *margin; /* [vertex_count]: place along the edge; trim margin */
+  double *offset, *margin; /* [vertex_count]: position along the edge; trim margin */
   cl_ulong* cuts;          /* [cut_count], see mcor_trim.cl; ascending */
-  int32_t* number;         /* [vertex_count + cut_count], points of the surface; -1: dropped */
+  int32_t* number;         /* [vertex_count + cut_count]: number of the surface's point; -1: none */
 } mcor_fill_line;
 
-/* corner: a node's index; node_count + a cut's index; or -1 - a point of the surface. */
+/* corner: a node's index; or node_count + a cut's index; or -1 - the index of a surface's point. */
 typedef struct mcor_fill_triangle
 {
   int32_t corner[3];
@@ -33,9 +33,9 @@ typedef struct mcor_filling
 {
   mcor_fill_line* lines; /* [line_count], ascending by iso value, without repetitions */
   int line_count;
-  mcor_cap_nodes nodes; /* the nodes of the plane, kept like those of a cap's side seen from above */
+  mcor_cap_nodes nodes; /* the plane's nodes, kept like nodes of an upper cap side */
   double* value;        /* [nodes.node_count] */
-  int32_t* band;        /* [nodes.node_count]: number of levels that the node reaches */
+  int32_t* band;        /* [nodes.node_count]: number of iso values that the node reaches */
   int32_t* number;      /* points of the surface at nodes, then at cuts; -1: none */
   mcor_cap_job cap;     /* vertices: points where trimming ends the region */
   MCOR_LIST(mcor_fill_triangle) triangles;
@@ -43,13 +43,13 @@ typedef struct mcor_filling
 
 /* Runs first. If lines are to be filled, checks that they can be, and evaluates the nodes. */
 mcor_status mcor_begin_fill(mcor_context* context);
-/* mcor_take_lines keeps the lines of the iso value under way after trimming; mcor_number_lines
- * notes their points as soon as they are numbered. Both do nothing where lines are not filled. */
+/* mcor_take_lines keeps the trimmed lines of the current iso value; mcor_number_lines notes the
+ * numbers of their points. Both do nothing if lines are not filled. */
 mcor_status mcor_take_lines(mcor_context* context);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
 void mcor_end_fill(mcor_context* context);
-/* mcor_fill_squares.c. After all iso values: adds the filled triangles behind those that stand
- * for lines. */
+/* mcor_fill_squares.c. Runs after all iso values. Appends the filled triangles to the triangles
+ * that stand for lines. */
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
 /* Packs a node into a key that ascends by squares of 4 x 4, so that successive nodes are near

@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Filling. First the field is evaluated at all nodes that particles reach. Once an iso value's
- * lines are trimmed, their vertices, cuts, and the nodes above are kept. When all lines are
- * made, each node lies in a band between two successive iso values. The vertices of lines divide
- * the border of each square into parts of one band each. Parts that lines join enclose a polygon
- * of that band, and what trimming leaves of the polygon becomes triangles. Triangles thus share
- * the points of lines, the nodes, and the points where trimming cuts lattice edges with all
- * triangles beside them. A square is filled where its nodes are valid, as those of a line are. */
+/* Filling. First the field is evaluated at all nodes that particles reach. When an iso value's
+ * lines are trimmed, their vertices and cuts, and which nodes are above, are kept. When all lines
+ * are made, each node is in a band between two successive iso values. The vertices of lines divide
+ * the border of each square into parts of one band each. Parts that lines join enclose a polygon of
+ * their band, and trimming leaves triangles of it. Their corners are points of lines, nodes, and
+ * points where trimming cuts lattice edges; triangles beside each other share these. A square is
+ * filled if its nodes are valid, like squares with lines. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -80,7 +80,7 @@ mcor_status mcor_begin_fill(mcor_context* context)
 
 /* ---- The lines of one iso value ---- */
 
-/* Returns the lines of the iso value under way if they are to be filled, else NULL. */
+/* Returns the lines of the current iso value if they are to be filled, else NULL. */
 static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cuts squares into polygons of one band each, makes triangles of what trimming leaves of them,
- * and adds these to the surface, with the points that no line has. Borders are run through with
- * the inside on the left. */
+/* Cuts squares into polygons of one band each, trims them, makes triangles of the rest, and adds
+ * these to the surface, with the points that lines lack. Borders are followed with the inside on
+ * the left. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -11,18 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A node, or a line's vertex, on the border of a square; and the part of the border from there
- * to the next one. */
+/* A node, or a line's vertex, on the border of a square; and the part of the border from there to
+ * the next corner. */
 typedef struct mcor_fill_corner
 {
   mcor_cap_corner corner; /* must be the first member; vertex: a corner of mcor_fill_triangle */
   int level;              /* level of the line; -1: the corner is a node */
-  bool begins_line;       /* in the present polygon, a line leads to the next corner */
+  bool begins_line;       /* in the current polygon, a line leads to the next corner */
   int32_t vertex;
-  bool falls; /* here the border goes from above the line to below it */
+  bool falls; /* at this corner, the border goes from above the line to below it */
   int band;   /* band of this part of the border */
   bool done;  /* a polygon has this part */
-  /* The part is number `part` on the edge of this lower node. */
+  /* The part is number `part` of the edge along `axis` from this lower node. */
   cl_int node[3];
   int axis, part;
 } mcor_fill_corner;
@@ -32,11 +32,11 @@ typedef struct mcor_fill_job
   mcor_context* context;
   mcor_filling* fill;
   uint64_t square;
-  int64_t lowest;           /* number of its lowest node */
+  int64_t lowest;           /* number of the square's lowest node */
   cl_int node[2];           /* the lowest node */
   mcor_fill_corner* border; /* [4 + 4 * line_count] */
   int count;
-  int band; /* corners of the present polygon */
+  int band; /* band of the current polygon */
 } mcor_fill_job;
 
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
@@ -46,7 +46,7 @@ static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corn
 
 /* ---- The border ---- */
 
-/* Packs a lattice edge and the number of a part of it into a key. */
+/* Packs a lattice edge, and the number of a part of the edge, into a key. */
 static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
 {
   const cl_int edge[3] = { corner->node[0], corner->node[1], corner->axis };
@@ -74,7 +74,7 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       .axis = s & 1,
       .part = s < 2 ? i : parts - i
     };
-    if (i > 0) /* this corner is a line's vertex */
+    if (i > 0) /* the corner is a line's vertex */
     {
       corner->level = last < first ? first - i : first + i - 1;
       const mcor_fill_line* line = &fill->lines[corner->level];
@@ -108,7 +108,8 @@ static mcor_status mcor_add_fill_fan(
   return MCOR_OK;
 }
 
-/* Finds the point where trimming has cut a line, or finds or makes that on the border. */
+/* Finds the point where trimming has cut a line; or, on the border, finds or makes the point where
+ * it cuts the lattice edge. */
 static mcor_status mcor_cut_fill_side(
   void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {
@@ -168,8 +169,8 @@ static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      /* Goes to the other end of the line. A level has two corners on the border, or four, which
-       * lines then join around what is below, or above. */
+      /* Goes to the other end of the line. A level has two corners on the border; or four, which
+       * lines then join around the parts below or above. */
       const int level = next->level;
       const bool joined =
         mcor_find_number(&job->fill->lines[level].joined, (uint64_t)job->lowest) >= 0;
@@ -185,7 +186,7 @@ static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
 
 /* ---- Squares ---- */
 
-/* A square is filled if all nodes are valid, and any is above the lowest level. */
+/* A square is filled if all its nodes are valid, and any of them is above the lowest level. */
 static mcor_status mcor_visit_fill_square(
   void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {
@@ -225,9 +226,9 @@ static int mcor_compare_cuts(const void* x, const void* y)
   return (a[i] > b[i]) - (a[i] < b[i]);
 }
 
-/* Makes the points that lines lack, and numbers them in the surface: first the nodes that
- * triangles use, then the cuts. They are appended as a mesh that consists of them alone, all like
- * vertices of caps, and get the iso values and residuals of their bands. */
+/* Makes the points that lines lack, and numbers them in the surface: first the nodes that triangles
+ * use, then the cuts. They are appended as a mesh of their own, as if they were vertices of caps,
+ * and get the iso values and residuals of their bands. */
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
@@ -308,7 +309,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   {
     return MCOR_OK;
   }
-  free(fill->value); /* the bands are known */
+  free(fill->value); /* no longer needed: the bands are known */
   fill->value = NULL;
   mcor_fill_job job = { .context = context, .fill = fill };
   job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: turning coordinates into the plane and back, and launches that differ there. */
+/* Two dimensions: turns coordinates into the plane and back, and launches a kernel for squares. */
 
 #include "mcor_plane.h"
 #include "mcor_adaptive.h"
@@ -20,9 +20,9 @@ typedef struct mcor_flatten_job
 {
   const mcor_plane* plane;
   mcor_array positions;
-  float* floats;   /* where single-precision values go, else NULL */
-  double* doubles; /* where other values go; points always go here */
-  bool are_points; /* points may lie off the plane */
+  float* floats;   /* output in single precision, or NULL */
+  double* doubles; /* output in double precision; always for points */
+  bool are_points; /* these are points, which may lie off the plane */
 } mcor_flatten_job;
 
 static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)
@@ -62,7 +62,7 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
   }
   if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
   {
-    /* A flat box holds the plane it lies in. */
+    /* A flat box contains the plane in which it lies. */
     const bool inside = sides[4] <= plane->at && (plane->at < sides[5] || plane->at == sides[4]);
     sides[4] = inside ? -INFINITY : DBL_MAX;
     sides[5] = INFINITY;
@@ -90,7 +90,7 @@ mcor_status mcor_flatten(
   mcor_options* o = &flat->options;
   MCOR_FAIL_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(CAPPING_WITH_FILLED));
-  if (options->filled) /* pairs might miss lines that bound a filled region */
+  if (options->filled) /* pairs may miss lines that bound a filled region */
   {
     o->seeds = MCOR_COMPLETE;
     o->level_limit = 0;
@@ -101,7 +101,7 @@ mcor_status mcor_flatten(
   {
     o->periodic[i] = i < 4 ? options->periodic[2 * mcor_plane_axis(plane, i / 2) + i % 2] : 0;
   }
-  o->outputs &= ~(unsigned)MCOR_OUT_GAUSS_CURVATURE; /* lines have none of these */
+  o->outputs &= ~(unsigned)MCOR_OUT_GAUSS_CURVATURE; /* lines have no Gaussian curvature */
   if (options->globals)
   {
     flat->globals = *options->globals;
@@ -114,7 +114,7 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  if (!mcor_has_positions(input) || (plane->axis == 3 && plane->at == 0)) /* flat as it is */
+  if (!mcor_has_positions(input) || (plane->axis == 3 && plane->at == 0)) /* flat already */
   {
     return MCOR_OK;
   }
@@ -149,7 +149,7 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Across the plane, reach is the largest support everywhere. */
+/* Across the plane, bounds are the plane less and plus the largest support. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;

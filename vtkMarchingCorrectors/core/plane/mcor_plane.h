@@ -3,13 +3,13 @@
 #ifndef mcor_plane_h
 #define mcor_plane_h
 
-/* Two dimensions. Particles that share one coordinate lie in the plane z = 0 for all phases. At
- * the border the caller's coordinates are turned to (u, v, w), w being the constant one; results
- * are turned back. In between, sums of three dimensions are those of two because each particle's
- * weight is multiplied by c h (c: plane_factor). The lattice is one layer of cells above
- * the plane, and its upper nodes copy the lower ones, so that lines lie where the surface of
- * three dimensions would cross the plane. Until the output, a line is a triangle whose last two
- * corners are one. */
+/* Two dimensions. Particles that share one coordinate lie in the plane z = 0 for all phases. A call
+ * first turns the caller's coordinates to (u, v, w) with a constant w, and turns its results back
+ * at the end. Between, sums in three dimensions equal those in two, because each particle's weight
+ * is multiplied by c h (c: plane_factor). The lattice is one layer of cells above the plane, and
+ * its upper nodes copy the lower nodes, so that lines lie where the surface in three dimensions
+ * would cross the plane. Until the output, a line is a triangle whose last two corners are the
+ * same. */
 
 #include "mcor_internal.h"
 
@@ -32,32 +32,34 @@ static inline bool mcor_is_plane(const mcor_context* context)
  * options to *flat. */
 mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns these copies into the plane. */
+/* Turns the copies *flat into the plane. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns points likewise, into *flat, which the caller frees. Points off the plane become NaN. */
+/* Turns points into the plane: *turned, with the data *flat, which the caller frees. Points off the
+ * plane become NaN. */
 mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points, int64_t count,
   mcor_array* turned, double** flat);
-/* Turns the sides of a box. Across the plane they hold all of it, or nothing. */
+/* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,
+ * else empty. */
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
-/* Turns the measures over all particles, or turns them back. */
+/* Turns the measures over all particles into the plane, or back. */
 void mcor_turn_measure(mcor_measure* measure, bool back);
-/* Turns the numbers of the lattice and the extent back. */
+/* Turns the statistics of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 
-/* Returns the caller's axis of turned coordinate a; a = 2: the constant one. */
+/* Returns the caller's axis of turned coordinate a; a = 2 is the constant coordinate. */
 static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
   return (plane->axis + a) % 3;
 }
-/* Returns that axis' letter, in the call under way. */
+/* Returns this axis' letter in the current call. */
 static inline char mcor_axis_letter(const mcor_context* context, int a)
 {
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* Turns three numbers of `width` bytes back, in place; the second function: [count][3], the
- * constant coordinate becoming `constant`. */
+/* mcor_turn_back turns three numbers of `width` bytes back, in place; mcor_unflatten_doubles
+ * [count][3] numbers, whose constant coordinate becomes `constant`. */
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
@@ -65,10 +67,10 @@ void mcor_unflatten_doubles(
 /* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* mcor_plane_lines.c. Makes normals from lines where the gradient gives none; needs the lines of
- * the box's ring. */
+/* mcor_plane_lines.c. Makes normals from lines if the gradient gives none; needs the lines of the
+ * box's ring. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
-/* Makes the polylines of the surface from the lines that its triangles stand for, and turns all
+/* Makes the surface's polylines from the lines that its triangles stand for, and turns the surface
  * back. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 

@@ -1,17 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Lines on their way out: joined to polylines, with normals where the gradient gives none, and
- * turned back into the caller's coordinates. Triangles of filled regions follow those that stand
- * for lines. */
+/* Output of lines: joins them to polylines, makes normals if the gradient gives none, and turns
+ * them back into the caller's coordinates. Triangles of filled regions follow the triangles that
+ * stand for lines. */
 
 #include "mcor_plane.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* The lines at a point: one begins there at most, and one ends. next: where the first leads to;
- * last: where the second comes from; -1: none. */
+/* The lines at a point: at most one begins there, and at most one ends. next: the point to which
+ * the first leads; last: the point from which the second comes; -1: none. */
 typedef struct mcor_line_ends
 {
   int32_t next, last;
@@ -25,7 +25,7 @@ typedef struct mcor_joining
   mcor_line_ends* at;    /* [points] */
 } mcor_joining;
 
-/* Begins without lines. */
+/* Returns false if memory ran out. There are no lines at first. */
 static bool mcor_create_joining(int64_t points, mcor_joining* j)
 {
   *j = (mcor_joining){ .points = points, .at = malloc((size_t)points * sizeof *j->at + 1) };
@@ -43,13 +43,15 @@ static void mcor_join_line(mcor_joining* j, int32_t from, int32_t to)
   j->at[to].last = from;
 }
 
-/* Whether a triangle stands for a line: two of its corners are one. The others are filled. */
+/* Whether a triangle stands for a line: two of its corners are the same. Other triangles are
+ * filled. */
 static bool mcor_is_line(const int32_t* t)
 {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Reads the lines; trimming may leave two triangles of one line, see mcor_trim_cut. */
+/* Reads the lines from triangles; trimming may leave two triangles of one line, see
+ * mcor_trim_cut. */
 static mcor_status mcor_read_joining(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
 {
@@ -57,7 +59,7 @@ static mcor_status mcor_read_joining(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2] && mcor_is_line(t)) /* this is not the second half of a quad that stands for a
+    if (t[0] != t[2] && mcor_is_line(t)) /* skips the second half of a quad that stands for a
                                           * line */
     {
       mcor_join_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
@@ -66,8 +68,8 @@ static mcor_status mcor_read_joining(
   return MCOR_OK;
 }
 
-/* Makes open polylines from their ends, then closed ones, each from its first point, with which it
- * ends, too. */
+/* Makes open polylines from their beginnings on, then closed polylines, which begin and end with
+ * their first point. Returns false if memory ran out. */
 static bool mcor_join(mcor_joining* j, mcor_surface* surface)
 {
   const size_t lines = (size_t)j->count;
@@ -98,8 +100,8 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   return true;
 }
 
-/* Measures the length, and the area of the filled region, or the area that lines enclose if all
- * are closed. Takes it about one of the points. u, v: the axes of the plane. */
+/* Measures the length, and the area: of the filled region, or, if all lines are closed, the area
+ * that they enclose, from one of the points. u, v: the plane's axes. */
 static void mcor_measure_lines(mcor_surface* surface, int u, int v)
 {
   mcor_statistics* s = &surface->statistics;
@@ -148,8 +150,8 @@ mcor_status mcor_join_lines(
   return made ? MCOR_OK : MCOR_OUT_OF_CAPACITY;
 }
 
-/* Makes normals, to the right of the lines: at all points of a preview, else where the gradient
- * vanishes. */
+/* Makes normals, to the right of the lines: at all points of a preview, or if the caller wants it;
+ * else only where the gradient vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;
@@ -205,7 +207,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
   for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
   {
-    float* n = surface->normals + 3 * i; /* in filled regions the normal is the plane's */
+    float* n = surface->normals + 3 * i; /* in filled regions, the plane's normal */
     n[0] = filled ? 0 : n[0];
     n[1] = filled ? 0 : n[1];
     n[2] = filled;

@@ -3,9 +3,9 @@
 
 /* Normals, area and volume of triangles [III-D.4].
  *
- * Area and volume are of the whole surface, or of parts of it that are added up later. Each term is
- * rounded to a unit in which the sums are exact. The sums are therefore the same to the last bit
- * in any order, and however the triangles are spread over ranks. */
+ * Area and volume are of the whole surface, or of parts whose sums are added later. Each term is
+ * rounded to a unit in which the sums are exact. Therefore the sums have the same bits in any
+ * order, and for any distribution of the triangles over ranks. */
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
@@ -13,9 +13,9 @@
 
 #include <stdlib.h>
 
-/* Hashes an edge. A closed surface runs through each edge once each way, so the sum of the
- * signed hashes is 0. Of a surface with a hole it is 0 by chance once in 2^64. Multiples of the
- * golden ratio keep pairs of numbers apart. */
+/* Returns a hash of an edge. In a closed surface, triangles use each edge once in each direction,
+ * so the sum of the signed hashes is 0. With a hole it is 0 only by chance, once in 2^64. Multiples
+ * of the golden ratio distinguish pairs of numbers. */
 static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
 {
   uint64_t x = (uint64_t)low * 0x9E3779B97F4A7C15u + (uint64_t)high;
@@ -24,7 +24,7 @@ static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
   return x ^ (x >> 31);
 }
 
-/* Adds a triangle's area, and the volume between it and the origin. */
+/* Finds a triangle's area, and the volume between it and the origin. */
 static inline void mcor_measure_triangle(
   const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
 {
@@ -40,20 +40,21 @@ static inline void mcor_measure_triangle(
   *volume = mcor_dot(c[0], n) / 6;
 }
 
-/* Finds a power of two that leaves 53 bits for the sum of `count` terms up to `most`. */
+/* Returns a unit, a power of two, in which a sum of `count` terms up to `most` needs at most 53
+ * bits. */
 static double mcor_exact_unit(double most, int64_t count)
 {
   const double bound = most * (double)count;
   return bound > 0 && bound < 1e300 ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
 }
 
-/* Rounds to a multiple of the unit whose 1.5 * 2^52 multiple is `large`. */
+/* Rounds to a multiple of the unit. large: 1.5 * 2^52 units. */
 static inline double mcor_round_term(double term, double large)
 {
   return (term + large) - large;
 }
 
-/* Sums of a slice of the triangles, exact like the sums over parts. */
+/* Sums over slices of the triangles; they are exact, like the sums over parts. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;
@@ -65,7 +66,7 @@ typedef struct mcor_measure_job
 static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measure_job* job = data;
-  double areas = 0, volumes = 0; /* the largest term */
+  double areas = 0, volumes = 0; /* the largest terms */
   for (int64_t t = first; t < last; ++t)
   {
     double area, volume;
@@ -102,8 +103,7 @@ static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = (mcor_measures){ .area = areas, .volume = volumes, .open = (int64_t)open };
 }
 
-/* Adds up the sums of all slices, and finds the largest of their terms. context: NULL outside of a
- * call. */
+/* Adds the sums of all slices, and finds their largest terms. context: NULL outside of a call. */
 static mcor_status mcor_measure_slices(mcor_context* context, const mcor_surface* surface,
   const int64_t* numbers, mcor_slice_body slice, mcor_measures* measures)
 {
@@ -144,8 +144,8 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* Takes volumes about one of the points, since coordinates may be large. Lines are measured
- * where they are joined. */
+/* Volumes count from one of the points, because coordinates may be large. mcor_plane_lines.c
+ * measures lines. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .triangle_count = surface->triangle_count };
@@ -165,8 +165,8 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 
 /* ---- Normals ---- */
 
-/* Normals are those of triangles at all vertices of a preview, else only where the gradient
- * vanishes. The cross product weighs each triangle by its area. */
+/* Normals made from triangles: at all points of a preview, or if the caller wants it; else only
+ * where the gradient vanishes. The cross product weights each triangle by its area. */
 typedef struct mcor_normals
 {
   mcor_surface* surface;

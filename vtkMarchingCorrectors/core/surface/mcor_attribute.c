@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT
- * components that vary are evaluated with the correction, while each vertex's particles are at
- * hand. The rest follow in groups of that many, at the vertices of the finished mesh. The mean
- * of equal values (masses, smoothing lengths) is that value, exactly. */
+ * components that vary are evaluated during the correction, which has gathered each vertex's
+ * particles. The others follow in groups of the same size, at the vertices of the finished mesh. If
+ * all values (masses, smoothing lengths) are equal, their mean is exactly this value. */
 
 #include "mcor_adaptive.h"
 #include "mcor_input.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Finds the power of 2 that scales the largest value of a component to at most 1, so that no sum
+/* Returns the power of 2 that scales the largest value of a component to at most 1, so that no sum
  * overflows in the device's precision. */
 static double mcor_component_scale(double largest)
 {
@@ -32,8 +32,8 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Decides which attributes to leave out, and lists the components of the others: those that vary
- * (surface), or all of them (samples). not_finite: [attribute_count], as in mcor_surface. */
+/* Decides which attributes to leave out, and lists components of the others: those that vary
+ * (of_surface), or all (samples). not_finite: [attribute_count], as in mcor_surface. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {
@@ -77,7 +77,8 @@ mcor_status mcor_list_components(
   return status;
 }
 
-/* Copies up to MCOR_ATTRIBUTE_LIMIT varying components to the device, from number `first` on. */
+/* Copies the varying components `first` and following, MCOR_ATTRIBUTE_LIMIT at most, to the
+ * device. */
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
 {
   mcor_attributes* attributes = &context->attributes;
@@ -152,8 +153,8 @@ mcor_status mcor_add_attributes(
   const mcor_mesh* mesh = &context->mesh;
   const int varying = context->attributes.varying_count;
   const mcor_component* component = context->attributes.varying;
-  /* Writes the constant components: those missing from the list, which is in the order of the
-   * arrays. */
+  /* Writes the constant components, which the list of varying components lacks. The list is in the
+   * order of the arrays. */
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];

@@ -4,7 +4,7 @@
 #define mcor_cap_h
 
 /* Caps close the surface at the sides of a period or box, see mcor_cap_make.c. Filled regions in
- * two dimensions use the same nodes and points. */
+ * two dimensions use these nodes and points, too. */
 
 #include "mcor_plane.h"
 #include "mcor_table.h"
@@ -15,7 +15,8 @@
 /* Adds the caps to the trimmed mesh. */
 mcor_status mcor_cap(mcor_context* context);
 
-/* Packs a node, or any three such numbers, into a key; an axis has at most 2^20 + 64 nodes. */
+/* Packs a node, or three other numbers below 2^21, into a key; an axis has at most 2^20 + 64
+ * nodes. */
 static inline uint64_t mcor_cap_key(const cl_int node[3])
 {
   return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;
@@ -41,14 +42,13 @@ struct mcor_cap_points
   mcor_buffer eigenvalues;
 };
 
-/* Adds a point at a node, or at an offset from it (NULL: none). Evaluates the batch once it is
- * full. */
+/* Adds a point at an offset (NULL: 0) from a node. Evaluates the batch if it is full. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
-/* Evaluates the points that are left. */
+/* Evaluates the points of the last, unfilled batch. */
 mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* points);
 void mcor_free_cap_points(mcor_context* context, mcor_cap_points* points);
-/* Returns the trim margin of point i: above 0 where trimming leaves it. */
+/* Returns the trim margin of point i: above 0 if the point remains after trimming. */
 double mcor_cap_margin(const mcor_context* context, const mcor_cap_points* points, int64_t i);
 bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* points, int64_t i);
 
@@ -58,15 +58,15 @@ typedef struct mcor_cap_vertex
   cl_int node[3];
   int32_t band, number; /* in a filled region: its band, and the number that triangles use */
   double offset[3];
-  uint64_t key[2]; /* in a cap: the first square that met it, and its turn there */
-  uint8_t flag;    /* the surface's flag: MCOR_CAP_FLAG; for cuts 2, or 1 where they are exact */
+  uint64_t key[2]; /* in a cap: the first square that uses it, and its look-up's number */
+  uint8_t flag;    /* the surface's flag: MCOR_CAP_FLAG; for cuts 2, or 1 if they are exact */
 } mcor_cap_vertex;
 
-/* Appends vertices to the mesh, and evaluates the field there. */
+/* Appends vertices to the mesh, and evaluates the field at them. */
 mcor_status mcor_append_cap_vertices(
   mcor_context* context, const mcor_cap_vertex* vertices, int64_t count);
 void mcor_end_caps(mcor_context* context);
-/* Whether vertex v of the mesh belongs to caps alone. */
+/* Whether vertex v of the mesh belongs only to caps. */
 static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
 {
   return v >= context->mesh.cap_first;
@@ -82,15 +82,15 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* Makes the corner where trimming cuts the side from corner p to q; adds a polygon, the rest of one
- * that is cut or whole. */
+/* mcor_clip_side makes the corner where trimming cuts the side from corner p to q; mcor_add_clipped
+ * adds a polygon, the rest of a cut polygon or a whole one. */
 typedef mcor_status (*mcor_clip_side)(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
 typedef mcor_status (*mcor_add_clipped)(
   void* data, const mcor_cap_corner* corners, int count, bool is_cut);
 /* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
- * inside, between the cuts before and behind it. A whole one begins with corner `first`. The most
- * are nodes of a square, and vertices of the two lines beside a band. */
+ * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The most
+ * corners are a square's nodes and the vertices of the two lines beside a band. */
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);
@@ -107,46 +107,46 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick of nodes that particles reach, on a side or one node further in. Bits of masks are those
- * of a brick. */
+/* A brick of nodes that particles reach, on a side or one node further in. Masks have the bits of a
+ * brick's nodes. */
 typedef struct mcor_cap_brick
 {
-  uint64_t key; /* must be the first member; place along the side's second axis, then the first, of
-                 * its first cell */
+  uint64_t key; /* must be the first member; orders bricks by the side's second axis, then by its
+                 * first */
   cl_int at[3]; /* in bricks */
   int32_t up[8]; /* numbers of this brick and of the bricks up from it, bits x, y, z; 0: none */
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* Used cells, and ambiguous faces that join their nodes above, whose lowest node is here. */
+  /* Used cells, and ambiguous faces that join their nodes above, by their lowest nodes. */
   cl_ulong used, joined[3];
 } mcor_cap_brick;
 
-/* Nodes of a side have numbers MCOR_SIDE_NODES * brick + 0 to 15. The first brick stands for all
+/* Nodes of a side have numbers MCOR_SIDE_NODES * brick + 0 to 15. Brick 0 stands for all bricks
  * that no particle reaches. */
 #define MCOR_SIDE_NODES (MCOR_BRICK * MCOR_BRICK)
 typedef struct mcor_cap_nodes
 {
-  int axis, upper;  /* upper: of the two sides, the higher one */
-  int plane, inner; /* coordinates along the axis: of the side's nodes, and of the nodes one further
+  int axis, upper;  /* upper: 1 on the upper side of the axis, else 0 */
+  int plane, inner; /* coordinates along the axis of the side's nodes, and of the nodes one further
                      * in */
   int across[2];    /* the other two axes, so that across[0], across[1], axis are right-handed */
   int range[3][2];  /* first and last node along each axis */
-  mcor_table index; /* numbers of bricks by place */
+  mcor_table index; /* numbers of bricks by position */
   MCOR_LIST(mcor_cap_brick) bricks; /* bricks on the side come first */
   int64_t side_count, node_count;   /* numbers of bricks and nodes on the side */
   double* margin;                   /* [node_count], trim margins of nodes above */
 } mcor_cap_nodes;
 
-/* Returns the bit of node number `at` of a side in its brick's masks, or of the one at another
- * place along the axis. */
+/* Returns the bit, in its brick's masks, of the node at coordinate `along` the axis that is in line
+ * with node number `at` of the side. */
 static inline int mcor_side_bit(const mcor_cap_nodes* nodes, int along, int64_t at)
 {
   return (along & 3) << 2 * nodes->axis | (int)(at & 3) << 2 * nodes->across[0] |
     (int)(at >> 2 & 3) << 2 * nodes->across[1];
 }
 
-/* Finds the place of node number `at` of a side. */
+/* Finds the position of node number `at` of a side. */
 static inline void mcor_cap_node(const mcor_cap_nodes* nodes, int64_t at, cl_int node[3])
 {
   const cl_int* brick = nodes->bricks.of[at / MCOR_SIDE_NODES].at;
@@ -164,29 +164,31 @@ static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at,
     MCOR_BRICK * (v & 3);
 }
 
-/* mcor_cap_points.c. Returns the number of nodes along an axis to its lower or upper side if a
- * cap closes that side (with ranks: of the whole box), else -1. */
+/* mcor_cap_points.c. Returns the coordinate, in nodes, of an axis' lower or upper side (with ranks:
+ * the whole box's) if a cap closes it, else -1. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
-/* Whether that side is one of this call's box. */
+/* Whether a cap closes this side of this call's box. */
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
-/* Fails where caps would need too many nodes. */
+/* Fails if caps would need too many nodes. */
 mcor_status mcor_check_caps(mcor_context* context);
 
-/* Finds the bricks of nodes whose axes and ranges are set; fails where they are too many.
+/* Finds the bricks of `nodes`, whose axes and ranges are set; fails if they are too many.
  * iso_value: in the caller's unit. */
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
-/* Takes the masks of the marched bricks. */
+/* Copies the masks of the marched bricks. */
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
-/* Asks for the field at the nodes that need it: those of the side, or those one further in. */
+/* Requests the field at the nodes that need it: nodes of the side, or (is_inner) nodes one further
+ * in. */
 mcor_status mcor_ask_cap_nodes(
   mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points);
-/* Calls `visit` for the squares of all bricks, by number and place of their lowest nodes. */
+/* Calls `visit` for the squares of all bricks. at, node: number and position of a square's lowest
+ * node. */
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
   mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
   void* data);
-/* Loads the nodes of axis a's lower or upper side. opposite: the other side of a period, if it
- * is loaded. */
+/* Loads the nodes of axis a's lower or upper side. opposite: the other side of the period if this
+ * is loaded, else NULL. */
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);

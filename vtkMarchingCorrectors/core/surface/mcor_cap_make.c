@@ -2,15 +2,15 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Caps close the surface at the sides of a period or box, around the region above the iso value.
- * Each square of a side is cut as marching cuts it, along lines between the surface's own vertices
- * there, which the cap shares; its other vertices are nodes. A trimmed surface has a trimmed cap:
- * cut at the surface's own cut vertices, and linearly within the side. A square is capped where the
- * cell beside it is valid.
+ * Marching Cubes cuts each square of a side along lines between vertices of the surface. The cap
+ * has the same lines and vertices; its other vertices are nodes. The cap of a trimmed surface is
+ * trimmed, too: at the surface's cut vertices, and linearly within the side. A square is capped if
+ * the cell beside it is valid.
  *
- * The vertices of caps follow all others of the mesh. They are numbered in the order in which
- * squares meet them: by axis, by lower and upper side, then square by square. A box caps the
- * squares of its own cells and of the ring around it, so that its vertices have the keys, and
- * the order, that they have in the whole surface. */
+ * The vertices of caps follow all other vertices of the mesh. They are numbered in the order in
+ * which squares use them: by axis, by lower and upper side, then square by square. A call with a
+ * box caps the squares of its own cells and of the ring around them, so that vertices have the same
+ * keys and order as in the whole surface. */
 
 #include "mcor_cap_job.h"
 
@@ -41,7 +41,8 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Caps one square. Its number is above the keys of all cells; numbers ascend. */
+/* Caps one square. Its number is above the keys of all cells; squares come in the order of their
+ * numbers. */
 static mcor_status mcor_visit_cap_square(
   void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {
@@ -55,8 +56,8 @@ static mcor_status mcor_visit_cap_square(
   const int cell = mcor_side_bit(nodes, nodes->plane - nodes->upper, lowest);
   const bool used = of[nodes->upper ? own->inner : lowest / MCOR_SIDE_NODES].used >> cell & 1;
   int total = 0;
-  bool valid = true; /* this says whether the cell beside the square is valid where the surface does
-                      * not meet the square */
+  bool valid = true; /* without surface in the square, this says whether the cell beside it is
+                      * valid */
   for (int k = 0; k < 4; ++k)
   {
     const int64_t at = mcor_corner_index(nodes, lowest, k);
@@ -117,7 +118,7 @@ void mcor_free_cap_job(mcor_cap_job* job)
 
 mcor_status mcor_cap(mcor_context* context)
 {
-  mcor_end_caps(context); /* vertices and triangles of the last iso value */
+  mcor_end_caps(context); /* drops the keys of the last iso value */
   mcor_cap_job job = { .context = context,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
   const mcor_mesh* mesh = &context->mesh;
@@ -131,7 +132,7 @@ mcor_status mcor_cap(mcor_context* context)
   const int mapped = n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, views, mapped);
   MCOR_THEN(status, mcor_index_cap_edges(&job));
-  /* Caps the lower and the upper side of each axis, as far as this call's box has them. */
+  /* Caps the lower and the upper side of each axis, if this call's box has them. */
   for (int axis = 0; axis < 3; ++axis)
   {
     const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);

@@ -1,11 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The nodes where caps may be: those of one side of a period or box, or those of a plane that is
- * filled. They are kept in the bricks that some particle reaches. Where no
- * particle reaches there is nothing to close, so memory and time go with what is there, not with
- * the area of a side. Where marching has evaluated a brick its answer is taken, so that the cap
- * fits the surface. */
+/* The nodes where caps may be: of one side of a period or box, or of a plane that is filled. They
+ * are kept in bricks that particles reach; elsewhere is nothing to close. Memory and time therefore
+ * depend on the particles at the side, not on the side's area. If marching has evaluated a brick,
+ * its nodes are taken from there, so that the cap fits the surface. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -37,7 +36,7 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
   free(nodes->margin);
 }
 
-/* Places a side. */
+/* Finds the plane of a side, and the range of its nodes. */
 static void mcor_set_cap_extent(
   const mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
 {
@@ -57,7 +56,7 @@ static void mcor_set_cap_extent(
     int* range = nodes->range[a];
     range[0] = a == axis ? nodes->plane - upper : low > first ? low : first;
     range[1] = a == axis ? range[0] + 1 : high < last ? high : last;
-    if (a >= context->space.axes) /* the edges of a plane's side: one row of squares */
+    if (a >= context->space.axes) /* in two dimensions, a side is one row of squares */
     {
       range[0] = 0;
       range[1] = 1;
@@ -67,8 +66,8 @@ static void mcor_set_cap_extent(
 
 /* ---- Bricks ---- */
 
-/* Fails if particles reach more clusters of a side than this. With 16^2 nodes each, these are 4 to
- * 64 million nodes. If few particles reach more, a smoothing length or the cube size is wrong. */
+/* Fails if particles reach too many clusters of a side. With 16^2 nodes each, the limit is 4 to 64
+ * million nodes. If few particles reach more, a smoothing length or the cube size is wrong. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)
 {
@@ -84,7 +83,8 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick. */
+/* Adds the bricks between two positions, in nodes, to a set of clusters, which are masks by first
+ * brick. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters)
 {
@@ -110,9 +110,9 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
   return MCOR_OK;
 }
 
-/* Adds the bricks that particles may reach. A support lies within a cube, whose half edge is rounded
- * up a little. It is widened by one node, because a square is looked up by its lowest node, and by
- * another one for rounding. Most particles are far from a side, which its axis tells first. */
+/* Adds the bricks that particles may reach. A cube around the support, rounded up a little, is
+ * extended by one node, because a square is found by its lowest node, and by another node for
+ * rounding. Tests the side's axis first, because most particles are far from the side. */
 static mcor_status mcor_add_reached(
   mcor_context* context, const mcor_cap_nodes* nodes, mcor_table* clusters)
 {
@@ -184,14 +184,14 @@ static mcor_status mcor_list_cap_bricks(
   return MCOR_OK;
 }
 
-/* Returns the number of a brick, 0 if no particle reaches it. */
+/* Returns the number of a brick, or 0 if no particle reaches it. */
 static int32_t mcor_cap_brick_at(const mcor_cap_nodes* nodes, const cl_int at[3])
 {
   const int32_t number = mcor_find_number(&nodes->index, mcor_cap_key(at));
   return number < 0 ? 0 : number;
 }
 
-/* Sorts and numbers the bricks, and finds those beside each. */
+/* Sorts and numbers the bricks, and finds the bricks beside each. */
 static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes)
 {
   mcor_cap_brick* of = nodes->bricks.of;
@@ -298,7 +298,7 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Takes the field at node number points->to[i] of a side, or at the one further in. */
+/* Notes the field at node number points->to[i] of a side, or at the node one further in. */
 static void mcor_take_cap_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -319,9 +319,9 @@ static void mcor_take_cap_node(
   }
 }
 
-/* Goes brick by brick, so that successive points are near each other. On the side, nodes above
- * need their margin, unknown ones their side, too. Nodes further in need their validity, where a
- * cell has no vertex on the side. */
+/* Goes brick by brick, so that successive points are near each other. On the side, nodes above need
+ * their margin, and unknown nodes their side, too. Nodes further in need their validity if the cell
+ * has no vertex on the side. */
 mcor_status mcor_ask_cap_nodes(
   mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points)
 {
@@ -392,7 +392,7 @@ mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   {
     MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false, points));
   }
-  /* Copies what the opposite side of a period knows: a period apart, sums have the same bits. */
+  /* Copies the results of the period's opposite side: a period apart, sums have the same bits. */
   for (int64_t to = MCOR_SIDE_NODES; opposite && to < nodes->node_count; ++to)
   {
     mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_SIDE_NODES];

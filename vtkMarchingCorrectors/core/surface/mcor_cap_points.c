@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points of caps and of filled regions: the field there, and how they become vertices of the
- * mesh, behind all others. */
+/* Points of caps and of filled regions: evaluates the field at them, and appends them to the mesh's
+ * vertices. */
 
 #include "mcor_cap.h"
 
@@ -75,7 +75,7 @@ mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* p, const 
   return p->count < MCOR_CAP_BATCH ? MCOR_OK : mcor_take_cap_points(context, p);
 }
 
-/* The weight of the fluid alone. */
+/* Returns the weight of the fluid alone. */
 static double mcor_cap_fluid(const mcor_context* context, const mcor_cap_points* p, int64_t i)
 {
   return context->cl.build.solids ? mcor_get_real(context, p->gradient, 4 * i + 3)

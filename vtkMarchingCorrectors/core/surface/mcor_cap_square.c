@@ -2,17 +2,17 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Cuts one square of a cap: along the lines between the surface's own vertices (see
- * mcor_cap_make.c), and where the surface is trimmed. Cuts of lattice edges in two dimensions
- * begin at the linear estimate and are then moved to where the trim margin is 0. */
+ * mcor_cap_make.c), and where the surface is trimmed. In two dimensions, cuts of lattice edges
+ * begin at the linear estimate, and then move to where the trim margin is 0. */
 
 #include "mcor_cap_job.h"
 #include "mcor_vector.h"
 
 #include <string.h>
 
-/* A cut keeps this far from the ends of its line, as the surface's cuts do. */
+/* A cut stays this far from the ends of its line, like the surface's cuts. */
 #define MCOR_CAP_CUT_MARGIN 1e-5
-#define MCOR_CAP_ROOT 2e-5 /* a margin below which a cut counts as exact */
+#define MCOR_CAP_ROOT 2e-5 /* with a margin below this, a cut counts as exact */
 
 /* ---- Vertices ---- */
 
@@ -25,7 +25,7 @@ void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
   }
 }
 
-/* Finds the vertex that has this key, or makes it. */
+/* Finds the vertex with this key, or makes it. */
 static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
@@ -45,8 +45,8 @@ static mcor_status mcor_find_cap_vertex(
   return MCOR_OK;
 }
 
-/* Finds the node (u, v) beyond the square's lowest one. In two dimensions nodes above each other
- * are one. */
+/* Finds the node that is (u, v) nodes from the square's lowest node. In two dimensions, nodes above
+ * each other are one node. */
 static void mcor_square_node(
   const mcor_cap_job* job, const mcor_cap_square* square, int u, int v, cl_int node[3])
 {
@@ -56,8 +56,8 @@ static void mcor_square_node(
   node[2] = job->context->space.flat ? 0 : node[2];
 }
 
-/* Takes the surface's vertex on side k. Of the two of a pinched edge (see mcor_cell_emit) it is
- * the one on this cell's side. */
+/* Makes a corner of the surface's vertex on side k. On a pinched edge (see mcor_cell_emit), this is
+ * the vertex on the side of this square's cell. */
 static mcor_status mcor_cap_edge_corner(
   mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
@@ -83,7 +83,7 @@ static mcor_status mcor_cap_edge_corner(
   return MCOR_OK;
 }
 
-/* Returns where between the ends a linear margin would be 0. */
+/* Returns the share of the way between the ends at which a linear margin would be 0. */
 static double mcor_bracket_share(const mcor_bracket* b)
 {
   return b->margin[0] / (b->margin[0] - b->margin[1]);
@@ -100,8 +100,8 @@ void mcor_begin_cap_line(
   mcor_point_between(line->from, line->to, line->at, at);
 }
 
-/* Finds the vertex where trimming cuts the line between two corners: the surface's own cut, else
- * one of the cap's, with the line along which it will be moved. */
+/* Finds the vertex where trimming cuts the line between two corners: the surface's cut, else a cut
+ * of the cap, with the line along which it will move. */
 static mcor_status mcor_cap_cut(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
 {
@@ -142,7 +142,8 @@ static mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b
   return MCOR_OK;
 }
 
-/* Adds a polygon as a fan; corners go round as seen from above the axis. */
+/* Adds a polygon as a fan. Its corners are counter-clockwise, seen from the upper end of the
+ * axis. */
 static mcor_status mcor_add_cap_fan(
   void* data, const mcor_cap_corner* corners, int count, bool is_cut)
 {
@@ -152,7 +153,7 @@ static mcor_status mcor_add_cap_fan(
   if (job->context->space.flat)
   {
     /* A line along the plane's side, with the inside on its left, is a triangle whose last two
-     * corners are one. Corners above each other are one. */
+     * corners are one vertex. Corners above each other are one vertex, too. */
     int other = 1;
     while (other < count - 1 && corners[other].vertex == corners[0].vertex)
     {
@@ -270,14 +271,14 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
 
 /* ---- Moving cuts ---- */
 
-/* More steps than any cut needs, unless it lies at an end of its line: every fourth step halves
- * the bracket. */
+/* Most steps. No cut needs as many, unless it is at an end of its line, because every fourth step
+ * halves the bracket. */
 #define MCOR_PLACE_STEPS 100
-/* A margin at which a cut stays: some units of rounding in single precision. */
+/* With a margin below this, a few units of rounding in single precision, a cut stays. */
 #define MCOR_PLACE_ROOT 1e-6
 
-/* Moves a cut within its bracket, unless its margin is 0 up to rounding. The margin of an end that
- * stays twice is halved, so that it does not stay for ever (the Illinois method). */
+/* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket
+ * stays twice, its margin is halved, so that it moves, too (the Illinois method). */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -300,7 +301,7 @@ static void mcor_move_cut(
   const double share = ++line->moves % 4 == 0 ? 0.5 : mcor_bracket_share(bracket);
   const double s = bracket->at[0] + (bracket->at[1] - bracket->at[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  line->done = line->at == before; /* the cut is at an end of its line, or as exact as numbers allow */
+  line->done = line->at == before; /* the cut is at an end, or as exact as numbers allow */
   double at[3];
   mcor_point_between(line->from, line->to, line->at, at);
   mcor_put_cap_vertex(vertex, at);

@@ -30,8 +30,8 @@ mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lin
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
-/* Moves the vertices onto the surface. In a preview they stay where linear interpolation puts
- * them, and are evaluated there. */
+/* Moves the vertices onto the surface. In a preview they stay at their linear interpolation, and
+ * are evaluated there. */
 mcor_status mcor_correct(mcor_context* context)
 {
   const mcor_options* options = context->run.options;

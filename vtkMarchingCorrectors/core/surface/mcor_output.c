@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Output [III-D.4]: copies the triangles, and the vertices that they use, to the caller's
- * surface, and sums up what the correction did. */
+/* Output [III-D.4]: copies the triangles, and the vertices that they use, to the caller's surface,
+ * and makes statistics of the correction. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -25,23 +25,23 @@ typedef struct mcor_tally
 
 #define MCOR_DOWNLOADS 12
 
-/* The vertices of one iso value on their way to the surface. */
+/* The vertices of one iso value while they are copied to the surface. */
 typedef struct mcor_download
 {
   mcor_context* context;
   double iso, sum_rounding;
-  mcor_surface* surface; /* index of the first new point */
+  mcor_surface* surface; /* point_count: index of the first new point */
   /* Views of the mesh's buffers, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
-  void *eigenvalue, *nearest, *curvature, *cuts; /* where the caller asked for them */
+  void *eigenvalue, *nearest, *curvature, *cuts; /* if the caller wants them */
   uint8_t* owned;                                /* see mcor_find_counted */
-  mcor_mapping mappings[MCOR_DOWNLOADS];         /* means of attributes, as views */
+  mcor_mapping mappings[MCOR_DOWNLOADS];         /* of the views above */
   int mapped;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 
-/* Numbers the vertices that triangles use, or all: scanned[v] becomes how many of them come before
- * v. */
+/* Numbers the vertices that triangles use, or all: scanned[v] becomes the number of such vertices
+ * before v. */
 static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -110,7 +110,7 @@ static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
   return (const cl_int*)d->node + 4 * v;
 }
 
-/* Returns the surface's boundary flag of vertex v. A vertex lies on the border that the node
+/* Returns the surface's boundary flag of vertex v. A vertex is on the border that the node
  * threshold leaves if a cell around its edge is unused. */
 static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
@@ -118,14 +118,15 @@ static int mcor_flag_of(const mcor_download* d, int64_t v)
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Converts a length in cubes of vertex v's level to cubes of the grid, see mcor_adaptive.h. */
+/* Converts a length at vertex v from cells of its level, see mcor_adaptive.h: multiplies it by
+ * 2^level. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
   return level > 0 ? ldexp(length, level) : length;
 }
 
-/* Computes how far the correction moved vertex v, unit L. */
+/* Returns how far the correction moved vertex v, unit L. */
 static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
   const mcor_lattice* lattice = &d->context->lattice;
@@ -135,9 +136,9 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
                                           : 0;
 }
 
-/* Estimates what the device's rounding of sums may add to a residual: some units of rounding of
- * the greatest term against the iso value. For a plain sum, whose weights may be any, weights
- * count as 1, as inside of fluid. */
+/* Estimates what the device's rounding of sums may add to a residual: a few units of rounding of
+ * the greatest term against the iso value. For a plain sum, whose weights may have any size,
+ * weights count as 1, as inside the fluid. */
 static double mcor_sum_rounding(const mcor_context* context)
 {
   const double iso = context->run.iso.value;
@@ -160,7 +161,7 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   if (flag != 2)
   {
     const double residual = fabs(mcor_get_real(context, d->value, v));
-    double gradient = 0; /* each axis is rounded, and the value may change with it */
+    double gradient = 0; /* each coordinate is rounded, which changes the value */
     for (int a = 0; a < 3; ++a)
     {
       gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
@@ -183,9 +184,9 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
 }
 
-/* Computes the normal, opposite to the gradient; of a vertex that only caps have, that of the sides
- * it lies on. It is zero where that vanishes, and at walls. Scales first: the square of a small
- * gradient may vanish, that of a large one overflow. */
+/* Computes the normal, opposite to the gradient; at a vertex that only caps have, the normal of the
+ * sides that it is on. The normal is zero if the gradient vanishes. Scales first, because the
+ * square of a small gradient may underflow, and of a large one overflow. */
 static void mcor_store_normal(
   const mcor_download* d, int64_t v, const double gradient[3], float normal[3])
 {
@@ -209,8 +210,8 @@ static void mcor_store_normal(
   }
 }
 
-/* Returns a vertex's key: by node, then axis. The two vertices of a pinched edge follow each
- * other. */
+/* Returns a vertex's key, ordered by node, then axis. The two vertices of a pinched edge have
+ * successive keys. */
 static uint64_t mcor_march_key(const mcor_download* d, int64_t v)
 {
   const cl_int* node = mcor_node_of(d, v);
@@ -219,8 +220,8 @@ static uint64_t mcor_march_key(const mcor_download* d, int64_t v)
     (uint64_t)copy;
 }
 
-/* Stores the key of vertex v. It depends on the vertex alone, not on the part of the surface that a
- * call makes, and keys ascend in the order of the whole surface's points. */
+/* Stores the key of vertex v. The key depends on the vertex alone, not on which part of the surface
+ * a call makes. Keys ascend in the order of the whole surface's points. */
 static void mcor_store_point_key(const mcor_download* d, int64_t v, uint64_t key[MCOR_POINT_KEY])
 {
   const mcor_context* context = d->context;
@@ -237,7 +238,7 @@ static void mcor_store_point_key(const mcor_download* d, int64_t v, uint64_t key
   key[2] = cut < 0 ? 0 : mcor_march_key(d, (int64_t)(cuts[cut] & UINT32_MAX));
 }
 
-/* Writes to an array that the caller wants. */
+/* Writes to an array if the caller wants it. */
 #define MCOR_STORE(array, number)                                                                  \
   if (array)                                                                                       \
   {                                                                                                \
@@ -390,7 +391,7 @@ static mcor_status mcor_append_mesh(
   if (count > 0)
   {
     const bool uniform = context->measure.support_min == context->measure.support_max;
-    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming has left the eigenvalue at other vertices */
+    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming has evaluated it at other vertices */
     {
       MCOR_TRY(mcor_reserve(context, &context->trim.eigenvalue, vertices * real));
       MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, &context->trim.eigenvalue));
@@ -426,8 +427,8 @@ static mcor_status mcor_append_mesh(
   return MCOR_OK;
 }
 
-/* Whether the output still needs particles on the device. Components beyond the limit are evaluated
- * at the vertices of the finished mesh. */
+/* Whether the output still needs particles on the device, e.g. for components beyond the limit,
+ * which are evaluated at the vertices of the finished mesh. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
   return context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT ||
@@ -445,8 +446,8 @@ mcor_status mcor_append_output(
     .sum_rounding = mcor_sum_rounding(context),
     .surface = surface };
   mcor_mesh* m = &context->mesh;
-  /* Frees what only the mesh needed, so that the output finds room; later frees what the output
-   * needed, so that the caller finds room. */
+  /* Frees buffers that only the mesh needed, to make room for the output; then the buffers that
+   * only the output needed. */
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_append_mesh(context, input, all, &download);

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Each triangle's cell, as a key, follows it through trimming. The key says which triangles this
- * call owns, see mcor_box.c: triangles of the ring leave the surface at the very end, with the
- * points that only they use. Keys ascend in the order of the whole surface's triangles, whatever
- * part of it a call makes. */
+/* Each triangle keeps its cell, as a key, through trimming. The key says whether this call owns the
+ * triangle, see mcor_box.c: triangles of the ring are removed from the surface at the very end,
+ * with the points that only they use. Keys ascend in the order of the whole surface's triangles,
+ * whatever part of the surface a call makes. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -38,12 +38,12 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
   return mcor_unmap(context, buffer, &view);
 }
 
-/* Vertices on a seam belong to several ranks, and one of them counts each. The triangles of a box
- * and its ring have one order on all ranks, and the rank whose triangle is the first to use a
- * vertex counts it. Cells in the ring beyond all ranks' boxes, where the whole surface ends, are
- * nobody's. A square of a cap in the ring is another rank's: MCOR_CAP_SQUARE is MCOR_OTHERS_CELL.
- * *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the
- * lattice is owned. The caller frees it, also after a failure. */
+/* A vertex on a seam belongs to several ranks, of which one counts it: the rank that owns the first
+ * triangle that uses the vertex. The triangles of a box and its ring have the same order on all
+ * ranks. No rank owns cells in the ring beyond all ranks' boxes, where the whole surface ends.
+ * Another rank owns a cap's square in the ring: MCOR_CAP_SQUARE is MCOR_OTHERS_CELL. *owners:
+ * [vertex_count], MCOR_OWN for vertices that this call counts; NULL if the call owns the whole
+ * lattice. The caller frees it, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
 {
   const mcor_mesh* mesh = &context->mesh;
@@ -65,7 +65,7 @@ mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
   for (size_t i = 0; i < 3 * triangles && status == MCOR_OK; ++i)
   {
     const cl_ulong cell = ((const cl_ulong*)cells)[i / 3];
-    uint8_t* of = *owners + ((const cl_int*)corners)[i]; /* the first triangle with a vertex sets its owner */
+    uint8_t* of = *owners + ((const cl_int*)corners)[i]; /* set by its first triangle */
     *of = *of                    ? *of
       : !(cell & MCOR_RING_CELL) ? MCOR_OWN
       : cell & MCOR_OTHERS_CELL  ? MCOR_ANOTHERS
@@ -89,7 +89,8 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
     : MCOR_OK;
 }
 
-/* Copies the cells of the mesh's triangles along with the surface. */
+/* Copies the cells of the mesh's triangles to the surface: their keys, and whether they are
+ * kept. */
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
 {
   mcor_box* box = &context->box;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]: triangles on the lower side of a limit go, and those across it are cut.
+/* Trimming [III-D.3]: removes triangles on the lower side of a limit, and cuts triangles across it.
  *
  *   limit, at a vertex                            option                     default   not for
  *   the trimming weight                           vertex_threshold           0.5       MCOR_WEIGHT_SUM
@@ -10,12 +10,12 @@
  *   the solids' share of the weight, at most      wall_share                 measured; ignored solids
  *                                                                            of MCOR_WEIGHT_SUM: none
  *
- * Kernels: mcor_trim.cl decides and cuts, mcor_trim_solve.cl moves cuts to where a limit and the iso
- * value are met at once; mcor_boundary.cl has the eigenvalue.
+ * Kernels: mcor_trim.cl decides and cuts; mcor_trim_solve.cl moves cuts to where both a limit and
+ * the iso value are met; mcor_boundary.cl computes the eigenvalue.
  *
- * What else leaves cells or triangles out: the node threshold (mcor_node.cl, mcor_seed.cl: cells with
- * a node of lower weight, or, with MCOR_SHEPARD, of fluid weight below 0.001), the box and its ring
- * (mcor_triangle_cell.c), compaction (mcor_compact.c). */
+ * Cells or triangles are also left out by the node threshold (mcor_node.cl, mcor_seed.cl: cells
+ * with a node of lower weight, or, with MCOR_SHEPARD, of fluid weight below 0.001), by the box and
+ * its ring (mcor_triangle_cell.c), and by compaction (mcor_compact.c). */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -32,14 +32,15 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buf
     MCOR_BUFFER(&context->mesh.offset), MCOR_INT(context->space.flat), MCOR_BUFFER(eigenvalue));
 }
 
-/* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
+/* Whether the vertex threshold is for the boundary eigenvalue. The free surface has no vertex
+ * threshold. */
 bool mcor_trims_by_eigenvalue(const mcor_context* context)
 {
   return context->run.options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE &&
     context->run.options->field != MCOR_WEIGHT_SUM;
 }
 
-/* Returns what the vertex threshold applies to, at the vertices on lattice edges. */
+/* Returns the quantity that the vertex threshold limits, at the vertices on lattice edges. */
 static const mcor_buffer* mcor_threshold_quantity(const mcor_context* context)
 {
   return mcor_trims_by_eigenvalue(context) ? &context->trim.eigenvalue
@@ -53,7 +54,7 @@ double mcor_least_fluid(const mcor_context* context)
     : 0;
 }
 
-/* Whether a vertex may pass the threshold and still lack the fluid that a mean needs. */
+/* Whether a vertex above the threshold may lack the fluid that a mean needs. */
 static bool mcor_may_lack_fluid(const mcor_context* context)
 {
   return mcor_least_fluid(context) > 0 &&
@@ -67,7 +68,7 @@ double mcor_vertex_threshold(const mcor_context* context)
   return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
 }
 
-/* The quantity that trimming compares, and its threshold. */
+/* Returns the quantity that trimming compares with mcor_trim_threshold. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)
@@ -80,13 +81,13 @@ double mcor_trim_threshold(const mcor_context* context)
   return mcor_ends_at_solids(context) ? 0 : mcor_vertex_threshold(context);
 }
 
-/* The free surface has no threshold. */
+/* The free surface has no vertex threshold; it is trimmed only if it ends at solids. */
 bool mcor_is_trimmed(const mcor_context* context)
 {
   return context->run.options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
 }
 
-/* Evaluates the quantity where that has not been done yet. */
+/* Evaluates mcor_trim_quantity, unless it is the weight, which is already known. */
 static mcor_status mcor_evaluate_margins(mcor_context* context)
 {
   const mcor_mesh* mesh = &context->mesh;
@@ -131,7 +132,7 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
   return cut ? (int)(cut - cuts) : -1;
 }
 
-/* Places the cut vertices: first linearly, then by solving both equations at once. */
+/* Places the cut vertices: first linearly, then by solving both equations together. */
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;

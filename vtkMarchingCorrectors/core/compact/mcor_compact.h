@@ -48,7 +48,7 @@ typedef struct mcor_bunches
 {
   mcor_context* context;
   int corners; /* 3: of a triangle; 2: of a line */
-  int march_count, vertex_count, triangle_count; /* of the mesh before merging */
+  int march_count, vertex_count, triangle_count; /* numbers of the mesh before merging */
   int cut_count;                                 /* number of cut vertices */
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* the mesh's level_first[1] */
   uint8_t* memory;                               /* memory of the arrays below */
@@ -75,8 +75,8 @@ typedef struct mcor_bunches
   int32_t* now;       /* [vertex_count]: place of a vertex in the mesh, see mcor_place_of */
   atomic_uchar* wide; /* [vertex_count]: whether the vertex is the widest corner of a sliver */
   uint8_t* held;      /* [vertex_count]: keys of cuts refer to the vertex, even if it is merged */
-  /* [2 vertex_count]: vertices of the mesh in order: v, or -1 - first of a merged bunch;
-   * [vertex_count]: place of a vertex, and, by first vertex, of a merged bunch. */
+  /* order: [2 vertex_count], the mesh's vertices in order: v, or -1 - the first vertex of a merged
+   * bunch; place: [vertex_count], of vertices; merged_place: of merged bunches, by first vertex. */
   int32_t *order, *place, *merged_place;
 } mcor_bunches;
 

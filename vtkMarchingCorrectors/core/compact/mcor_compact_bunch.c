@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Most vertices around a bunch with one fan. */
+/* Most edges of a fan; a bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
 
 /* A closed piece keeps at least this number of triangles, or lines. */

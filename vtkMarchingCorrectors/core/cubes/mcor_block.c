@@ -76,8 +76,8 @@ mcor_status mcor_make_blocks(mcor_context* context)
   mcor_rung* rungs = context->lattice.rungs;
   uint64_t total = UINT64_MAX;
   int level = -1;
-  /* Numbers the cubes of all levels up to the first size. Larger cubes are the blocks of higher
-   * levels, 32 << level nodes long. */
+  /* Numbers the cubes of all levels up to the size of the first cubes. Larger cubes are like blocks
+   * of higher levels, 32 << level nodes long. */
   for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
        rungs[level + 1].base = rungs[level].base + total)
   {

@@ -28,9 +28,9 @@
 /* Adaptive cubes may shrink by this factor to keep all their levels. */
 #define MCOR_FINER_CUBES 1.3
 
-#define MCOR_FARTHEST 1e15 /* in cubes from the origin: nodes are whole numbers */
+#define MCOR_FARTHEST 1e15 /* in cubes from the origin; nodes are whole numbers up to here */
 
-/* The longest support, in periods; longer ones would take too many images. */
+/* The longest reach, in periods; a longer one would need too many images. */
 #define MCOR_MOST_PERIODS 2
 
 /* Finds the fewest cubes along `axis`, from `least` to `most`, for which all periods are whole
@@ -170,7 +170,7 @@ static mcor_status mcor_fit_period(
 
 /* ---- Unequal edges ---- */
 
-/* The least edge, in cubes: 15/16, rounded down a bit. */
+/* The least length of the longest edge is 1 - 1 / MCOR_STEP_RANGE cubes. */
 #define MCOR_STEP_RANGE 16
 
 /* Chooses the edges in fixed-point units. Positions count in units along each axis, so distances

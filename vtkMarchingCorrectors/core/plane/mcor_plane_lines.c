@@ -18,7 +18,7 @@ typedef struct mcor_line_ends
   bool done; /* the line that begins here is already in a polyline */
 } mcor_line_ends;
 
-/* Lines by their points. */
+/* The lines, found by their points. count: number of lines. */
 typedef struct mcor_joining
 {
   int64_t count, points; /* lines */

@@ -26,7 +26,7 @@ typedef struct cuda_place
 
 typedef struct cuda_properties
 {
-  int type, handle_types; /* 1: pinned to the place; 1: a file descriptor */
+  int type, handle_types; /* type 1: pinned to the place; handle_types 1: a file descriptor */
   cuda_place place;
   void* win32;
   unsigned char compressible, direct_access;
@@ -87,7 +87,7 @@ static cl_device_id find_device(void* opencl)
   return found;
 }
 
-/* Makes memory of CUDA's with a pattern in it, and exports it. */
+/* Makes CUDA memory that holds a pattern, and exports it. */
 static int export_memory(void* cuda, const uint32_t* pattern, size_t* size, int* descriptor)
 {
   const cuda_properties wanted = { .type = 1, .handle_types = 1, .place = { 1, 0 } };

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // For LD_PRELOAD: system calls that fail or take long, a library that takes a signal for itself, and an
-// XML library that goes mad, which tests cannot bring about otherwise.
+// XML library that fails, which tests cannot bring about otherwise.
 //
 //   MCOR_FAILING_CALL=fsync|close|rename  fails for files below MCOR_FAILING_FOLDER
 //   MCOR_RENAME_SECONDS=N                 rename takes that long
-//   MCOR_TAKES_HANGUPS=1                  they do nothing any more, as with UCX, which some MPI loads
+//   MCOR_TAKES_HANGUPS=1                  SIGHUP does nothing any more, as with UCX, which some MPIs load
 //   MCOR_READER=abort|recursion|fault     what the XML library does when VTK asks for it
 //   MCOR_READER_CALL=N                    when it is asked for the Nth time (default 1)
 //   MCOR_DRIVER=abort                     as a driver of OpenCL, not preloaded: it crashes when it is loaded

@@ -317,7 +317,7 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* Masks of cells, and topology by the field, belong to the lattice's programs. */
+  /* Functions for masks of cells and for topology by the field are in the lattice's programs. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
   const cl_uint count =
     (cl_uint)mcor_program_sources(cl, of_lattice ? MCOR_PARTS_LATTICE : MCOR_PARTS_FIELD, sources);

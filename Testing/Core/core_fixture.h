@@ -53,8 +53,8 @@
       core_status_ == MCOR_OK, #call, mcor_status_name(core_status_), mcor_last_error(context));   \
   } while (0)
 
-/* Whether the message, or the context's last failure, has all of these words, with | between them:
- * its code, ISO_OUTSIDE, or what stands in its text. */
+/* Returns whether the message, or the context's last failure, has all of these words, which | separates. A word is the
+ * code (ISO_OUTSIDE) or a part of the text. */
 bool core_tells(const mcor_message* message, const char* words);
 bool core_told(const mcor_context* context, const char* words);
 

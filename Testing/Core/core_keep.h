@@ -15,8 +15,8 @@ void core_keep(const char* name, const char* part, const void* data, size_t byte
 void core_keep_size(const char* name, int64_t points, int64_t cells);
 
 /* Writes a surface in four parts. geometry: points, triangles, lines, bands. arrays: all arrays of points, and area,
- * volume, length. keys. canonical: triangles and pieces of lines, each from its least corner on, with all that their
- * corners carry but keys, sorted, so that it does not depend on the order of points and triangles. */
+ * volume, length. keys. canonical: the sorted triangles and pieces of lines, each from its least corner on, with all
+ * that the corners carry but keys; this part does not depend on the order of points and triangles. */
 void core_keep_surface(const char* name, const mcor_input* input, mcor_surface* surface);
 
 #endif

@@ -38,8 +38,8 @@ unsigned char* core_put_point(
   return to;
 }
 
-/* Writes a triangle's key, and how many earlier triangles have the same key: sorted by these, triangles are in the
- * whole surface's order. */
+/* Writes a triangle's key, and how many earlier triangles have the same key. Sorted by these two numbers, triangles
+ * are in the whole surface's order. */
 static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_t i, uint64_t* nth)
 {
   const uint64_t* key = s->triangle_keys + MCOR_TRIANGLE_KEY * i;
@@ -119,8 +119,8 @@ static void check_points(const mcor_surface* s)
   }
 }
 
-/* Checks that points have different, ascending keys, and that triangles' keys ascend, where several may be equal. That
- * boxes have the whole surface's keys shows when records are compared. */
+/* Checks that points have different, ascending keys, and that triangles' keys never descend. The comparison of records
+ * shows that boxes have the whole surface's keys. */
 static void check_keys(const mcor_surface* s)
 {
   for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)

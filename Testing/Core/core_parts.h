@@ -18,7 +18,7 @@ typedef struct core_triangles
 
 /* Sorts records by their bytes. */
 void core_sort_records(void* records, int64_t count, size_t width);
-/* Writes all that a point carries, and returns where the next point goes. keys: these are included. */
+/* Writes all that a point carries, and returns where the next point goes. keys: writes its key, too. */
 unsigned char* core_put_point(
   unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys);
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
@@ -37,7 +37,8 @@ typedef struct core_cut
 extern const core_cut core_cuts[CORE_CUTS];
 /* Sets options->box to one box of a cut. */
 void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
-/* Extracts each cut's boxes and fails unless together they are the whole surface, with all that its points carry. */
+/* Extracts each cut's boxes, and fails unless the boxes' surfaces make up the whole surface, with all that its points
+ * carry. */
 void core_check_cuts(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
 

@@ -185,8 +185,8 @@ static void test_memory_limit(void** state)
   assert_true(core_hash_of(context, &input, &options) == expected);
 }
 
-/* A large buffer that was released serves the next request of about its size. Other kept buffers are freed where more
- * memory would be held than this call or the one before needs; a limit always holds. */
+/* A large buffer that was released serves the next request of about its size. Other kept buffers are freed if the
+ * context would otherwise hold more than this call or the last one needs; a memory limit always holds. */
 static void test_kept_buffers(void** state)
 {
   mcor_context* context = *state;
@@ -343,8 +343,8 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* A context's first run with a kernel has a driver build programs, and says so; a later run does not. The built-in device's
- * are built ahead: nothing is said. */
+/* In a context's first run with a kernel a driver builds programs, and a message says so; in a later run it does not.
+ * The built-in device's programs are built ahead, so there is no message. */
 static void test_build(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -367,7 +367,7 @@ static void test_build(void** state)
   }
 }
 
-/* What a profile has of one call. */
+/* What a profile says of one call. */
 typedef struct profiled
 {
   double phases[MCOR_PHASE_COUNT], commands[MCOR_PHASE_COUNT]; /* seconds */

@@ -46,7 +46,8 @@ static mcor_status run_kind(
   }
 }
 
-/* If each launch reports, there are many reports, none goes back, and after one that asks to stop nothing is launched. */
+/* If each launch reports, there are many reports, and the fraction never falls. After a report whose callback asks to
+ * stop, nothing is launched. */
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;

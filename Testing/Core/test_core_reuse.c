@@ -312,8 +312,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   assert_true(!surface.points && surface.point_count == 0);
 }
 
-/* Data that a failed call announced by new versions do not exist for the next call, and a failed call does not spoil
- * what the call before it left. */
+/* The next call does not take data that a failed call announced by new versions, and a failed call does not spoil what
+ * the call before it left. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;

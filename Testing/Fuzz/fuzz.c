@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes numbers of bytes, keeps contexts, and has the checks that all targets share. */
+/* Makes numbers from bytes, keeps contexts, and has the checks that all targets share. */
 
 #include "fuzz.h"
 

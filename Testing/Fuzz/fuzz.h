@@ -31,7 +31,8 @@ void fuzz_fail(const char* condition, const char* where, int line);
     }                                                                                              \
   } while (0)
 
-/* fuzz_byte: the next byte, 0 at the end. The other functions make numbers of bytes; some numbers are odd. */
+/* fuzz_byte returns the next byte, and 0 at the end. The other functions make numbers from bytes; some numbers are
+ * strange. */
 unsigned fuzz_byte(fuzz_bytes* bytes);
 double fuzz_scale(fuzz_bytes* bytes);
 double fuzz_positive(fuzz_bytes* bytes);

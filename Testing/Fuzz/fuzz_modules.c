@@ -81,7 +81,7 @@ static void fuzz_halves(const fuzz_call* call)
   mcor_options options = call->options;
   int64_t triangles[3] = { 0 }, cells[3] = { 0 };
   options.seeds = MCOR_COMPLETE; /* boxes refuse pairs */
-  options.capping = options.capping && options.field == MCOR_SHEPARD; /* of a mean, empty space is never above */
+  options.capping = options.capping && options.field == MCOR_SHEPARD; /* a mean has no caps in empty space */
   for (int part = 0; part < 3; ++part)
   {
     mcor_surface surface;

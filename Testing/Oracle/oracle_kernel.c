@@ -52,7 +52,8 @@ static double oracle_quadratic(double q, double* slope)
   return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
 }
 
-/* Returns a sum of (R - q)^n, (R - 1 - q)^n and (R - 2 - q)^n, of those that are above 0; R is the support radius. */
+/* Returns the sum of factor[k] (R - k - q)^n over k = 0, 1, 2 with R - k > q, divided by norm * pi; R is the support
+ * radius. */
 static double oracle_spline(
   double reach, int power, const double factor[3], double norm, double q, double* slope)
 {

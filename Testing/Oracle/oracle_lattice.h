@@ -96,8 +96,8 @@ extern "C"
     lattice_cell* cells;
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, without loops of two */
-    /* Pairs of edges on faces, the lower one first. doubts: of cells that rounding may make valid or not. either: pairs
-     * that rounding may join or part. The value is the number of valid cells that have the face. */
+    /* Pairs of edges on faces, the lower edge first. doubts: pairs of cells that rounding may make valid or not.
+     * either: pairs that rounding may join or part. The value is the number of valid cells that have the face. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;

@@ -56,7 +56,7 @@ _Static_assert(
 _Static_assert((int)ORACLE_SUM == (int)MCOR_SUM && (int)ORACLE_WEIGHT == (int)MCOR_WEIGHT_SUM,
   "fields in the core's order");
 
-/* source: the particle of which each is an image; NULL: there are no images. */
+/* source: for each particle, the one of which it is an image; NULL: there are no images. */
 static void reference_volumes(
   particle_set* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {

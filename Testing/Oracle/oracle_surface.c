@@ -110,7 +110,7 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   point[u] += edge[u] * (value[0] - value[2]) / sum;
   point[v] += edge[v] * (value[0] - value[1]) / sum;
   oracle_evaluate(decider->field, NULL, point, &sample);
-  /* The rounding of the value, and of the values at nodes, which moves the saddle. */
+  /* The value may be off by its own rounding, and because the rounding of node values moves the saddle. */
   const double moved = fmax(edge[u], edge[v]) * decider->limits->close / fabs(sum);
   const double rounding = decider->limits->close +
     oracle_rounding(decider->field, point, decider->unit) +
@@ -123,7 +123,7 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   return sample.value > decider->limits->iso;
 }
 
-/* Decides for a face of a cell; 0, as in the case table, where the field does not decide. */
+/* Returns what lattice_decide_face says of a cell's face; 0, as in the case table, if the field does not decide. */
 static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int face)
 {
   static const int stride[3] = { 1, 3, 9 };

@@ -41,7 +41,7 @@ static inline void print_unsigned(const char* name, uint64_t value)
   _Generic((x), float: print_float, double: print_double, char*: print_text,        \
     const char*: print_text, uint64_t: print_unsigned, default: print_integer)(#x, x);
 
-/* PRINT_EACH(f, a, b, ...) is f(a) f(b) ..., for up to 24 of them. */
+/* PRINT_EACH(f, a, b, ...) is f(a) f(b) ..., for up to 24 values. */
 #define PRINT_EACH(f, ...)                                                                         \
   PRINT_PICK(__VA_ARGS__, 24, 23, 22, 21, 20, 19, 18, 17, 16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6,  \
     5, 4, 3, 2, 1, 0)                                                                              \

@@ -29,7 +29,7 @@ typedef struct variant
   mcor_topology topology;
   double eigenvalue; /* above 0: trimmed where the boundary eigenvalue is lower */
   int ignore_solids, no_volume;
-  double wall_share, threshold; /* of vertices */
+  double wall_share, threshold; /* threshold: vertex_threshold */
   double shift;                 /* added to the scalar and iso */
   double scale, offset[3];      /* applied to positions and lengths */
 } variant;

@@ -99,8 +99,8 @@ typedef struct compact_case
   mcor_topology topology;
   mcor_type precision;
   double period[6];
-  double share, sharp; /* upper limits: triangles over those of the plain contour; the share with an
-                        * angle below 20 degrees */
+  double share, sharp; /* upper limits: triangles / triangles of the plain contour; the
+                          share of triangles with an angle below 20 degrees */
 } compact_case;
 
 static const compact_case cases[] = {
@@ -144,8 +144,8 @@ static mcor_options options_of(const compact_case* at)
   return options;
 }
 
-/* Counts the triangles that have an angle below 20 degrees, and those that face along the mean
- * of their points' normals. */
+/* Counts the triangles with an angle below 20 degrees, and the triangles that do not face along the
+ * mean of their points' normals. */
 static void measure(const mcor_surface* s, int64_t* sharp, int64_t* turned)
 {
   *sharp = *turned = 0;
@@ -194,7 +194,7 @@ static int64_t count_drops(const mcor_surface* s)
   return closed;
 }
 
-/* Hashes the bytes of points that only borders and caps have, in any order. */
+/* Hashes the coordinates of all flagged points, whatever their order. */
 static uint64_t hash_border(const mcor_surface* s)
 {
   uint64_t sum = 0;
@@ -297,7 +297,7 @@ static int has_point(const mcor_surface* s, const double* point)
   return has;
 }
 
-/* Nearly all points that are four cubes or more away from caps are those of the contour without
+/* Nearly all points at least four cubes away from caps are also points of the contour without
  * caps. */
 static void away_from_caps(void** state)
 {
@@ -329,7 +329,7 @@ static void away_from_caps(void** state)
   CORE_CHECK(far > 100 && same > 0.95 * far, same, far);
 }
 
-/* In a period, images of particles of several levels must be kept from farther away than those of
+/* In a period, images must be kept from farther away if cubes have several levels than if they have
  * one size. */
 static void boxes_in_period(void** state)
 {

@@ -41,7 +41,7 @@ static void few_nodes_are_evaluated(void** state)
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   CORE_SURFACE surface = core_extract(context, &input, &options);
   const int64_t nodes = surface.statistics.nodes_evaluated;
-  assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* of 64 */
+  assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* a leaf has 64 nodes */
   assert_true(surface.statistics.cells_used > 100);
 }
 

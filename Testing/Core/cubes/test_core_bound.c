@@ -7,8 +7,9 @@
 #include "core_fixture.h"
 #include "mcor_sph_kernel.h"
 
-/* Kernels that return for each box (first brick, and edge in cubes): low and high value, their
- * rounding, weight, its rounding, count, state; and which bricks are inside. */
+/* The first kernel returns for each box (first brick, and edge in cubes) the low and high value,
+ * their rounding, the weight, its rounding, the count and the state; the second returns which
+ * bricks are inside. */
 static const char source[] =
   "__kernel void test_bound(MCOR_GRID_PARAMS, const int box_count, const real iso,\n"
   "  const real node_threshold, __global const int4* boxes, __global real* out)\n"
@@ -172,7 +173,7 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
     box.s[a] = box.s[a] < 8 * lattice->blocks[a] ? box.s[a] : 8 * lattice->blocks[a] - 1;
   }
   box.s[3] = sizes[b % 4];
-  for (int a = 0; a < 3; ++a) /* boxes of this size are as many cubes long */
+  for (int a = 0; a < 3; ++a) /* boxes begin at whole multiples of their size */
   {
     box.s[a] -= box.s[a] % ((box.s[3] + 1) / 4);
   }
@@ -314,9 +315,9 @@ static int count_above(
   return above;
 }
 
-/* Checks with all of their nodes that bricks which are proved to be inside are. The proof looks at
- * particles within half their support. At some of these iso values those alone decide at some nodes
- * of a brick and not at others. */
+/* Checks all nodes of the bricks that are proved to be inside. The proof looks at particles within
+ * half their support. At some of these iso values these particles alone decide some nodes of a
+ * brick, but not all. */
 static void check_inside(mcor_context* context, const particles* p, const mcor_options* options,
   const cl_int4* bricks, int count, double iso)
 {

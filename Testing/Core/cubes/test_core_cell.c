@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Triangles of cells: from the case table with all decisions, and of cells beside finer ones. Cells with random nodes,
+/* Tests the triangles of cells: by the case table with all decisions, and beside finer cells. Cells with random nodes,
  * side by side, must make a closed surface. */
 
 #include "core_fixture.h"
@@ -131,8 +131,8 @@ static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
   }
 }
 
-/* Chooses a row of a case, at random one with a tunnel. Loops of a and b sides have a + b - 4 triangles, with a tunnel
- * 4 more. */
+/* Chooses a row of the table for a case, with a tunnel or without, at random. Two loops of a and b sides have a + b -
+ * 4 triangles, and 4 more with a tunnel. */
 static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed)
 {
   const mcor_cell_row* first = table.rows + (table.cases[cube_case] >> 6);
@@ -206,8 +206,8 @@ static void test_whole_table(void** state)
   }
 }
 
-/* A cell with no finer cell around it has the table's row where nothing is joined, without a tunnel. Only two opposite
- * corners have the tunnel that joins them. */
+/* A cell without finer cells around it has the triangles of the case's first row: no nodes are joined, and there is no
+ * tunnel. If two opposite corners alone are above, the case has one tunnel, which joins them. */
 static void test_first_rows(void** state)
 {
   for (int c = 0; c < 256; ++c)

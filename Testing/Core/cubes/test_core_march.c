@@ -31,8 +31,8 @@ static void test_outlier(void** state)
   }
 }
 
-/* Makes a block of particles, some with a far larger support. twice: the others are copied to a place far away on the
- * left, where the lattice then begins. */
+/* Makes a block of particles, some with a far larger support. twice: copies the particles of ordinary support to a
+ * place far away on the left, where the lattice then begins. */
 static particle_set make_mixed(int twice)
 {
   particle_set block = core_make_block(10, 0.3, 5, core_ball),
@@ -93,7 +93,7 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
 typedef struct node_pattern
 {
   int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
-  int64_t points, triangles;       /* of the surface that the pattern must have */
+  int64_t points, triangles;       /* of the surface that the pattern must give */
   /* [axis][which two opposite cells are valid]: edges that have two vertices. */
   int64_t pinched[3][2];
 } node_pattern;

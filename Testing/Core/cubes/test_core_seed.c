@@ -8,8 +8,8 @@
 
 #define NO_BRICK 4
 
-/* The cells that the last call with pairs marked, one byte per cell of a box of the lattice. In bricks that are
- * certainly on one side no cell is marked. */
+/* The cells that the last call with pairs marked: one byte per cell of a box of the lattice. Bricks that are certainly
+ * on one side have no marked cells. */
 typedef struct marked_cells
 {
   int low[3], size[3];
@@ -218,8 +218,8 @@ static void test_pairs_in_each_form(void** state)
   particle_set_free(&set);
 }
 
-/* The mean of values that all equal the iso value may round to either side. Cells there are seeds, and the same cells
- * are, whether or not their nodes are known from another iso value. */
+/* The mean of values that all equal the iso value may round to either side. Cells there are seeds, and stay seeds if
+ * their nodes are known from another iso value. */
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };

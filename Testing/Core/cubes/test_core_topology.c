@@ -31,7 +31,7 @@ static particle_set make_particles(
   return set;
 }
 
-/* The scalar of a straight thread from the origin to `end`, thinner than a cube. */
+/* Returns the scalar of a straight thread from the origin to `end`, thinner than a cube. */
 static double thread(const double x[3], const double end[3], double sign)
 {
   double along = 0, length2 = 0, distance2 = 0;
@@ -49,7 +49,7 @@ static double thread(const double x[3], const double end[3], double sign)
   return 1.2 * 1.2 - distance2;
 }
 
-/* The scalar of two balls around the ends, which do not touch. */
+/* Returns the scalar of two balls around the thread's ends, which do not touch. */
 static double balls(const double x[3], const double end[3], double sign)
 {
   double first = 0, second = 0;
@@ -84,10 +84,10 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
 static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
-/* Above or below the iso value, by the field a thread stays whole and balls that do not touch stay apart, as on a fine
- * lattice. The table joins nodes below across a face, and keeps all others apart. These are counted by hand: the face
- * that the diagonal crosses, between two cells; whether the nodes above are joined there; cells with two loops;
- * tunnels. */
+/* By the field a thread stays whole and balls that do not touch stay apart, above or below the iso value, as on a fine
+ * lattice. The table joins nodes below across a face, and keeps all others apart. The expected numbers are counted by
+ * hand: the face that the diagonal crosses, between two cells; whether the nodes above are joined there; cells with
+ * two loops; tunnels. */
 static void test_diagonals(void** state)
 {
   for (int i = 0; i < 40; ++i)

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Making the leaves of adaptive cubes: levels, limits, cancelling. The oracle checks which leaves there are. */
+/* Tests how the leaves of adaptive cubes are made: levels, limits, cancelling. The oracle checks which leaves there
+ * are. */
 
 #include "core_fixture.h"
 #include "mcor_tree.h"
@@ -58,15 +59,15 @@ static void more_bricks_than_numbers(void** state)
   mcor_input input;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
-  /* As with h from 1 to 10^7 and a cube size that the lattice allows. */
+  /* An h from 1 to 10^7 gives this many levels, with a cube size that the lattice allows. */
   context->lattice.levels = 24;
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), mcor_last_error(context));
   context->run.options = NULL;
 }
 
-/* Particles reach far beyond their volume. That there are too many leaves is noticed before the sets of bricks grow
- * large. */
+/* Particles reach far beyond their volume. The run notices that there are too many leaves before the sets of bricks
+ * grow large. */
 static void more_leaves_than_the_limit(void** state)
 {
   mcor_context* context = *state;
@@ -117,7 +118,7 @@ static int stop_at(void* user, double fraction, const char* phase)
   return (*left)-- == 0;
 }
 
-/* Making leaves asks often whether to go on: while particles split bricks (few at a time where they reach far), while
+/* The run asks often whether to go on: while particles split bricks (few at a time where they reach far), while
  * bricks are joined and split, and while leaves are listed. */
 static void making_leaves_can_be_cancelled(void** state)
 {

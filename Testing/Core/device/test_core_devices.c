@@ -91,7 +91,7 @@ static void test_building_ahead(void** state)
   building b = { 0, true };
   options.progress = on_progress;
   options.progress_user = &b;
-  setenv("MCOR_THREADS", "2", 1); /* also where there is one processor */
+  setenv("MCOR_THREADS", "2", 1); /* even if there is only one processor */
   for (int turn = 0; turn < 2; ++turn)
   {
     CORE_CONTEXT context = NULL;

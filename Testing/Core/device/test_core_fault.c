@@ -105,7 +105,7 @@ static mcor_status flux(
   return status;
 }
 
-/* A single rank's callbacks. */
+/* How many callbacks of the only rank were called, and the number of the one that fails; -1: none. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -172,7 +172,7 @@ static void expect_sound(mcor_context* context, const sweep* s, const char* word
   expect_right(context, s);
 }
 
-/* Gives the input other versions: then nothing on the device is used again, but it can be given back. */
+/* Gives the input new versions, so that what the device holds is not used again, but can be given back. */
 static mcor_input with_other_versions(const sweep* s, int n)
 {
   mcor_input input = s->input;
@@ -255,8 +255,8 @@ static void begin_sweep(mcor_context* context, sweep* s)
   s->bytes = context->cl.bytes;
 }
 
-/* Lets all OpenCL calls of a smaller variation of test_every_call_fails_once fail; where memory runs out, every step-th
- * call. */
+/* Does what test_every_call_fails_once does, for a smaller run: each OpenCL call fails once with a device error, and
+ * each step-th call for lack of memory. */
 static void sweep_room(mcor_context* context, sweep* s, int step, int least_calls)
 {
   begin_sweep(context, s);

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays in OpenCL buffers of a program that has a context of its own, here one of PoCL's. */
+/* Tests arrays in OpenCL buffers. The buffers belong to a context of the caller's own, here one of
+ * PoCL's. */
 
 #include "core_fixture.h"
 
@@ -84,7 +85,7 @@ static void move_array(
   free(bytes);
 }
 
-/* Surfaces of arrays in buffers are those of the same arrays in memory of the host. */
+/* Arrays in buffers give the same surfaces as the same arrays in the host's memory. */
 static void test_input(void** state)
 {
   mcor_context* context = *state;
@@ -128,7 +129,8 @@ static void test_input(void** state)
   close_pocl(&own);
 }
 
-/* Results are written in the buffer's type and at its stride, and nothing else of it is. */
+/* Results are written in the buffer's type and at its stride; all other bytes of the buffer
+ * stay. */
 static void test_store(void** state)
 {
   mcor_context* context = *state;

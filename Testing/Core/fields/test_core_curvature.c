@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature: of balls and cylinders worked out by hand; of any field by differences of the oracle's gradients. */
+/* Tests curvatures. Those of balls and cylinders are worked out by hand; others are compared with differences of the
+ * oracle's gradients. */
 
 #include "core_fixture.h"
 
@@ -161,8 +162,8 @@ static void reference(
   curvature[1] = gauss / g2 / g2;
 }
 
-/* Curvatures of each field, with solids among the fluid, and with the kernel that is a product of axes. Points where
- * W'' jumps are left out, because differences do not work there. */
+/* Compares curvatures of each field, also with solids among the fluid, and with the kernel that is a product of
+ * axes. Points where W'' jumps are left out, because differences do not work there. */
 static void test_any_field(void** state)
 {
   CORE_SET set = core_make_block(9, 0.5, 3, core_slope);

@@ -63,7 +63,7 @@ static void test_linear_is_exact(void** state)
   derive_check_linear(*state, true, MCOR_FLOAT64, 1e-12);
 }
 
-/* Sums the standard form of the gradient in the test. */
+/* Sums the standard form of the gradient without the library. */
 static void derive_standard(const particle_set* set, int64_t i, double gradient[3])
 {
   gradient[0] = gradient[1] = gradient[2] = 0;
@@ -115,8 +115,8 @@ static void test_standard_form(void** state)
   mcor_free_derivatives(&d);
 }
 
-/* One particle, two, three in a plane, and four that are nearly in a plane: no matrix can be inverted. With the last
- * one, inversion would magnify rounding by the square of 100, its sides over its height. */
+/* One particle, two, three in a plane, and four that are nearly in a plane: no matrix can be inverted. The four span
+ * a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
 static void test_too_few_neighbours(void** state)
 {
   CORE_SET set = particle_set_make(10);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Fluxes: uniform flow by hand, other flow by integrals of what mcor_probe and mcor_gauge find. */
+/* Tests fluxes: of uniform flow by hand, of other flow by integrals over the values of mcor_probe and mcor_gauge. */
 
 #include "core_fixture.h"
 
@@ -301,7 +301,8 @@ static void test_half_out_of_the_water(void** state)
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
-/* A corner on the level itself is all that is near the fluid: the flux is 0, or a small number, not NaN. */
+/* The section touches the fluid with one corner only, exactly at the level. The flux is 0, or a small number, not
+ * NaN. */
 static void test_corner_on_the_level(void** state)
 {
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };

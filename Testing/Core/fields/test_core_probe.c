@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The field at points: compared with the oracle, and with the same bits whatever the other points are. */
+/* Tests the field at points: it agrees with the oracle, and its bits do not depend on the other points. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -123,8 +123,8 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* With smoothing lengths from 1 to 1000, values, weights and gradients are right in proportion to the terms that they
- * are made of. */
+/* With smoothing lengths from 1 to 1000, errors of values, weights and gradients are small relative to the terms that
+ * are summed. */
 static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);

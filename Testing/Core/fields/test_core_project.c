@@ -291,7 +291,7 @@ static void test_brute_force(void** state)
         x[a] -= is_periodic ? 1.6 * floor((x[a] + 0.7) / 1.6) : 0;
       }
       const double h = 0.9 * set.smoothing_length[i];
-      /* Images to the sides of the line of sight. */
+      /* A period has images on all sides of the line of sight. */
       const int images = is_periodic && d % 3 < 2 ? 1 : 0;
       for (int u = -images; u <= images; ++u)
       {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Somebody else writes to the arrays during a call. The call returns, with a sentence if it noticed, and the next call
- * is as if nothing had happened. */
+/* Other code writes to the arrays during a call. The call returns, with a sentence if it noticed the change, and the
+ * next call is as if nothing had happened. */
 
 #include "core_fixture.h"
 

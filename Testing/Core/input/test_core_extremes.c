@@ -161,8 +161,8 @@ static void test_coincident(void** state)
   assert_int_equal(core_hash(&reused), core_hash(&fresh));
 }
 
-/* Values are the iso value over a whole region, to within rounding. What was evaluated before for another iso value
- * does not change the result. */
+/* Values equal the iso value over a whole region, to within rounding. Nodes that were evaluated for another iso value
+ * do not change the result. */
 static void test_plateau(void** state)
 {
   const double plateau = (double)0.3f;

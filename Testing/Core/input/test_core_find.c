@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the core finds among named arrays, and what it makes of values given by hand: volumes, types of elements, the
- * fluid, the scalar, attributes, and sentences. */
+/* Tests what the core finds among named arrays, and what it does with values given by hand: volumes, types of
+ * elements, the fluid, the scalar, attributes, and sentences. */
 
 #include "core_fixture.h"
 #include "mcor_find.h"

@@ -546,7 +546,7 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Particles enough for several threads fill a cube, but for an octant in the second half of the list. */
+/* There are enough particles for several threads. They fill a cube, until a part of one octant is taken out. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

@@ -136,7 +136,8 @@ static particle_set make_small_tank(void)
   return set;
 }
 
-/* The measured share is that at the solids next to the fluid, with any kernel; over a period, too. */
+/* The measured share is the solids' share at the solids next to the fluid, with any kernel, and also across a
+ * period. */
 static void test_share(void** state)
 {
   CORE_SET set = make_small_tank();
@@ -227,7 +228,8 @@ static void test_auto(void** state)
   }
 }
 
-/* A free surface that ends at walls takes one half; global values must have been measured with that. */
+/* A free surface that ends at walls takes the share one half; global values must have been measured with this
+ * share. */
 static void test_measured_elsewhere(void** state)
 {
   CORE_SET set = make_tank();

@@ -154,7 +154,7 @@ static void test_neighbours(void** state)
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is unusual here */
-  /* Where no neighbour is known, no kernel is. */
+  /* Without any neighbour, the warning suggests no kernel. */
   warning_call alone;
   begin_call(&alone);
   alone.input.smoothing_length = far_off;
@@ -212,7 +212,7 @@ static void test_plane(void** state)
   WARNED(MCOR_WARN_PLANE, PLANE_IN_SPACE, "along y|is 0.06", flatten(&call.set, 0.01);
          call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);
-  SILENT(flatten(&call.set, 0.01); /* so few particles may be anything */
+  SILENT(flatten(&call.set, 0.01); /* so few particles give no warning */
          for (int i = 0; i < 81; ++i) {
            call.set.position[3 * i] = 1.5 * (i % 9);
            call.set.position[3 * i + 2] = 1.5 * (i / 9);
@@ -266,8 +266,8 @@ static particle_set far_apart(double smaller)
   return set;
 }
 
-/* Checks that residual_max is what the residual may be, even where positions are rounded much. In double precision it
- * is no larger, apart from the arithmetic's own rounding. */
+/* Checks that residual_max is at least the greatest residual, computed in double precision, and at most four times as
+ * large, even where positions are coarsely rounded. */
 static void check_told_residual(mcor_context* context, const particle_set* set, mcor_field field)
 {
   const double iso = 0.5;
@@ -310,7 +310,7 @@ static void test_tolerance(void** state)
   WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{precision double}", call.options.tolerance = 1e-9);
   WARNED(MCOR_WARN_TOLERANCE, OFF_ISO_VALUE, "{iteration_limit}", call.options.iteration_limit = 1);
   SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
-  warning_call call; /* what rounding leaves is told only by the statistics */
+  warning_call call; /* a residual that rounding explains gives no warning */
   begin_call(&call);
   call.options.tolerance = 1e-6;
   CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);

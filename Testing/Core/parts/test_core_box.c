@@ -90,8 +90,8 @@ static void other_fields(void** state)
   core_check_cuts(*state, "sum, tensor kernel", &input, &options);
 }
 
-/* The nearest of many small particles around a large one, which makes the surface, often has a support that ends before
- * the box. */
+/* One large particle makes the surface. The nearest particle is often one of many small ones around it, whose support
+ * ends before the box. */
 static void nearest_particles(void** state)
 {
   const double half = 0.5;
@@ -115,8 +115,8 @@ static void nearest_particles(void** state)
   core_check_cuts(*state, "nearest", &input, &options);
 }
 
-/* Returns an input with masses alone, so that volumes are computed, and with solids. In a region of it all values of x
- * have one sign. */
+/* Returns an input with masses alone, so that volumes are computed. The first attribute is the position; in some boxes
+ * x has one sign only. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);
@@ -325,8 +325,8 @@ static particle_set make_period(void)
   return set;
 }
 
-/* Checks caps: squares of cells belong to whichever box owns the cell, and points on seams match, where they are cut,
- * too. */
+/* Checks caps: the squares of a cell belong to the box that owns the cell, and points on seams match, even where they
+ * are trimmed. */
 static void check_caps(mcor_context* context, const double around[6])
 {
   const double iso[2] = { 0.2, -0.4 }, half = 0.5;

@@ -23,8 +23,8 @@ static int64_t find_point(const mcor_surface* s, const double x[3])
   return -1;
 }
 
-/* Checks that both surfaces have as many triangles, and that each point has a partner in the other one with about the
- * same normal. */
+/* Checks that both surfaces have the same number of triangles, and that each point has a partner in the other surface
+ * with about the same normal. */
 static void check_same(const char* name, const mcor_surface* s, const mcor_surface* expected)
 {
   CORE_CHECK(s->triangle_count == expected->triangle_count &&
@@ -62,7 +62,7 @@ static void check_images(mcor_context* context, const char* name, const particle
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
-  plain.seeds = MCOR_COMPLETE; /* complete seeds: what pairs grow to is whole */
+  plain.seeds = MCOR_COMPLETE; /* growth from pairs also finds all of the surface */
   plain.cube_size = surface.statistics.cube_size;
   plain.level_limit = surface.statistics.highest_level;
   for (int a = 0; a < 3; ++a)
@@ -108,7 +108,8 @@ static void images_count(void** state)
   check_images(*state, "pairs", &set, &options, 0);
 }
 
-/* Sets smoothing lengths that grow with the distance from the edge of the period along z, in its middle. */
+/* Sets smoothing lengths that grow with the distance from one place: at the height `middle` on the period's edge along
+ * z. */
 static void grade_lengths(particle_set* set, double side, double middle, double most)
 {
   for (int64_t p = 0; p < set->count; ++p)
@@ -141,7 +142,7 @@ static void adaptive_cubes(void** state)
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 2 : 1);
     assert_true(surface.statistics.cells_of_level[1] > 100);
     mcor_free_surface(&surface);
-    if (i == 0) /* flat sides are to be closed */
+    if (i == 0) /* caps need cubes of one size */
     {
       options.capping = 1;
       surface = core_extract(*state, &input, &options);
@@ -242,8 +243,8 @@ static void lengths(void** state)
   }
 }
 
-/* Adaptive cubes with a different edge along each axis: the surface is closed but for the sides, where all points have
- * partners; it is as exact as ever, and about that of uniform cubes. */
+/* Adaptive cubes have a different edge along each axis. The surface is closed except at the sides, where all points
+ * have partners; it is as exact as ever, and close to the surface of uniform cubes. */
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;

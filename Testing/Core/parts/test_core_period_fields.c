@@ -5,7 +5,7 @@
 
 #include "core_period.h"
 
-/* Returns an input with the set's scalar as an attribute, which is all that is evaluated. */
+/* Returns an input with the set's scalar as its only attribute. */
 static mcor_input attribute_input(const particle_set* set, mcor_array* attribute)
 {
   mcor_input input = core_input(set);
@@ -67,8 +67,8 @@ static void check_points(
       assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
     }
   }
-  /* Where a point lies halfway between two places that the device can store, rounding decides: here, in double
-   * precision, of some points. */
+  /* If a point lies halfway between two places that the device can store, rounding chooses one. In double precision
+   * this happens to some of these points. */
   const int halves = options->cube_size > 0 && options->precision == MCOR_FLOAT64;
   check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
   check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);

@@ -392,7 +392,8 @@ typedef struct rank_sums
   int64_t wrong[CORE_MOST_RANKS], held[CORE_MOST_RANKS];
 } rank_sums;
 
-/* Solves for the particles of a slab alone, then with all that the resulting supports reach, 1.25 times as far. */
+/* Finds the lengths of a slab's particles, first from these particles alone, then with all particles within 1.25 times
+ * the supports found. */
 static void sum_on_rank(core_rank* rank, void* data)
 {
   rank_sums* job = data;

@@ -5,8 +5,8 @@
 
 double plane_norm(mcor_sph_kernel kernel)
 {
-  /* The factor that makes each kernel's integral over the plane 1, over 1 / pi: 10 / (7 pi) for the first.
-   * test_core_plane checks these integrals. */
+  /* Each number over pi is the factor that makes the kernel's integral over the plane 1: 10 / (7 pi) for the
+   * first. test_core_plane checks these integrals. */
   static const double norm[MCOR_SPH_KERNEL_COUNT] = { 1.4285714285714286, 1.6, 1,
     1.7573221757322175, 1.3333333333333333, 1.6013344453711426, 1.1636363636363636,
     1.0448979591836735, 1.0635845764083533 };

@@ -29,13 +29,14 @@ typedef struct plane_sample
 double plane_u(const plane_field* field, int64_t i, int a);
 /* Returns the range of the field's values. */
 double plane_range(const plane_field* field);
-/* Returns W of two dimensions over W of three, per smoothing length, from numbers of its own. */
+/* Returns W2 / (h W3), where W2 and W3 are the kernel in two and three dimensions, from numbers that the library does
+ * not share. */
 double plane_norm(mcor_sph_kernel kernel);
 plane_sample plane_evaluate(const plane_field* field, double u, double v);
 
 /* Compares the surface with the squares of all levels (plane_squares.c): its vertices on sides of squares with the
- * crossed sides, how lines join them, and all vertices with the field. The test fails where a vertex is missing or one
- * too many. Returns how many sides are crossed. */
+ * crossed sides, how lines join these vertices, and all vertices with the field. The test fails where a vertex is
+ * missing or one too many. Returns how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
 /* Does what plane_compare does, and checks the lines' directions, ends and normals. closed: all lines must be closed. */
 void plane_check_lines(const plane_field* field, const mcor_surface* surface, int closed);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds for all squares that particles reach, of all levels, which pieces of their sides are crossed and how lines join
- * the crossings. */
+/* Finds, for the squares of all levels that particles reach, which pieces of their sides are crossed, and how lines
+ * join the crossings. */
 
 #include "plane_reference.h"
 
@@ -79,8 +79,8 @@ static int64_t plane_edge_at(
   return *place;
 }
 
-/* Adds a square. The walk around it keeps it on the left. half: which sides are halved, as bits (below, right, above,
- * left). */
+/* Adds a square. The walk around the square has the square on its left. half: which sides are halved, as bits (below,
+ * right, above, left). */
 static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
 {
   static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
@@ -124,7 +124,8 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
       s->edges[edge[i]].close |= close;
     }
   }
-  /* Each part above is cut off: a line begins where the walk leaves it and leads back to where the walk entered it. */
+  /* A line cuts off each part above: it begins where the walk leaves the part, and leads back to where the walk entered
+   * the part. */
   for (int i = 0; i < count && valid; ++i)
   {
     if (edge[i] >= 0 && node[i].above)

@@ -86,9 +86,9 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
 }
 
-/* Fails unless each edge has two triangles, or one and the border, and all triangles run round in the same direction;
- * all lines of the lowest iso value are on the border, all other lines between the two bands beside them; and no other
- * edge separates bands. */
+/* Fails unless each edge has two triangles, or one triangle and the border; all triangles run round in the same
+ * direction; lines of the lowest iso value are on the border, and all other lines lie between their two bands; and no
+ * other edge separates bands. */
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };

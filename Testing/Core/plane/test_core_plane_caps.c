@@ -184,7 +184,7 @@ static void test_sides(void** state)
       c.options.box[2 * axis + 1] = INFINITY;
     }
     c.options.capping = where == 1 || where == 2 ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
-    /* A whole period has fluid everywhere; otherwise lines of a scalar end at the edge of the fluid. */
+    /* A whole period has fluid everywhere; in all other cases, lines of a scalar end at the edge of the fluid. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
   }

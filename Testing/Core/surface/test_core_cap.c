@@ -18,8 +18,8 @@ static void cap_check_prefix(const mcor_surface* open, const mcor_surface* close
   assert_true(closed->statistics.residual_max == open->statistics.residual_max);
 }
 
-/* Fails unless the volume is that of the places between `planes` where the oracle's field is above the iso value,
- * sampled at random. */
+/* Fails unless the surface encloses as much as the region between `planes` where the oracle's field is above the iso
+ * value, by random samples. */
 static void cap_check_volume(const mcor_surface* closed, const particle_set* set,
   const mcor_options* options, const double planes[6])
 {

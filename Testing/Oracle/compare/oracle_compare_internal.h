@@ -3,8 +3,8 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* What oracle_compare.c, oracle_compare_edges.c and oracle_compare_mesh.c share. The first calls the other two, which
- * do not call each other. */
+/* What oracle_compare.c, oracle_compare_edges.c and oracle_compare_mesh.c share. The first file calls the other two,
+ * which do not call each other. */
 
 #include "oracle_compare.h"
 
@@ -33,9 +33,9 @@ typedef struct compare_state
 
 /* ---- oracle_compare.c ---- */
 
-/* How far a point is inside of the trimmed surface. First: inside of the threshold of the trimming weight or the
- * boundary eigenvalue. Second: inside of where the surface ends at solids, in the unit of the weight. Third: inside of
- * both. */
+/* Return how far a point is inside of a limit of the trimmed surface: the threshold of the trimming weight or boundary
+ * eigenvalue; the end at solids, in the unit of the weight; the least fluid weight of a mean. The last one returns the
+ * least of the three. */
 double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 double compare_wall_margin(const compare_state* state, const oracle_sample* sample);

@@ -701,11 +701,11 @@ extern "C"
    * included. Only the first `count` particles get a length; the others, such as particles of other
    * ranks, are neighbours only. Particles that play no part get 0. No length exceeds the extent of
    * all particles. Reads positions and solids of the input, and sph_kernel, dimension, periodic and
-   * ranks of the options. Fails with M'4, whose sum does not grow with h. *why: why the call failed;
-   * no message if it did not.
+   * ranks of the options. Fails with M'4, whose sum does not grow with h. *why: why the call
+   * failed; no message if it did not.
    * Ranks: each particle is among the first ones of one rank, which may lack some of the particle's
-   * neighbours. Its length is then too long; it has the same bits as in one process if all particles
-   * and images within 1.25 times its support radius are there. */
+   * neighbours. Its length is then too long; it has the same bits as in one process if all
+   * particles and images within 1.25 times its support radius are there. */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
     double eta, int64_t count, double* lengths, mcor_message* why);
 

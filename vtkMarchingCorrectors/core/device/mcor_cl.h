@@ -38,8 +38,8 @@ typedef struct mcor_build
   bool solids;
 } mcor_build;
 
-/* Programs are built when they are first needed, or ahead of that, see mcor_build_ahead. Which sources
- * they have is in kernels/programs.cmake, which kernels in mcor_program.c. */
+/* Programs are built when they are first needed, or earlier, see mcor_build_ahead. Their sources
+ * are listed in kernels/programs.cmake, their kernels in mcor_program.c. */
 typedef enum mcor_program
 {
   /* Compiled once for all SPH kernels and fields, with and without solids. */
@@ -48,15 +48,16 @@ typedef enum mcor_program
   MCOR_PROGRAM_CELLS,   /* marching, and triangles that are cut; lines in two dimensions */
   MCOR_PROGRAM_LEAVES,  /* adaptive cubes */
   MCOR_PROGRAM_CHOICES, /* topology, boxes, pairs */
-  /* Compiled for surfaces of a build. */
-  MCOR_PROGRAM_ATTRIBUTES, /* not for each field */
-  MCOR_PROGRAM_DENSITY,    /* volumes that are computed; not for each field */
+  /* Compiled for each build that makes surfaces. */
+  MCOR_PROGRAM_ATTRIBUTES, /* the same for all fields */
+  MCOR_PROGRAM_DENSITY,    /* volumes that are computed; the same for all fields */
   MCOR_PROGRAM_NODES,      /* seeds and values at nodes */
   MCOR_PROGRAM_VERTICES,   /* correction */
   MCOR_PROGRAM_TRIM,
   MCOR_PROGRAM_SHAPE, /* boundary eigenvalue, curvature, values at points of caps */
   MCOR_PROGRAM_RARE,  /* seeds of pairs, nodes in two dimensions */
-  /* For mcor_probe, mcor_derive and mcor_widen: not for each field, nor in a GPU's form for solids. */
+  /* For mcor_probe, mcor_derive and mcor_widen; the same for all fields and, in a GPU's form, with
+   * and without solids. */
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
@@ -89,7 +90,7 @@ typedef struct mcor_cl
   cl_context context;
   struct mcor_pool* pool;              /* threads of the built-in device; else NULL */
   struct mcor_profile* profile;        /* NULL: none is wanted */
-  cl_command_queue queue, timed_queue; /* a queue that measures times, for first launches */
+  cl_command_queue queue, timed_queue; /* timed_queue measures times, for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
   struct mcor_builder* builder; /* programs that are built ahead; NULL: none */
   mcor_build build;     /* the variant for which the programs are built */
@@ -99,7 +100,7 @@ typedef struct mcor_cl
   int device_number, units;       /* number in the list of devices; compute units */
   int place, count;               /* number of this process, and how many processes share the
                                    * devices */
-  bool is_default, is_replaced;   /* no device was named, and the first choice lacked a build */
+  bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
   bool is_apart;                  /* memory is not the host's, see mcor_locked */
   bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
@@ -114,10 +115,10 @@ typedef struct mcor_cl
   mcor_locked locked[MCOR_LOCKED_LIMIT];
   int64_t kept_bytes, used_peak,
     used_before; /* The most bytes used, without kept buffers: in this call, in the last call. */
-  double build_seconds;   /* bytes that the present call uses */
+  double build_seconds;   /* how long the present call has built programs */
   mcor_observer observer; /* progress of the present call; NULL: none */
   double terms;           /* about the number of terms in the sum at a point, for mcor_enqueue_cut */
-  bool compiles; /* the last first launch of a kernel took long, so the driver compiles then */
+  bool compiles; /* the driver compiles at first launches: the latest one of a kernel took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -150,7 +151,7 @@ typedef struct mcor_arg
 
 /* How much one work-item does. Light: a few operations for one of many elements; medium: a brick
  * or a batch; heavy: an evaluation of the field. On a CPU each medium or heavy item is a
- * work-group of its own: its compiler is faster without a loop over the group. */
+ * work-group of its own, because code is faster there without a loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,
@@ -175,15 +176,15 @@ mcor_status mcor_settle_device(
 void mcor_close_device(mcor_context* context);
 /* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
-/* Begins to build a set of programs in threads of their own, in the order in which a run needs them,
- * where a driver compiles them and none of this build is there yet. */
+/* Begins to build a set of programs in threads of their own, in the order in which a run needs
+ * them. Does nothing if no driver compiles them, or if this build has programs already. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds the programs to come take; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* Releases a buffer. A large one is kept for the next request of about its size: the first touch
- * of memory takes longer than most of what is done in it, and successive phases and calls have
- * arrays of like sizes. */
+ * of memory takes longer than most work in it, and successive phases and calls have arrays of
+ * similar sizes. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
 /* Frees kept buffers until at most `most` bytes are held. */
 void mcor_drop_kept(mcor_context* context, int64_t most);
@@ -194,12 +195,13 @@ void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
-/* Maps a buffer for the host, without a copy where both share memory: to write all of it, or to
- * read. *data becomes NULL where that fails, and where there are no bytes and no buffer yet. */
+/* Maps a buffer for the host, to write all of it or to read it; without a copy where host and
+ * device share memory. *data becomes NULL after a failure, and if `bytes` is 0 and there is no
+ * buffer. */
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
-/* One of several buffers to read; *data is NULL before. */
+/* One of several buffers that are mapped together; *data is NULL before. */
 typedef struct mcor_mapping
 {
   const mcor_buffer* buffer;

@@ -177,9 +177,9 @@ mcor_status mcor_read(
   return MCOR_OK;
 }
 
-/* Takes the smallest unused memory with enough room; where there is none, makes the largest larger.
- * A driver locks pages when a buffer is mapped for the first time, which takes 25 times as long as
- * the copy (H100: 0.57 and 0.02 ms for each MiB); these stay locked. */
+/* Takes the smallest unused memory with enough room; if there is none, makes the largest larger. A
+ * driver locks pages when a buffer is mapped for the first time, which takes 25 times as long as
+ * the copy (H100: 0.57 and 0.02 ms for each MiB). Memory that is kept here stays locked. */
 static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_locked** taken)
 {
   mcor_cl* cl = &context->cl;

@@ -17,7 +17,7 @@ typedef struct mcor_build_job
   mcor_program number;
   cl_program program;
   char options[512];
-  double size, seconds; /* length of the text */
+  double size, seconds; /* length of the sources; how long building took */
   cl_int error;
   bool is_begun, is_done;
 } mcor_build_job;

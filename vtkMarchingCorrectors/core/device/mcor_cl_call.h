@@ -73,7 +73,7 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 /* If the device is PoCL, adds to the error sentence which of its files may be the cause. */
 void mcor_blame_files(mcor_context* context);
 
-/* Returns the platform whose first device is the default. */
+/* The name of PoCL's platform. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
 /* Returns a variable of the environment that only tests set; other builds do not read it. */
@@ -105,8 +105,8 @@ void mcor_drop_programs(mcor_cl* cl, int programs);
 #define MCOR_PARTS_ALL ((1 << MCOR_PROGRAM_COUNT) - 1)
 mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program);
 
-/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. *program: NULL, if this one
- * is not. */
+/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. Leaves *program alone if
+ * this one is not built ahead. */
 mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
 /* Ends the threads, and keeps the programs that they have built. */

@@ -16,7 +16,7 @@
 typedef struct mcor_device_list
 {
   int count;
-  bool drivers_fail; /* these drivers were not listed, because they would end the process */
+  bool drivers_fail; /* drivers were not listed, because they would end the process */
   cl_platform_id platforms[MCOR_DEVICE_LIMIT];
   cl_device_id devices[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
@@ -234,8 +234,8 @@ static void mcor_take_share(mcor_cl* cl, int place, int count)
   free(made);
 }
 
-/* Whether a device has what a build needs. The built-in one has the kernels that were compiled
- * with this library. */
+/* Whether a device has what a build needs. The built-in device has only the kernels that were
+ * compiled with this library. */
 static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const mcor_build* build)
 {
   mcor_cl tried = { .platform = platform, .device = device };

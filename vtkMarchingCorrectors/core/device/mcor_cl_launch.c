@@ -60,11 +60,11 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   return MCOR_OK;
 }
 
-/* A kernel that was compiled before takes less at its first launch. */
+/* The first launch of a kernel takes less than this if no driver compiles the kernel. */
 #define MCOR_COMPILE_SECONDS 0.01
 
-/* Launches a kernel for the first time, alone, since drivers may compile it only now. What the
- * kernel itself does not take counts as building. */
+/* Launches a kernel for the first time, alone, since drivers may compile it only now. The time of
+ * the launch, without the time that the kernel runs, counts as building. */
 static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* kernel,
   const size_t* offset, const size_t* global, const size_t* group)
 {
@@ -93,12 +93,12 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
 }
 
 /* The time that a part of a heavy launch should take. Drivers of GPUs abort a launch that takes
- * seconds, and someone may wait for a run to answer. A single work-item is never cut. */
+ * seconds, and a user may want to cancel the run. A single work-item is never cut. */
 #define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
-/* Terms of sums in a part, for each compute unit of a CPU in single precision; in double
- * precision there are fewer lanes, and more to do. Usual launches fit into one part. Parts are
- * not made larger, since the next work-items may have far more to do. */
+/* The most terms of sums in a part, for each compute unit of a CPU in single precision; in double
+ * precision (MCOR_DOUBLE_TERMS) there are fewer lanes, and more to do. Usual launches fit into one
+ * part. Parts do not become larger, because the next work-items may have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
 #define MCOR_FIRST_SHARE                                                                           \
   32 /* the first part, while a kernel's time is unknown, has the limit divided by this */
@@ -130,9 +130,9 @@ static mcor_status mcor_enqueue_part(
   return MCOR_OK;
 }
 
-/* Launches all work-items in parts. An item's work goes with the particles that reach a point. On
- * the built-in device parts cost nothing, so each launch begins with small ones, and none becomes
- * large. A driver may compile a kernel once more for work-items that do not begin at 0. */
+/* Launches all work-items in parts. An item's work grows with the number of particles that reach a
+ * point. On the built-in device parts cost nothing, so each launch begins with small parts, and no
+ * part becomes large. A driver may compile a kernel once more for items that do not begin at 0. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {

@@ -96,8 +96,8 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   return MCOR_DEVICE_ERROR;
 }
 
-/* Returns the evaluation points that a work-item treats at once: MCOR_LANES of the programs, and
- * in tests of the environment. */
+/* Returns how many evaluation points a work-item treats at once, the programs' MCOR_LANES. In
+ * tests, MCOR_LANES of the environment may set this number. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = mcor_test_setting("MCOR_LANES");

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which of the compiled programs suit this processor. It asks the processor itself:
- * __builtin_cpu_supports gives an answer with some of the compiler's libraries only. */
+/* Finds which of the compiled programs suit this processor. The processor itself is asked, because
+ * __builtin_cpu_supports works only with some of the compiler's libraries. */
 
 #include "mcor_native.h"
 

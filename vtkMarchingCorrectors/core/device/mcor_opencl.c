@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds OpenCL at run time. The platforms are the built-in one, and those that the system's
- * loader lists; without a loader there are no drivers, which is no error. Every object of an
+/* Finds OpenCL at run time. The platforms are the built-in one, and the ones that the system's
+ * loader lists. Without a loader there are no drivers; this is not an error. Every object of an
  * OpenCL driver begins with a table of its functions (extension cl_khr_icd), and so does every
- * object of the built-in device. To call a function therefore takes the object alone. */
+ * object of the built-in device. So an object alone is enough to call a function. */
 
 /* Included without mcor_opencl.h, which renames OpenCL's functions. */
 #include "mcor_native.h"

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Threads. Those of the built-in device wait from one loop to the next, and serve the loops of
- * the host, too. With any other device, or none, threads live for one loop. */
+/* Threads. The built-in device's threads wait from one loop to the next, and serve the loops of the
+ * host, too. With any other device, or none, threads live for one loop. */
 
 #include "mcor_cl_call.h"
 

@@ -15,13 +15,13 @@
 
 #define MCOR_SLICES 32 /* at most */
 
-/* Elements that are worth starting a thread (about 30 us): at 10 ns each, at 1 ns each, or at
- * the speed of memory. */
+/* The number of elements that is worth starting a thread (about 30 us): elements that take 10 ns,
+ * 1 ns, or the time to read them from memory. */
 #define MCOR_HEAVY_GRAIN 8192
 #define MCOR_LIGHT_GRAIN 65536
 #define MCOR_MEMORY_GRAIN 262144
 
-/* Elements [first, last) of a loop. */
+/* Treats elements [first, last) of a loop. */
 typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t last);
 
 /* Runs the body once for every slice of [0, count), in any order, in several threads, and waits
@@ -46,7 +46,7 @@ int mcor_processors(int count);
  * is a number above 0. */
 int mcor_limit_threads(int usable);
 
-/* Elements [first, last) of a loop without slices. */
+/* Treats elements [first, last) of a loop without slices. */
 typedef void mcor_pool_body(void* data, size_t first, size_t last);
 
 /* Threads that sleep until there is a loop to share with the thread that runs it. They are created
@@ -74,7 +74,7 @@ typedef struct mcor_pool
  * has set. context: as above. */
 mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
   size_t step, mcor_pool_body* body, void* data);
-/* Ends its threads. */
+/* Ends the threads of a pool. */
 void mcor_end_pool(mcor_pool* pool);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compilers take long. So a program holds little that a run does not need, and what depends
- * neither on the SPH kernel nor on the field or solids is compiled once for all of them. */
+/* Compilers take long. So a program holds little that a run does not need, and kernels that do not
+ * depend on the SPH kernel, the field or solids are compiled once for all of these. */
 
 #include "mcor_program.h"
 #include "mcor_internal.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Beginnings of names, of which the first that fits counts. */
+/* Beginnings of kernels' names, without "mcor_"; the first that fits counts. */
 static const struct
 {
   const char* begin;
@@ -72,8 +72,8 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
             number = set & MCOR_PARTS_LATTICE ? 0
     : set & MCOR_PARTS_FIELD                  ? 1
                                               : 2;
-  /* What does not depend on the field is compiled as for a free surface; in a GPU's form, probes do
-   * not depend on solids either. */
+  /* Programs that do not depend on the field are compiled as for a free surface; in a GPU's form,
+   * probes do not depend on solids either. */
   const int without_field =
     1 << MCOR_PROGRAM_ATTRIBUTES | 1 << MCOR_PROGRAM_DENSITY | MCOR_PARTS_PROBE;
   const mcor_field field = set & without_field ? MCOR_WEIGHT_SUM : build->field;

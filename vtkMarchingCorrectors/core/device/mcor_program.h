@@ -24,7 +24,7 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* Returns the program that has a kernel, from the beginning of its name. */
+/* Returns the program that has a kernel; the beginning of the kernel's name tells which. */
 mcor_program mcor_program_of(const char* kernel);
 /* Lists the sources of a set of programs, in order; returns their number. */
 int mcor_program_sources(const mcor_cl* cl, int programs, const char* sources[MCOR_SOURCE_LIMIT]);

@@ -49,7 +49,7 @@ void mcor_use_large_pages(void* memory, size_t bytes)
   const size_t skipped = (page - (uintptr_t)memory % page) % page;
   if (bytes >= MCOR_LARGE_ARRAY)
   {
-    /* A mere request: where it is refused, pages stay small. */
+    /* This is only a request; if it is refused, pages stay small. */
     (void)madvise((char*)memory + skipped, (bytes - skipped) / page * page, MADV_HUGEPAGE);
   }
 #else

@@ -42,7 +42,7 @@ void mcor_system_release(void* memory)
   _aligned_free(memory);
 }
 
-/* Large pages take a right that users lack by default. */
+/* Large pages need a right that users lack by default. */
 void mcor_use_large_pages(void* memory, size_t bytes)
 {
   (void)memory, (void)bytes;
@@ -60,7 +60,7 @@ mcor_function mcor_system_opencl(void)
     : NULL;
 }
 
-/* PoCL is not for Windows. */
+/* Only PoCL would end the process, and there is no PoCL for Windows. */
 bool mcor_system_bears_drivers(void)
 {
   return true;

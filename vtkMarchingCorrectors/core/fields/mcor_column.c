@@ -15,7 +15,7 @@
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
 #define MCOR_PROFILE 2048
-/* Places, in h, where any kernel changes to another polynomial. */
+/* Kernels change to another polynomial only at multiples of this, in h. */
 #define MCOR_KINK 0.5
 #define MCOR_KINKS 16 /* most pieces of a line of sight through a tensor kernel */
 
@@ -86,7 +86,7 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
   return sum;
 }
 
-/* Returns the column density, of any scale. */
+/* Returns the column density; its scale does not matter. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
   if (job->is_tensor)
@@ -140,9 +140,9 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
   (void)slice;
 }
 
-/* Where the density is evaluated along an axis, the nodes, then the points of each cell; and how
- * long a cell is there. Cells of radial kernels are shorter near the centre, by the square root, as
- * there may be a cusp. */
+/* Returns place i where the density is evaluated along an axis: the nodes come first, then the
+ * points of each cell. *length: how long a cell is there. Cells of radial kernels are shorter near
+ * the centre, where the density may have a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];
@@ -185,7 +185,7 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Sums along x, then divides all by the whole. */
+/* Sums along x, then divides all by the sum over the whole kernel. */
 static void mcor_fill_nodes(const mcor_column_job* job)
 {
   mcor_column* column = job->column;

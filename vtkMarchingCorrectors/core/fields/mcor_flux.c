@@ -31,8 +31,8 @@
 
 /* ---- speeds ---- */
 
-/* Reduces the greatest speeds and densities of sections over all ranks, those without particles,
- * too. */
+/* Reduces the greatest speeds and densities of sections over all ranks. Ranks without particles
+ * call it, too. */
 static mcor_status mcor_scale_sections(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
@@ -212,8 +212,8 @@ static mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
 
 /* ---- the call ---- */
 
-/* Sets from the ranges of velocity and density: the floors of speed and density, and the units
- * in which sums are whole numbers. */
+/* Sets the floors of speed and density, and the units in which sums are whole numbers, from the
+ * ranges of velocity and density. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
@@ -281,7 +281,7 @@ static mcor_status mcor_flux_input(
   }
   for (int64_t s = 0; s < job->section_count; ++s)
   {
-    /* Without particles, nobody knows whether these lie in the plane that a line needs. */
+    /* A line needs the plane of the particles, which a rank without particles does not know. */
     const bool has_place =
       input->count > 0 || job->is_plane || job->sections[s].shape != MCOR_SECTION_LINES;
     MCOR_TRY(has_place ? mcor_add_section(job, s) : MCOR_OK);

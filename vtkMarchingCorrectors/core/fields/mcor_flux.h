@@ -73,13 +73,13 @@ typedef struct mcor_flux_cut
   double crossing[2][2];
 } mcor_flux_cut;
 
-/* Triangles and lines differ in this. Samples of a piece are its corners, the middles of its
+/* What differs between triangles and lines. Samples of a piece are its corners, the middles of its
  * edges, and the middle. */
 #define MCOR_FLUX_POINTS 7
 typedef struct mcor_flux_form
 {
-  int corners, points, parts;     /* parts into which a piece is divided */
-  double share[MCOR_FLUX_POINTS]; /* number of samples in an integral */
+  int corners, points, parts;     /* how many corners, samples, and parts a piece has */
+  double share[MCOR_FLUX_POINTS]; /* weight of each sample in an integral */
   int part[4][3];                 /* the samples that are the corners of each part */
 } mcor_flux_form;
 

@@ -161,7 +161,7 @@ static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const 
 }
 
 /* Appends a rectangle or triangle from a corner and the ends of its edges, if it has an area. sign:
- * of the normal. */
+ * 1, or -1 to turn the normal round. */
 static mcor_status mcor_add_corners(
   mcor_flux_job* job, int64_t number, mcor_patch_shape shape, const double x[9], double sign)
 {

@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* A parabola through the ends and the middle of an edge goes beyond them by at most an eighth of
- * its bend. If the level is nearer than four times that, it may cross the edge twice. */
+ * its bend. If the level is nearer than four times this, the level may cross the edge twice. */
 #define MCOR_FLUX_NEAR 0.5
 /* Weights bend by about 4 / h^2. Between two samples they differ from a line by an eighth of the
  * bend times the square of the distance. */
@@ -193,7 +193,8 @@ static mcor_status mcor_take_piece(
   return MCOR_OK;
 }
 
-/* Samples all pieces. wholes: the pieces lie in fluid, and are added to the sums of these. */
+/* Samples all pieces. If `wholes` is given, the pieces are their parts in fluid, and are added to
+ * their sums. */
 static mcor_status mcor_sample_pieces(
   mcor_flux_job* job, mcor_flux_pieces* pieces, mcor_flux_pieces* wholes)
 {

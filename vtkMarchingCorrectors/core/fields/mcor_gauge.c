@@ -3,8 +3,8 @@
 
 /* Gauges: where lines cross the free surface. The probe evaluates the weight sums.
  *
- * Ranks share lines sample by sample. A rank owns the samples in cells of its box. It also looks
- * at two more on either side, so it finds there the same as one process does. */
+ * Ranks share lines sample by sample. A rank owns the samples in cells of its box. It also
+ * evaluates two more samples on either side, so it finds the same crossings as one process does. */
 
 #include "mcor_gauge.h"
 #include "mcor_box.h"
@@ -309,7 +309,7 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
   return MCOR_OK;
 }
 
-/* The box is one of points, not of cells. */
+/* This box is a box of points, not of cells. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const double* box, double margin, const mcor_findings* around)
 {
@@ -326,9 +326,10 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* The fluid ends where the weight sum T of fluid and solids is below the level, or the fluid's own
- * sum F below its share of T. The lowered sum is the lesser one of T and of a sum that equals the
- * level where F is that share of T; far from solids, where F = T, both leave F as it is. */
+/* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
+ * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
+ * equals the level where F is exactly this share of T. Far from solids F = T, and F stays as it is.
+ * */
 mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

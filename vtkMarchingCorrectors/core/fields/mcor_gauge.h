@@ -28,7 +28,7 @@ typedef struct mcor_gauge_samples
   int64_t begin; /* first sample of the whole line */
 } mcor_gauge_samples;
 
-/* A place on a line. As a record it is a crossing, or instead one of the facts below. */
+/* A place on a line. A record's place is a crossing or, below 0, one of these facts. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_place
@@ -90,17 +90,18 @@ mcor_status mcor_run_points(
  * near solids so that they fall below the level where the fluid ends at them. */
 mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count);
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
-/* Finds the cells of a box along x, y, z; tells whether a point is in one of them. */
+/* mcor_own_cells finds the cells of a box along x, y, z; mcor_owns_point tells whether a point is
+ * in one of them. */
 void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);
 bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2]);
 
 /* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
  * results to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
-/* Shortens the job's changed parts until their crossings are known. one: each part keeps its
- * first crossing only; else the first round keeps all that it finds. */
+/* Shortens the job's changed parts until their crossings are known. one: each part keeps only its
+ * first crossing; otherwise it keeps all crossings that the first round finds. */
 mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one);
-/* Returns the place on such a part where the weight sum equals the level. */
+/* Returns the place on a changed part where the weight sum equals the level. */
 double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part);
 void mcor_free_gauge_parts(mcor_gauge_job* job);
 

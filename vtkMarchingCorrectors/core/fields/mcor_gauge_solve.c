@@ -7,7 +7,7 @@
  * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel,
  * so it is almost a parabola over that distance. A parabola through three samples goes beyond
  * the middle one by at most an eighth of their differences. If the level is nearer than four
- * times that, the part is looked at more finely. */
+ * times this, the part is looked at more finely. */
 
 #include "mcor_gauge.h"
 #include "mcor_vector.h"
@@ -68,7 +68,7 @@ typedef struct mcor_gauge_row
   int64_t line, count;
   int64_t own_first, own_last; /* see mcor_gauge_samples; counted in this row */
   int64_t before;              /* number of places on the line before this row */
-  double first, step, last;    /* the line's first place; between places; this row's last place */
+  double first, step, last;    /* the line's first place; the step; this row's last place */
   const double* weight;        /* [count] */
 } mcor_gauge_row;
 

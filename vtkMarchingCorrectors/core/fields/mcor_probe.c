@@ -62,8 +62,8 @@ static void mcor_put_component(const mcor_probe_job* job, const mcor_probe_chunk
   const int width = mcor_components(&job->run->input->attributes[component->attribute]);
   const double shift = component->shift, unscale = 1 / component->scale;
   const bool is_sum = job->run->is_sum;
-  /* Rounding must not take a mean out of the range of its values. Only the kernel M'4 itself
-   * can. */
+  /* Rounding must not take a mean out of the range of its values. Only with M'4, which is partly
+   * negative, can a mean lie there. */
   const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
@@ -309,7 +309,7 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   }
   if (!mcor_bound_by_box(context, options))
   {
-    /* Limits the particles used to those near the caller's finite points. */
+    /* Lets the call use only particles near the caller's finite points. */
     mcor_array points = *run->points;
     points.components = 3;
     for (int a = 0; a < 3; ++a)

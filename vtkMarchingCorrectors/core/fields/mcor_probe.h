@@ -15,19 +15,20 @@ typedef struct mcor_probe_run
   int64_t point_count;
   mcor_samples* samples;
   bool is_sum;
-  double* weights_with_solids; /* of the samples' points; NULL: not wanted */
+  double* weights_with_solids; /* weight sums of fluid and solids at the points; NULL: not wanted */
   mcor_point_batch batch;
   mcor_buffer weight, weight_with_solids, sums, weight_gradient, gradients;
   int64_t first;     /* first point of the batch */
   int count, inside; /* points of the batch; points of it that particles may reach */
 } mcor_probe_run;
 
-/* mcor_probe_points.c. Limits the particles used to those near options->box, which holds the
- * caller's points. Returns false if there is no box. */
+/* mcor_probe_points.c. Lets the call use only particles near options->box, which holds the caller's
+ * points. Returns false if there is no box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
-/* Writes sorted particles [first, first + count) to the batch as points, and to points.flags, if
- * the call has a box, of cells `cells` to `end`, whether they lie in it. */
+/* Writes sorted particles [first, first + count) to the batch as points. If the call has a box,
+ * with the cells from `cells` to `end`, points.flags tells whether each particle lies in the box.
+ * */
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
 /* Writes the caller's points [first, last) to the device. */

@@ -46,15 +46,15 @@ static void mcor_read_points(
     {
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
-    /* This kernel's gradient is 0 exactly at a particle, but not nearby: points are rounded as
-     * particles are. */
+    /* MCOR_QUADRATIC's gradient is 0 exactly at a particle, but not nearby, so points are rounded
+     * as particles are. */
     for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    /* Along a period, whose upper side is included, points are rounded likewise, so those a period
-     * apart have the same position. A point on one side is moved to the other if the box is
-     * there. */
+    /* Along a period, whose upper side is included, points are rounded, too, so that points a
+     * period apart have the same position. A point on one side is moved to the other side if the
+     * box is there. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {

@@ -76,8 +76,8 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Finds the ranges that particles reach along the axes of the image (along the last one, that of
- * their positions), those along x, y, z, and that of h. */
+/* Finds the ranges that particles reach along the axes of the image (along the last axis, the range
+ * of their positions) and along x, y, z; and the range of h. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -108,7 +108,7 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Finds the sides of the image: of the box or the period as it is seen, else of all that
+/* Finds the sides of the image: it shows the box or the period as it is seen, else all that
  * particles reach. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {

@@ -11,12 +11,12 @@
 
 /* ---- mcor_column.c ----
  *
- * Columns of an SPH kernel, seen along a line of sight: how much of it, which is 1 in all, projects
- * onto a rectangle. Lengths are in h. */
+ * Columns of an SPH kernel, seen along a line of sight: the share of the kernel that projects onto
+ * a rectangle. Lengths are in h. */
 
 /* E(x, y): the share of the kernel that projects onto the rectangle from a corner of the table,
- * or the centre, to (x, y). A rectangle has the mixed difference of E at its corners, so
- * rectangles side by side add up to 1 exactly, but for rounding. */
+ * or the centre, to (x, y). A rectangle's share is the mixed difference of E at its corners, so the
+ * shares of rectangles side by side add up to 1, but for rounding. */
 typedef struct mcor_column
 {
   bool is_radial;  /* the kernel depends on the distance alone, as all but tensor kernels do */
@@ -38,9 +38,9 @@ typedef struct mcor_column_side
 /* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
-/* axes: unit vectors along x and y of the image and the line of sight. is_plane: the kernel of two
- * dimensions, as it is. least_pixel: the side of a pixel, in the greatest h. The caller frees the
- * nodes, whatever the status. */
+/* axes: unit vectors along x and y of the image and the line of sight. is_plane: takes the kernel
+ * of two dimensions itself. least_pixel: the shorter side of a pixel / the greatest h. The caller
+ * frees the nodes, even after a failure. */
 mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool is_plane,
   const double axes[3][3], double least_pixel, mcor_column* column);
 
@@ -104,7 +104,7 @@ typedef struct mcor_project_chunk
   int64_t source[MCOR_CHUNK];
 } mcor_project_chunk;
 
-/* Whether the column density is wanted: of the mass, or of V times density. */
+/* Whether the image shows the density, from masses or from V times density. */
 static inline bool mcor_projects_density(const mcor_input* input)
 {
   return !input->scalar.data;

@@ -92,8 +92,8 @@ void mcor_read_project_chunk(
 
 /* ---- particles in the image ---- */
 
-/* Finds the images of a particle that count, [first, last] along each axis: those in the box,
- * and, across the line of sight, those beside it that reach into it. Moves the particle into the
+/* Finds the images of a particle that count, [first, last] along each axis: images in the box and,
+ * across the line of sight, images beside the box that reach into it. Moves the particle into the
  * first period of the box. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
@@ -139,8 +139,8 @@ static bool mcor_make_splat(
   return reaches;
 }
 
-/* Lists the images of the particles of blocks. Without room for them, only counts them, and
- * finds the most that they add to a pixel. */
+/* Lists the images of the particles of blocks [first, last). If there is no list yet, only counts
+ * the images, and finds the most that one adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -221,7 +221,7 @@ static double mcor_rounding_unit(double number)
   return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
 }
 
-/* Counts images, and chooses units: a sum of as many multiples of them is exact. */
+/* Counts images, and chooses units: a sum of this many multiples of a unit is exact. */
 static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
 {
   mcor_context* context = job->context;
@@ -272,7 +272,7 @@ static void mcor_spread_splat(
   const int* size = job->out->size;
   const int64_t pixels = (int64_t)size[0] * size[1];
   const int first = s->first[0], count = s->last[0] - first + 1;
-  /* Rounding must not make a share negative, unless the kernel is. */
+  /* Rounding must not make a share negative, unless the kernel itself is partly negative. */
   const double lowest =
     mcor_kernel_of(job->context->run.options->sph_kernel)->is_tensor ? -DBL_MAX : 0;
   for (int i = 0; i <= count; ++i)
@@ -367,7 +367,7 @@ static mcor_status mcor_make_bands(mcor_project_job* job, int64_t count)
   return MCOR_OK;
 }
 
-/* Treats blocks together, as many as make a load. */
+/* Spreads as many blocks together as there is room for. */
 static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
 {
   mcor_context* context = job->context;

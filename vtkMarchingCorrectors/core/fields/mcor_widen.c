@@ -55,8 +55,8 @@ typedef struct mcor_widen_run
   mcor_point_batch batch;
   /* Whether a sorted particle is in the box and no periodic image; NULL: all are. */
   cl_int* originals;
-  void *order, *weight, *inv_h; /* views, as are the members below; NULL if only volumes are wanted */
-  void *factors, *is_outside;
+  void *order, *weight, *inv_h; /* views */
+  void *factors, *is_outside; /* views; NULL if only volumes are wanted */
   int64_t left[MCOR_SLICES]; /* number of widened particles outside */
 } mcor_widen_run;
 
@@ -68,8 +68,8 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
   free(run->originals);
 }
 
-/* Finds the factors of the sorted particles, into `limited`, which holds the least sums before;
- * and which particles they leave outside. */
+/* Finds the factors of the sorted particles, and which particles they leave outside. `limited`
+ * first holds the least sums, then the factors. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
@@ -143,7 +143,7 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Factors, if they are wanted, and volumes. */
+/* Delivers the factors, if they are wanted, and the volumes. */
 static mcor_status mcor_deliver_factors(
   mcor_context* context, const mcor_input* input, mcor_widen_run* run)
 {
@@ -189,8 +189,8 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-/* Finds the factors of all particles. A box without globals only tells which ones are too far away
- * to matter, see mcor_leave_out_far. */
+/* Finds the factors of all particles. A box without globals only tells which particles are too far
+ * away to matter, see mcor_leave_out_far. */
 static mcor_status mcor_run_widen(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {

@@ -5,8 +5,8 @@
 
 #include "mcor_internal.h"
 
-/* Volumes that were computed, [count], unit L^3, from the search grid's weights; 1 where a particle
- * is not on the device, or not in the box. */
+/* Reads the volumes that were computed, [count], unit L^3, from the search grid's weights; 1 where
+ * a particle is not on the device, or not in the box. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume);
 
 #endif

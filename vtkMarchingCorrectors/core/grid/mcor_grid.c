@@ -15,11 +15,11 @@
  * fit the round reach of a query better, but need more rows: 2 took as long, 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
-/* Cells of a level along an axis, at most, so that keys of all levels stay below 2^62. Where
- * particles are that far apart, far fewer are as good. */
+/* The most cells of a level along an axis, so that keys of all levels stay below 2^62. If particles
+ * are so far apart, far fewer cells are as good. */
 #define MCOR_CELL_LIMIT (1 << 19)
 
-/* Returns the cells of a level along an axis, `cell` cubes long, or a little more where whole
+/* Divides an axis into cells of a level. A cell is `cell` cubes long, or a little longer if whole
  * cells must fill a period. */
 static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
 {
@@ -91,7 +91,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
-/* Reserves an element for each particle, and zeros behind, which vector loads find. */
+/* Reserves an element for each particle, and zeros behind them, which vector loads may read. */
 static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
@@ -99,11 +99,11 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-/* Sorts groups of particles with the same key, see mcor_sort_before. */
+/* How to sort groups of particles with the same key, see mcor_sort_before. */
 typedef struct mcor_key_sort
 {
   const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;
-  int by_value, most; /* how many particles the group has */
+  int by_value, most; /* whether a group is one position, not a cell; its most particles */
 } mcor_key_sort;
 
 #define MCOR_SORT_ARGS(c, s)                                                                       \
@@ -133,8 +133,8 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
 }
 
 /* Orders the particles of each cell, then moves particles to where `order` says, one array after
- * the other, so that each may take the place of the one before. An array whose elements are all
- * the same is in order already. */
+ * the other, so that each array may take the memory of the one before. An array whose elements are
+ * all the same is in order already. */
 static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
@@ -171,8 +171,8 @@ static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging
     : MCOR_OK;
 }
 
-/* Makes the tables in which queries look up the particles of a search cell: of all cells if they
- * are few, else of those that have particles. */
+/* Makes the tables in which queries look up the particles of a search cell. They hold all cells if
+ * these are few, else only the cells with particles. */
 static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
 {
   mcor_grid* grid = &context->grid;

@@ -43,8 +43,8 @@ mcor_status mcor_evaluate_points(
     MCOR_INT(0), MCOR_INT(0), MCOR_BUFFER(&points->value), MCOR_BUFFER(&points->weight));
 }
 
-/* Sorts the points of a batch by place, those in no brick last, and cuts the `inside` other ones
- * into groups. */
+/* Sorts the points of a batch by place, points outside of all bricks last, and cuts the other
+ * points (`inside`: how many) into groups. */
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count)
 {

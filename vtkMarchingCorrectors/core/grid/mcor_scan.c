@@ -3,9 +3,8 @@
 
 #include "mcor_internal.h"
 
-/* The number of elements whose launches take long enough that a run may be cancelled before
- * each. Each such launch waits for the one before; for fewer elements, waiting would take longer
- * than the work. */
+/* With more elements than this, launches take so long that a run may be cancelled before each of
+ * them, so each waits for the one before. With fewer, waiting would take longer than the work. */
 #define MCOR_LONG_WALK (1 << 20)
 
 static mcor_load mcor_walk(int count)
@@ -21,8 +20,8 @@ static int mcor_segments(const mcor_context* context, int count)
   return most < 1 ? 1 : most < context->cl.segments ? most : context->cl.segments;
 }
 
-/* Launches the exclusive prefix sum of counts[0..count). Element `count`, and that of the
- * segments' sums, become the total. The buffer holds count + 1 ints. */
+/* Launches the exclusive prefix sum of counts[0..count). Element `count`, and the element behind
+ * the segments' sums, become the total. The buffer holds count + 1 ints. */
 static mcor_status mcor_launch_scan(
   mcor_context* context, const mcor_buffer* counts, int count, int segments)
 {
@@ -110,7 +109,7 @@ mcor_status mcor_sort(
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", mcor_walk(count), segments, MCOR_BUFFER(keys),
       MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift + in), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram)));
-    const int counters = segments << bits; /* together `count` */
+    const int counters = segments << bits; /* their sum is `count` */
     MCOR_TRY(mcor_launch_scan(
       context, &context->sort.histogram, counters, mcor_segments(context, counters)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", mcor_walk(count), segments, MCOR_BUFFER(keys),
@@ -154,8 +153,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Lists the distinct ones of sorted keys, and the index of the first of each; behind all, the
- * number of keys. */
+/* Lists the distinct keys among sorted keys, and the index at which each begins; the number of all
+ * keys follows behind the indices. */
 mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
   mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count)
 {

@@ -4,9 +4,9 @@
 /* Sums over each particle's neighbours, for particles that lack what a surface needs: smoothing
  * lengths by neighbours, and densities from masses. They run on the host, in double precision. A
  * tree of boxes over particles along a Morton curve finds neighbours, because smoothing lengths are
- * unknown, or vary by any factor. Each sum goes along the curve, so it depends neither on the order
- * of the input nor on threads, nor on particles outside the support. So a rank finds the bits of one
- * process as soon as it has all particles that its sums reach. */
+ * unknown, or vary by any factor. Each sum goes along the curve, so it does not depend on the order
+ * of the input, on threads, or on particles outside the support. So a rank finds the same bits as
+ * one process if it has all particles that its sums reach. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
@@ -18,19 +18,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_LEAF 8 /* particles */
+#define MCOR_LEAF 8 /* particles of a leaf of the tree */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* accuracy of a length; least length, as a share of the extent */
 /* The extent goes at most this many widths of the particles' middle half beyond that half.
  * Otherwise one particle far away would leave no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
-#define MCOR_WIDTH_SAMPLE 4096 /* positions */
+#define MCOR_WIDTH_SAMPLE 4096 /* the positions whose quartiles are taken */
 
 typedef struct mcor_neighbour
 {
   double x[3], mass;
-  uint64_t place[3]; /* place along the curve: 62 bits of the extent; a particle outside counts as
-                      * at its end */
+  uint64_t place[3]; /* place along the curve: 62 bits of the extent; a particle outside takes its
+                      * end */
   int64_t source;
 } mcor_neighbour;
 
@@ -45,7 +45,7 @@ typedef struct mcor_neighbour_job
   double extent;          /* the greatest extent, of a period, too; what is far away does not count */
   int64_t count, wanted;  /* how many particles are present; how many of the input's first ones get
                            * a result */
-  int64_t leaves;         /* a power of 2 that scales coordinates */
+  int64_t leaves;         /* leaves of the tree, a power of 2 */
   mcor_neighbour* sorted; /* [count] */
   double (*box)[6]; /* [2 * leaves]: low and high of x, y, z; node n has children 2 n, 2 n + 1 */
   double* out;      /* [wanted], in input order */
@@ -85,9 +85,9 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
   return most == 0 ? 0 : p[axis] < q[axis] ? -1 : 1;
 }
 
-/* Particles at one place (all that lie beyond a corner of the extent are) are compared along the
- * curve of their coordinates' bits, which grow as the numbers do. The rest have any order that does
- * not depend on the input's. */
+/* Particles at one place, such as all beyond a corner of the extent, are compared along the curve
+ * of their coordinates' bits, which grow as the numbers do. Equal ones are compared by their bytes,
+ * so that the input's order does not matter. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -130,8 +130,8 @@ static int64_t mcor_keep_least(mcor_hashed* sample, int64_t count)
   return kept;
 }
 
-/* Finds the bounds of all ranks' particles, and the positions with the least hashes among them: the
- * same with any order, and with any copies of other ranks' particles. *sample: to be freed. */
+/* Finds the bounds of all ranks' particles, and the positions with the least hashes among them. The
+ * result does not depend on order, or on copies of other ranks' particles. *sample: to be freed. */
 static mcor_status mcor_sample_extent(mcor_context* context, const mcor_neighbour_job* job,
   double low[3], double high[3], mcor_hashed** sample, int64_t* count)
 {
@@ -331,8 +331,8 @@ static void mcor_list_neighbours(
   }
 }
 
-/* Returns sum_j W h^d, with masses where densities are summed, from a list that is little longer
- * than the support. */
+/* Returns sum_j W h^d; the terms have masses if densities are summed. Makes a new list if the last
+ * one is shorter than the support, or much longer. */
 static double mcor_sum_at(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
@@ -350,7 +350,7 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* Returns the step at or below h, or so many steps further. There are four steps in each power of 2. */
+/* Returns the step at or below h, or the one `further` steps on. Each power of 2 has four steps. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;
@@ -359,14 +359,14 @@ static double mcor_length_step(double h, int further)
   return ldexp(4 + quarter, (number - quarter) / 4 - 4);
 }
 
-/* Solves for the smoothing length at a place by false position, and by bisection where that does
- * not help, between two steps: these do not depend on the first guess, nor does the result. */
+/* Solves for the smoothing length at a place, between two steps, by false position with some
+ * bisection. The steps do not depend on the first guess, so the result does not either. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is about the distance of near particles: some places before and behind along
-   * the curve, the nearer of the two, because the curve jumps. */
+  /* The first guess is about the distance of near particles: of the nearer one of two particles,
+   * four places before and behind along the curve, because the curve jumps. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {
@@ -520,7 +520,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   return MCOR_OK;
 }
 
-/* Runs in a context without a device, which keeps the sentence. job.eta is 0 for densities. */
+/* Runs the job in a context without a device, which keeps the error. job.eta is 0 for densities. */
 static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor_message* why)
 {
   mcor_context* context = calloc(1, sizeof *context);

@@ -193,7 +193,6 @@ public:
   vtkSmartPointer<vtkPointSet> Own; ///< this process's particles
   std::int64_t Particles = 0;       ///< of all processes
   bool HasFluid = false;            ///< whether any process has fluid
-
   mcor_options Options = {};
   std::vector<double> IsoValues;      ///< of the options
   vtkSmartPointer<vtkDataSet> Points; ///< the points that this process evaluates

@@ -111,7 +111,6 @@ public:
   /**
    * The particles' motion between the last two steps, divided by the motion that their velocities
    * give, if a warning tells of it; else 0.
-
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

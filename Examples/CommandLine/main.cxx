@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The command line program: particles from a file, surface to a file. See --help.
+// The command line program: reads particles from a file, writes a surface to a file. See --help.
 #include "ColorScale.h"
 #include "DataFile.h"
 #include "Ending.h"
@@ -155,7 +155,7 @@ bool Execute(int argc, char* argv[])
 void MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  std::vector<std::string> outputs; // memory of this process; on the first process, of all
+  std::vector<std::string> outputs; // this process's files; on the first process, all files
   for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
   {
     if (sharing.IsFirst() || rank == sharing.GetRank())
@@ -265,7 +265,7 @@ void MakeSurface(Sharing& sharing)
 
 const Extra& LoadExtra()
 {
-  // Its name alone is looked for in the folder of this program's other libraries.
+  // A name without a folder is searched for in the folder of this program's other libraries.
   static void* const library = dlopen(MCOR_EXTRA_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
   static const void* const extra = library ? dlsym(library, "MarchingCorrectorsExtra") : nullptr;
   if (!extra)
@@ -280,8 +280,8 @@ const Extra& LoadExtra()
 
 int main(int argc, char* argv[])
 {
-  // If standard output was closed, the next file that the program opens would become it, so this
-  // keeps its place.
+  // If standard output was closed, the next file that the program opens would become standard
+  // output. An open /dev/null keeps its place.
   int descriptor = 0;
   while (descriptor >= 0 && descriptor <= STDERR_FILENO)
   {
@@ -309,15 +309,15 @@ int main(int argc, char* argv[])
         throw std::runtime_error("standard output could not be written");
       }
     });
-  // On the other processes nothing is said, because the first process says it. A failure here could
-  // end the first process before it has spoken.
+  // The first process reports wrong usage; the others are silent, and do not fail: a failure could
+  // end the first process before it has reported.
   const bool isSilent = isMisused && LaunchedRank() > 0;
   if (!failure.empty() && !isSilent)
   {
     Say(failure);
   }
   std::fflush(nullptr);
-  // Libraries' code at the program's end is skipped: it may take time, crash, or print what it
-  // thinks of a damaged file.
+  // Skips the libraries' code at the program's end, which may take time, crash, or print messages
+  // about a damaged file.
   _exit(isSilent ? 0 : isMisused ? 2 : isGood && failure.empty() ? 0 : 1);
 }

@@ -266,7 +266,6 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(
   const std::vector<Triple>& points, double isoValue) const
 {
   std::vector<int> left(points.size(), 0); // rays that left, minus rays that entered
-
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);

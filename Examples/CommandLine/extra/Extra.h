@@ -15,12 +15,12 @@ class vtkDataSet;
 struct PictureOptions;
 
 /// Draws pictures of a surface, or of a probed data set, inside the outline of a frame. In a
-/// series, as of a film's steps, the view has room for all pictures so far: the eye moves back if
+/// series, such as a film's steps, the view has room for all pictures so far: the eye moves back if
 /// something would be cut off, and otherwise stays.
 class Picture
 {
 public:
-  /// For LoadExtra().NewPicture(). Throws std::runtime_error with one sentence where this VTK
+  /// Is called by LoadExtra().NewPicture(). Throws std::runtime_error with one sentence if this VTK
   /// renders through an X server and there is none: VTK itself would abort.
   static std::unique_ptr<Picture> New(const PictureOptions& options);
   virtual ~Picture() = default;
@@ -31,8 +31,8 @@ public:
     const ColorScale& colors, int sliceAxis = -1) = 0;
 };
 
-/// Names functions that need large libraries: VTK's rendering, and HDF5. Loading those takes longer
-/// than a small run, so the functions are in a library of their own.
+/// Names functions that need large libraries: VTK's rendering, and HDF5. Loading these libraries
+/// takes longer than a small run, so the functions are in a library of their own.
 struct Extra
 {
   std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);
@@ -42,15 +42,15 @@ struct Extra
   vtkSmartPointer<vtkDataObject> (*ReadHdf)(const std::string& file, std::size_t step);
   std::vector<double> (*ListHdfTimes)(const std::string& file);
 
-  /// Writes a .stl, .ply or .obj file.
+  /// Reads a .stl, .ply or .obj file.
   vtkSmartPointer<vtkDataObject> (*ReadSurface)(const std::string& file);
 };
 
 extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectorsExtra;
 
-// The functions of a .vtkhdf file, in that library. An unstructured grid without steps is read as a
-// whole by VTK's reader, whose older versions know nothing else. Files whose values lie in other
-// files, too, are refused; the times are none where there are no steps.
+// The functions for .vtkhdf files in that library. VTK's reader, whose older versions know nothing
+// else, reads an unstructured grid without steps as a whole. A file is refused if some of its
+// values lie in other files. Without steps, there are no times.
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 

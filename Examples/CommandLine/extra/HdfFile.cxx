@@ -72,7 +72,7 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
   return sentence.empty() ? 0 : 1; // this ends the visit
 }
 
-/// Refuses files that link to other files, because nobody has named those. Throws
+/// Refuses a file that links to other files, because the user has not named these. Throws
 /// std::runtime_error.
 void RefuseLinks(const std::string& file)
 {
@@ -152,8 +152,8 @@ public:
     return text.substr(0, text.find('\0'));
   }
 
-  /// Reads `count` rows from `first` on, or all if `count` is below 0. Returns null if they are not
-  /// numbers.
+  /// Reads `count` rows from `first` on, or all rows if `count` is below 0. Returns null if the
+  /// array does not hold numbers.
   vtkSmartPointer<vtkDataArray> Read(
     const std::string& name, long long first = 0, long long count = -1) const
   {
@@ -199,7 +199,7 @@ public:
     return array;
   }
 
-  /// Reads all values of an array, converted to the type of numbers asked for.
+  /// Reads all values of an array, converted to ArrayT's type.
   template <typename ArrayT>
   std::vector<typename ArrayT::ValueType> Values(const std::string& name) const
   {

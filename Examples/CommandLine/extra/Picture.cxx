@@ -45,10 +45,10 @@
 namespace
 {
 
-/// Connects to the X server, where this VTK renders through one. X is asked for in the running
-/// program, since only VTK's rendering library knows whether it is linked to it. The connection is
-/// held until the picture is drawn: a server that loses its last client starts anew (Xvfb does),
-/// and does not answer meanwhile. Throws where it is certain that a server is needed and cannot be
+/// Connects to the X server, if this VTK renders through one. The running program is searched for
+/// X's functions, because only VTK's rendering library knows whether it is linked to them. The
+/// connection is held until the picture is drawn: a server that loses its last client starts anew
+/// (Xvfb does), and does not answer meanwhile. Throws if a server is certainly needed and cannot be
 /// reached.
 std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)
 {
@@ -132,8 +132,8 @@ int AxisOfLines(vtkDataSet* data)
   return -1;
 }
 
-/// Places the camera as near as possible with all corners of the box in the picture, and as much
-/// space below as above.
+/// Places the camera as near as possible with all corners of the box in the picture, and with equal
+/// space on opposite sides.
 void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -143,7 +143,7 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   box.GetCenter(center.GetData());
   for (int round = 0; round < 10; ++round)
   {
-    std::array<Vector, 8> seen; // corners in the eye's axes: to the right, upwards, towards it
+    std::array<Vector, 8> seen; // corners in the eye's axes: right, up, towards the eye
     double distance = 1e-6 * box.GetDiagonalLength();
     for (int i = 0; i < 8; ++i)
     {
@@ -282,7 +282,7 @@ private:
     this->Renderer->AddActor(actor);
   }
 
-  /// The lines between what is filled, on both sides of it.
+  /// Draws the lines between filled regions, on both sides of the plane.
   void ShowBorders(vtkPolyData* filled)
   {
     vtkNew<vtkPolyData> lines;
@@ -348,7 +348,7 @@ private:
     bar->SetWidth(0.8);
     bar->SetHeight(0.84);
     bar->SetBarRatio(0.25);
-    if (steps) // their words stand beyond the bar's width
+    if (steps) // the words of the steps stand beyond the bar's width
     {
       bar->SetTextPositionToPrecedeScalarBar();
       bar->SetPosition(0.16, 0.08);

@@ -14,13 +14,13 @@ inline bool EndsWith(const std::string& text, const std::string& end)
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Whether the name ends as that of a .pvd file, ParaView's list of files and their times.
+/// Whether this is the name of a .pvd file, ParaView's list of files and their times.
 inline bool IsCollectionFile(const std::string& file)
 {
   return EndsWith(file, ".pvd");
 }
 
-/// Whether an input ends as a list of files and their times: .pvd, or .vtk.series and the like.
+/// Whether this is the name of a list of files and their times: .pvd, .vtk.series, ...
 inline bool IsListOfSteps(const std::string& file)
 {
   return IsCollectionFile(file) || EndsWith(file, ".series");
@@ -72,7 +72,7 @@ inline bool HasStepNumber(const std::string& name)
     std::count(name.begin(), name.end(), '%') == 1;
 }
 
-/// frame_0007.png of frame_%04d.png
+/// Returns the name of a step: frame_0007.png for frame_%04d.png.
 inline std::string NameOfStep(const std::string& name, std::size_t step)
 {
   const std::size_t percent = name.find('%');

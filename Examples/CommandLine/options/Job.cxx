@@ -42,7 +42,7 @@ const ModeWords* FindMode(const std::string& word)
   return found == std::end(AllModes) ? nullptr : found;
 }
 
-/// "a, b and c", or with another last word.
+/// Returns "a, b and c"; `last` is the word before the last item.
 std::string ListOf(const std::vector<std::string>& items, const std::string& last)
 {
   std::string list;
@@ -106,7 +106,7 @@ bool IsOfSteps(const Job& j)
   return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
 }
 
-/// Whether one of the arrays that --derive makes comes to the output.
+/// Whether the output has one of the arrays that --derive makes.
 bool UsesDerived(const Job& j)
 {
   std::vector<std::string> asked = j.AttributeNames;
@@ -311,8 +311,7 @@ void Check(const Job& job)
   }
 }
 
-/// Takes an option and its value; the name, with a value behind "=" if there is one, was
-/// `next[-1]`.
+/// Takes an option and its value. `next[-1]` is the name, perhaps with "=" and the value.
 void TakeOption(const char* const*& next, const char* const* end, Job& job)
 {
   std::string name = next[-1], value;
@@ -344,8 +343,8 @@ void TakeOption(const char* const*& next, const char* const* end, Job& job)
   }
   if (takesValue && !isJoined && next < end)
   {
-    // Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or
-    // axes, -z.
+    // Words that begin with a dash are options, unless they are numbers (-1, -.5, -1,2, -inf) or
+    // axes (-z).
     const std::string word = *next;
     const bool isOption = word == "-h" ||
       (word.size() > 2 && word[0] == '-' && word.compare(0, 4, "-inf") != 0 &&
@@ -497,11 +496,11 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
 {
   for (vtkSPHAlgorithm* filter : job.All())
   {
-    filter->KeepDeviceDataOff(); // each for one run
+    filter->KeepDeviceDataOff(); // each filter runs once
   }
   std::vector<std::string> files;
   const char* const* const end = argv + argc;
-  bool isEnded = false; // names of options
+  bool isEnded = false; // whether "--" has ended the options
   for (const char* const* next = argv + std::min(argc, 1); next < end;)
   {
     const std::string word = *next++;
@@ -547,7 +546,7 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   }
   if ((job.Word == "surface" || job.Word == "film") && !job.Has("--scalar"))
   {
-    job.Surface->FreeSurfaceOn(); // words that python -m marchingcorrectors has, too
+    job.Surface->FreeSurfaceOn(); // python -m marchingcorrectors has these words, too
     job.Given["--free-surface"];
   }
   if (!job.Has("--version") && !job.Has("--list-devices"))

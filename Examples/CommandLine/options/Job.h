@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-/// Modes: what a run makes of the particles; and sets of modes.
+/// Modes, which say what a run makes of the particles, and sets of modes.
 enum Modes : unsigned
 {
   SURFACE = 1,
@@ -40,10 +40,10 @@ enum Modes : unsigned
 /// Settings of pictures.
 struct PictureOptions
 {
-  std::string File;               ///< empty: no picture; with %04d in it, one for each step of a
-                                  ///< film
+  std::string File;               ///< empty: no picture; with %04d in it: a picture for each step
+                                  ///< of a film
   std::string ColorBy;            ///< an array of the data that is shown; empty: chosen
-  std::vector<double> ColorRange; ///< lowest and highest value; empty: the array's
+  std::vector<double> ColorRange; ///< lowest and highest value; empty: the array's range
   std::string Up;                 ///< axis, or -axis, that points upwards; empty: chosen
   std::vector<double> View;       ///< direction from the shown data to the eye; empty: chosen
 };
@@ -57,7 +57,7 @@ struct SliceOptions
   int Resolution = 512;     ///< points along the longest side
 };
 
-/// A place of measurement: the line of a gauge, or a section that fluid flows through.
+/// A place to measure at: the line of a gauge, or a section that fluid flows through.
 struct Place
 {
   enum Kind
@@ -77,12 +77,12 @@ struct Place
 /// Many upright gauges, over a rectangle.
 struct GaugeGrid
 {
-  int Counts[2] = { 0, 0 }; ///< along x and y; 0: there is none
+  int Counts[2] = { 0, 0 }; ///< along x and y; 0: there is no grid
   std::array<double, 6> Bounds = {};
 };
 
-/// A command line's request: the filters, set up as far as that can be done without the input,
-/// and what the program does around them. Array names are spelled as ReadParticles() spells them.
+/// The request of a command line: the filters, set up as far as possible without the input, and
+/// what the program does around them. Array names are spelled as ReadParticles() spells them.
 struct Job
 {
   Job() { this->Surface->FreeSurfaceOff(); }
@@ -104,56 +104,56 @@ struct Job
   {
     return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
   }
-  /// Whether OUTPUT is a table of the field at the points of a file, a row a step and point.
+  /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
   bool IsFlux() const { return !this->Fluxes.empty() || !this->FluxFile.empty(); }
   bool HasGauges() const
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
-  /// Lists all files that are read, but not the files that these list.
+  /// Lists all files that the run reads, but not the files that these list.
   std::vector<std::string> InputFiles() const;
   /// Returns one of the modes, which the options and the names of the files tell.
   unsigned Mode() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
-  /// The options that were given, with the text behind each; options that only say what holds
-  /// without them are left out.
+  /// The options that were given, with the text behind each, except options that only repeat a
+  /// default.
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
 
   std::string Word; ///< the mode in front of the files, or behind --help; empty: none
   std::vector<std::string> Inputs;
   std::vector<std::string>
-    Walls; ///< files whose particles are walls: at all times; or for each step (.pvd, %04d)
+    Walls; ///< files whose particles are walls, at all times or for each step (.pvd, %04d)
   std::string Output;
-  std::vector<double> Times;    ///< times of a film or table, ascending; empty: all that are stored
+  std::vector<double> Times;    ///< times of a film or table, ascending; empty: all stored times
   double FramesPerSecond = 0.0; ///< frames per second of a film; 0: not asked for
-  double SlowMotion = 1.0;      ///< how many times slower a film runs than time passes
+  double SlowMotion = 1.0;      ///< how many times slower a film is than the simulation
   bool HasTimes() const { return !this->Times.empty() || this->FramesPerSecond > 0.0; }
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
   std::string IdArray;   ///< array by which particles are matched between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;
   std::vector<Place> Gauges;
-  std::string GaugeFile; ///< more such places
-  GaugeGrid Grid;        ///< no other places then
+  std::string GaugeFile; ///< file of further gauges
+  GaugeGrid Grid;        ///< if it is given, there are no other gauges
   std::vector<Place> Fluxes;
-  std::string FluxFile; ///< more such sections
-  std::string Derive;   ///< array whose gradient, and what follows from it, is computed for the
-                        ///< particles
+  std::string FluxFile; ///< file of further sections
+  std::string Derive;   ///< the array to derive: its gradient, and what follows from it, is
+                        ///< computed for the particles
 
   std::string Scalar;
-  /// A quantity is an array name or one value for all particles; the input decides which of the two
-  /// a text such as "2" is.
+  /// A quantity is an array name or one value for all particles. If the input has an array "2", the
+  /// text "2" is a name, else a value.
   std::string SmoothingLength;
   std::string Mass;
   std::string Density;
   double ParticleDistance = 0.0; ///< DualSPHysics' dp; 0: not given
   double CoefH = 1.0;
-  double NeighborRatio = 0.0;              ///< eta of --smoothing-length neighbours; 0: another
-                                           ///< kind of length
+  double NeighborRatio = 0.0;              ///< eta of --smoothing-length neighbours; 0: lengths
+                                           ///< are given otherwise
   bool DetectPeriod = false;               ///< --periodic auto
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
   std::vector<std::string> AttributeNames; ///< names of arrays to carry; empty: all
@@ -177,8 +177,8 @@ struct Option
   const char* Name;
   const char* Argument; ///< the value's name in the help; empty: the option has no value
   std::string Help;
-  unsigned Modes = 0;      ///< modes in which it acts; in others it is refused
-  std::string Needs = "";  ///< options, or endings of OUTPUT, of which it needs one: "--a|--b"
+  unsigned Modes = 0;      ///< modes in which it acts; others refuse it
+  std::string Needs = "";  ///< it needs one of these options or endings of OUTPUT: "--a|--b"
   const char* Member = ""; ///< its name in the core's sentences and in Python
   std::function<void(Job&, const std::string& option, const std::string& value)> Set = {};
   bool Repeats = false; ///< whether it may be given more than once
@@ -196,19 +196,19 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 /// Reads NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Places of the options, including those that files list, in the order of the options. Throws
-/// UsageError if two have one name, or std::runtime_error if a file cannot be read.
+/// Lists the places of the options and of their files, in the order of the options. Throws
+/// UsageError if two places have one name, or std::runtime_error if a file cannot be read.
 std::vector<Place> ListGauges(const Job& job);
 std::vector<Place> ListSections(const Job& job);
 
-/// Throws UsageError, see OptionValue.h.
+/// Reads the command line into the job. Throws UsageError, see OptionValue.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);
 
 /// Returns the text of --help WORD in lines of this width. The word is empty, "all", or a mode's.
 /// Throws UsageError for any other word.
 std::string CommandLineHelp(const std::string& word, std::size_t width);
 
-/// Returns the option for this member of the core's structures, or an empty string.
+/// Returns the option that sets this member of the core's structures; empty if none does.
 std::string WordOf(const std::string& member);
 
 #endif

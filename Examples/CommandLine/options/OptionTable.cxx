@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Each setting of the filters is a line here.
+// Reads the values of options, and makes the list of all options from Options.def.
 #include "Job.h"
 
 #include "OptionValue.h"
@@ -34,7 +34,7 @@ void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T...), T... values)
   }
 }
 
-/// Returns where NAME=... is divided.
+/// Returns the place of the "=" in NAME=...
 std::size_t NameEnd(Text option, Text text, const char* form)
 {
   const std::size_t equals = text.rfind('=');
@@ -138,7 +138,7 @@ std::vector<double> ToDirection(Text option, Text text)
 void SetWithin(Job& job, Text option, Text text)
 {
   std::vector<double> sides = ToBox(option, text);
-  if (std::count(sides.begin(), sides.end(), 0.0) == 6) // for the filters this means no choice
+  if (std::count(sides.begin(), sides.end(), 0.0) == 6) // six zeros would mean "no choice"
   {
     sides[0] = -std::numeric_limits<double>::denorm_min();
   }
@@ -173,7 +173,7 @@ void SetSolids(Job& job, Text option, Text text)
   job.Surface->SetSolids(solids);
 }
 
-/// Sets the iso values of both modes; each is used in its mode alone.
+/// Sets the contour values and the free-surface values; a run uses only one of the two.
 void SetIsoValues(Job& job, Text option, Text text)
 {
   const std::vector<double> values = ToNumbers(option, text);
@@ -222,7 +222,7 @@ void SetProjection(Job& job, Text option, Text text)
 
 void SetBoundary(Job& job, Text option, Text text)
 {
-  // its earlier word
+  // "weight" is an older word for "weight_sum"
   const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text,
     { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
   job.Surface->SetBoundaryDetection(boundary);

@@ -33,7 +33,7 @@ void Need(bool isGood, Text option, Text words, Text text)
 
 bool ParseNumber(Text text, double& value)
 {
-  // from_chars reads 1.5 as 1.5 in every locale, but knows no leading plus.
+  // from_chars reads 1.5 as 1.5 in every locale, but does not accept a leading plus.
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(begin, end, value);
@@ -84,8 +84,8 @@ int ToCount(Text option, Text text, int smallest, int largest)
 
 std::string NearestOf(Text text, const std::vector<std::string>& names)
 {
-  // Letters alone count, of one size; and a name that begins as the text does is as near as one with
-  // a wrong letter.
+  // Compares small letters only, without - and _. A name that begins with the text is as near as a
+  // name with one wrong letter.
   const auto lettersOf = [](Text word)
   {
     std::string letters;

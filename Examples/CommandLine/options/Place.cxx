@@ -50,7 +50,7 @@ std::string ToRowName(Text option, Text noun, Text text)
   return name;
 }
 
-/// Adds the places of a file: one in each line that is not empty and does not begin with #.
+/// Adds the places of a file: one for each line that is not empty and does not begin with #.
 void AddOfFile(Text option, Text file, Text nouns, Text form,
   Place (*parse)(Text option, Text text), std::vector<Place>& places)
 {

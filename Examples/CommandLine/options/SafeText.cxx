@@ -18,10 +18,10 @@ struct Character
 {
   std::size_t Bytes; ///< how many bytes the character has
   unsigned Code;
-  bool Valid; ///< false: one byte that is no UTF-8, and Code is its value
+  bool Valid; ///< false: Code is the value of one byte that is not UTF-8
 };
 
-/// The character at text[i].
+/// Returns the character at text[i].
 Character At(const std::string& text, std::size_t i)
 {
   const auto byte = [&](std::size_t k)
@@ -49,8 +49,8 @@ bool IsControl(unsigned code)
   return code < 0x20 || (code >= 0x7f && code < 0xa0);
 }
 
-/// Whether a terminal or XML must not get this character: line breaks, direction marks, and what
-/// XML does not allow.
+/// Whether this character must not reach a terminal or XML: line breaks, direction marks, and
+/// characters that XML does not allow.
 bool IsInvisible(unsigned code)
 {
   return code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
@@ -64,7 +64,7 @@ std::string Escape(const char* format, unsigned code)
   return digits;
 }
 
-/// The text, each character as `written` has it; as it is where that is empty.
+/// Returns the text with each character replaced by written(c), unless this is empty.
 std::string Rewritten(const std::string& text, std::string (*written)(const Character& c))
 {
   std::string result;

@@ -8,23 +8,23 @@
 #include <functional>
 #include <string>
 
-/// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
-/// Whatever could steer a terminal (control characters, marks that turn the direction of writing)
-/// or is not UTF-8 becomes its code, "\x1b" or "\u202e". Text that is fit already stays as it is.
+/// Makes text from a file or the command line fit for a terminal and for XML: one line of UTF-8.
+/// Characters that could steer a terminal (control characters, marks that turn the direction of
+/// writing) and bytes that are not UTF-8 become codes, "\x1b" or "\u202e". Other text stays.
 std::string Printable(const std::string& text);
 
-/// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
+/// Returns the text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
 /// Writes the program's word for a slot of a sentence of the core, such as --cube-size, as an
 /// mcor_word of mcor.h. Returns 0 if there is none.
 int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
-/// Errors and warnings: one line on standard error after the program's name, whatever names and
-/// files have put into the sentence.
+/// Prints an error or a warning as one line on standard error, after the program's name. Names and
+/// files may have put anything into the sentence.
 void Say(const std::string& sentence);
 
-/// Throws std::runtime_error, "FILE cannot be read: WHY", or that it could not be written.
+/// Throws std::runtime_error, "FILE cannot be read: WHY", or a sentence that it cannot be written.
 ///@{
 [[noreturn]] void FailToRead(const std::string& file, const std::string& why);
 [[noreturn]] void FailToWrite(const std::string& file, const std::string& why);
@@ -33,7 +33,7 @@ void Say(const std::string& sentence);
 /// Returns why the work failed, in one sentence; empty if it did not fail.
 std::string FailureOf(const std::function<void()>& work);
 
-/// The fewest digits that read back as the same number, in every locale.
+/// Returns the fewest digits that read back as the same number, in every locale.
 template <typename T>
 std::string DigitsOf(T number)
 {
@@ -41,7 +41,7 @@ std::string DigitsOf(T number)
   return { digits, std::to_chars(digits, digits + sizeof(digits), number).ptr };
 }
 
-/// Returns the text as it stands in the attribute of an XML element.
+/// Returns the text as it is written in an attribute of an XML element.
 std::string EscapedForXml(const std::string& text);
 
 #endif

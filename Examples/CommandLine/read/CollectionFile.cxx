@@ -29,7 +29,7 @@ std::string AttributeOf(vtkXMLDataElement* element, const char* name)
   return value ? value : "";
 }
 
-/// The element below the root of a VTK XML file that has this name.
+/// Returns the element of this name below the root of a VTK XML file.
 vtkSmartPointer<vtkXMLDataElement> ReadElement(const std::string& file, const char* name)
 {
   CheckRegularFile(file);
@@ -48,7 +48,7 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(const std::string& file, const ch
   return found;
 }
 
-/// Splits JSON: its signs, numbers and words as they are, and texts behind a quotation mark.
+/// Splits JSON into signs, numbers and words, and texts, which begin with a quotation mark here.
 std::vector<std::string> Tokens(const std::string& text)
 {
   std::vector<std::string> tokens;
@@ -68,7 +68,7 @@ std::vector<std::string> Tokens(const std::string& text)
     {
       const bool isMasked = text[at] == '\\' && at + 1 < text.size();
       at += isMasked ? 1 : 0;
-      if (isMasked && text[at] == 'u') // a character outside of ASCII, written as its code
+      if (isMasked && text[at] == 'u') // the code of a character outside of ASCII
       {
         const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
         at += std::min<std::size_t>(4, text.size() - 1 - at);
@@ -165,7 +165,7 @@ std::vector<CollectionEntry> ReadCollection(
   }
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
-  // A run that was repeated into the same folder adds its steps to the list: the last ones count.
+  // A run that is repeated in a folder adds its steps to the list again: the last entries count.
   std::vector<CollectionEntry> kept;
   std::size_t again = 0;
   double first = 0.0;

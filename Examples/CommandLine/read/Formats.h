@@ -12,18 +12,18 @@
 
 class vtkDataObject;
 
-// How files are read. All throw std::runtime_error with one sentence.
+// These functions read files. All throw std::runtime_error with one sentence.
 
-/// Opens what is to be read, so that IsSource() knows it. Refuses a name that is not a file, and a file that cannot be
-/// opened or sought in.
+/// Opens a file that is to be read, so that IsSource() knows it. Refuses a name that is not a file, and a file that
+/// cannot be opened or has no positions to go to.
 void CheckRegularFile(const std::string& file);
 
-/// Runs a library that reads a file. There is a sentence if the library crashes over the file, asks for more memory
-/// than there is, or says that it failed; after errors VTK would go on with arrays of zeros.
+/// Runs a library that reads a file. The user gets a sentence if the library crashes over the file, asks for too much
+/// memory, or reports an error, after which VTK would go on with arrays of zeros.
 void ReadWithCare(const std::string& file, const std::function<void()>& read);
 
-/// Files of VTK. Its readers ask for memory, and go round in loops, by the counts that a file
-/// declares: one below 0, or greater than a file of its size can hold, means that it is damaged.
+/// Files of VTK. Its readers use the counts that a file declares for memory and loops. A count
+/// below 0, or greater than a file of its size can hold, means that the file is damaged.
 ///@{
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
@@ -38,13 +38,13 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
 struct CollectionEntry
 {
   double Time;
-  std::string File; ///< a name that can be opened from the working directory; in the file it is relative to the .pvd
-                    ///< file
+  std::string File; ///< a name that can be opened from the working directory; the .pvd file has
+                    ///< it relative to itself
   std::string Part; ///< the part's name in the list; empty: none
 };
 
-/// Reads the entries in the order of time. Entries of the same time keep the order of the file. A file counts once, and
-/// of a part that occurs twice the last entry counts. `warnings` gets sentences.
+/// Reads the entries in the order of time; entries of the same time keep the order of the file. A file counts once. If
+/// a part occurs twice, its last entry counts. `warnings` gets sentences.
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings);
 
@@ -61,8 +61,9 @@ std::vector<double> ListTimesInText(const std::string& file);
 /// Reads the vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
 vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);
 
-/// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins like one, the files of its
-/// snapshot, its time, and the gas in one file. SmoothingLength is half of GADGET's, which is the support radius.
+/// Snapshots of GADGET's binary formats 1 and 2, of any name. These return whether a file begins like one, the files of
+/// its snapshot, its time, and the gas in one file. GADGET's smoothing length is the support radius; SmoothingLength is
+/// half of it.
 bool IsGadget(const std::string& file);
 std::vector<std::string> ListGadget(const std::string& file);
 std::vector<double> ListTimesOfGadget(const std::string& file);

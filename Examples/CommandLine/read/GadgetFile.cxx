@@ -24,8 +24,8 @@
 namespace
 {
 
-/// An array's names in the formats, its name here, and its number of columns. All types have the
-/// first arrays; only gas has the others.
+/// An array's names in the formats, its name here, and its number of columns. All types of
+/// particles have the first arrays; only gas has the others.
 struct Known
 {
   const char* Label;
@@ -43,7 +43,7 @@ const Known Arrays[] = { { "POS ", "Points", 3, true }, { "VEL ", "Velocities", 
 constexpr std::size_t HeaderSize = 256;
 
 /// One file of a snapshot: records of Fortran, each between two copies of its number of bytes. In
-/// format 2 one with a label is before each array; in format 1 their order tells.
+/// format 2, a record with a label comes before each array; in format 1, the order tells arrays.
 class File
 {
 public:
@@ -224,7 +224,7 @@ private:
     this->Stream.read(static_cast<char*>(to), static_cast<std::streamsize>(count * width));
     this->Order(to, count, width);
     array->SetName(known.Name);
-    if (&known == Arrays) // the type of positions
+    if (&known == Arrays) // this array is the positions
     {
       gas->SetPoints(vtkNew<vtkPoints>());
       gas->GetPoints()->SetData(array);

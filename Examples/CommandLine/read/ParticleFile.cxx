@@ -48,7 +48,7 @@ std::set<std::pair<dev_t, ino_t>>& Sources()
   return sources;
 }
 
-/// All that is known of a format.
+/// The functions that read a format.
 struct Kind
 {
   vtkSmartPointer<vtkDataObject> (*Read)(const std::string& file, std::size_t step);
@@ -88,8 +88,8 @@ void RefuseStep(File file, std::size_t step)
   }
 }
 
-/// Returns the time of the list itself or, if it has none, of its first piece; all pieces are of
-/// one time.
+/// Returns the time of the list itself or, if it has none, of its first piece; all pieces have the
+/// same time.
 std::vector<double> ListTimesOfPieces(const std::string& file)
 {
   const std::vector<double> times = ListTimesOfVtk(file);
@@ -128,7 +128,7 @@ const Formats DataFormats = {
   { ".obj", { ReadSurface } },
 };
 
-/// Files that are known by their beginning, whatever their names end in.
+/// The format of files that are recognized by their first bytes, not by their names.
 const Kind Gadget = { ReadGadget, ListTimesOfGadget, ListGadget };
 
 /// Finds how a file is read; null if it has none of these formats.
@@ -156,9 +156,9 @@ Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step 
   return data;
 }
 
-/// Checks arrays of one kind, of this many elements, and makes their names fit for sentences and
-/// for the surface's file: a legacy file can hold bytes that these cannot. Throws
-/// std::runtime_error.
+/// Checks that arrays have `count` elements, and makes their names fit for sentences and for the
+/// surface's file: a legacy file can hold bytes that these cannot. kind: the elements, in words.
+/// Throws std::runtime_error.
 void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
@@ -209,8 +209,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns only the points' arrays, which are all that is used: without cells (one per particle,
-/// for nothing), and without anything unchecked.
+/// Returns the points and their arrays, without cells (one per particle, for nothing) and without
+/// anything else, which is unused and unchecked.
 vtkSmartPointer<vtkPointSet> TakeParticles(
   const std::string& file, vtkPointSet* all, bool haveVertices)
 {
@@ -220,7 +220,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
-  static bool isSaid = false; // said once, with the first of a film's steps
+  static bool isSaid = false; // the note is printed once, with the first step of a film
   if (others > 0 && !isSaid)
   {
     isSaid = true;
@@ -258,7 +258,7 @@ std::pair<std::string, std::size_t> StepOf(const std::string& name)
     : std::make_pair(name, 0ull);
 }
 
-/// Adds what a file holds, unless it has no points. Throws std::runtime_error.
+/// Adds the data of a file, unless they have no points. Throws std::runtime_error.
 void ReadSet(const std::string& name, ParticleSets& sets)
 {
   const auto [file, step] = StepOf(name);
@@ -278,7 +278,7 @@ void ReadSet(const std::string& name, ParticleSets& sets)
     sets.Sets.emplace_back(points);
     if (haveVertices)
     {
-      sets.Sets.back() = TakeParticles(file, points, true); // these need not be kept
+      sets.Sets.back() = TakeParticles(file, points, true); // cells need not be kept
     }
   }
 }

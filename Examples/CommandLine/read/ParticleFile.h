@@ -22,44 +22,44 @@ std::string ParticleFileEndings();
 /// name is read as the numbers of these words, from 1 on, and 0 for all others.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
-/// Reads particles and their arrays from files that each hold a part of them. Arrays that are not
-/// in all of them are left out, and so are particles that a part marks as another one's
-/// (vtkGhostType). Throws std::runtime_error with one sentence if a file cannot be read, is
-/// damaged, or there are no points, which a step of a film may lack; where VTK's reader crashes
-/// over it, the program ends with a sentence. Names of arrays are made fit to print.
+/// Reads particles and their arrays from files that each hold a part of them. Leaves out arrays
+/// that some files lack, and particles that a part marks as another part's (vtkGhostType). Throws
+/// std::runtime_error with one sentence if a file cannot be read or is damaged, or if there are no
+/// points, unless `mayBeEmpty`. If VTK's reader crashes over a file, the program ends with a
+/// sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, bool mayBeEmpty = false);
 
-/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ... where there
-/// are several; none where it tells of none. Of FILE#2 that is one time. Throws std::runtime_error.
+/// Lists the times of the steps in a file; empty if the file tells no times. The steps can be read
+/// as FILE#0, FILE#1, ...; for such a name, lists only this step's time. Throws std::runtime_error.
 std::vector<double> ListTimes(const std::string& name);
 
-/// Returns the time between steps that all of these files store as `dt`; 0: they store none, or differ.
+/// Returns the time between steps that these files store as `dt`; 0: a file has none, or they differ.
 double StoredTimeStep(const std::vector<std::string>& files);
 
 /// Reads the particles that --walls names, as one set; null: none. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
-/// Opens these files, and those that hold their parts, before they are read, so that IsSource() knows
-/// them. What is wrong with one is told where it is read.
+/// Opens these files, and the files of their parts, before they are read, so that IsSource() knows
+/// them. Errors are reported later, when a file is read.
 void OpenSources(const std::vector<std::string>& files);
 
-/// Whether this is a file that the run has opened to read: by its device and inode, whatever its name
-/// is. Every writer asks.
+/// Whether the run has opened this file to read it. Device and inode decide, not the name. Every
+/// writer asks this.
 bool IsSource(const struct stat& file);
 
-/// Particles that files hold at one time. Where any of the data have vertices, points of meshes
-/// without vertices are no particles, so cells are kept until all is read.
+/// Particles of files at one time. If any of the data have vertices, points of meshes without
+/// vertices are no particles, so cells are kept until all data are read.
 struct ParticleSets
 {
   std::vector<std::string> Files;
-  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< empty: a step without particles is refused
+  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< the data of each file that has points
   bool HaveVertices = false;
   bool IsList = false; ///< pieces may hold copies of other pieces' particles
 };
 
-/// The part that this one of `count` processes reads: some pieces of a file that lists pieces, those
-/// behind the pieces of the processes before it; another file is the first one's.
+/// Reads the part of process `rank` of `count`: its share of the pieces of a file that lists pieces,
+/// in order. The first process reads any other file.
 ParticleSets ReadParticlesPart(const std::string& file, int rank, int count);
 
 /// Returns the particles, which may be none.
@@ -72,23 +72,23 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 /// that a part marks as copies of another part's ("vtkGhostType").
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts);
 
-/// The array that AddWalls() makes: 0 for fluid, 1 for walls.
+/// Name of the array that AddWalls() makes: 0 for fluid, 1 for walls.
 extern const char* const WallArrayName;
 
-/// The fluid, followed by the walls; the fluid itself where `walls` is null. It keeps the fluid's
-/// arrays of numbers. One that walls lack has the fluid's median there: solids take part in no
-/// field, so only the smoothing length, and what volumes are made of, count. Throws
+/// Returns the fluid, followed by the walls; the fluid itself if `walls` is null. Keeps the fluid's
+/// arrays of numbers. If walls lack an array, they get the fluid's median: only the smoothing
+/// length and the arrays that give volumes matter for solids, which take part in no field. Throws
 /// std::runtime_error.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
-/// The period for "--periodic auto", if one was found without a problem. Throws std::runtime_error where nothing was.
+/// Returns the period for "--periodic auto". Throws std::runtime_error if none was found, or with the problem.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
-/// Returns a hint if --periodic is not given and there is a period, else "".
+/// Returns a hint if --periodic is not given although the data tell a period, else "".
 std::string HintOfPeriod(vtkDataObject* particles);
 
-/// Returns the text of --list-arrays: a line for each array of the particles, and one for each thing that a run would
-/// find.
+/// Returns the text of --list-arrays: a line for each array of the particles, and a line for each thing that a run
+/// would find.
 std::string DescribeArrays(vtkPointSet& particles);
 
 #endif

@@ -51,7 +51,7 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   return own;
 }
 
-/// Returns each component's median; 0 for marks of copies, because walls are none.
+/// Returns each component's median; 0 for vtkGhostType, because walls are not copies.
 std::vector<double> Median(vtkDataArray* array)
 {
   std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
@@ -73,7 +73,7 @@ std::vector<double> Median(vtkDataArray* array)
   return median;
 }
 
-/// Joins both, one after the other, in the fluid's type.
+/// Joins both arrays, the fluid's first, in the fluid's type.
 vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
 {
   const vtkIdType count = fluid->GetNumberOfTuples();

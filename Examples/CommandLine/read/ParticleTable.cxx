@@ -60,7 +60,7 @@ std::vector<View> WordsOf(View comment)
   return words;
 }
 
-/// Reads rows of values behind a row of names, which may be a comment.
+/// Reads rows of values below a row of names, which may be a comment.
 vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
 {
   constexpr std::size_t mostColumns = 10000;
@@ -109,7 +109,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     FailToRead(file, "it has no row of values");
   }
   std::vector<std::size_t> positions = FindPositions(file, table);
-  // otherwise names must tell
+  // Without names, the first three columns are positions, but only between blanks.
   const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0;
   for (std::size_t c = 0; c < std::min(first, table.size()) && positions.size() == c; ++c)
   {
@@ -136,8 +136,8 @@ vtkTypeInt64 CountOf(View line)
   return ToInteger(Trimmed(line), count) ? count : -1;
 }
 
-/// The texts behind KEY= in the second line of extended XYZ, with or without quotes, by the keys in
-/// small letters.
+/// Returns the texts behind KEY= in the second line of extended XYZ, with or without quotes, by the
+/// keys in small letters.
 std::map<std::string, std::string> ValuesOf(View comment)
 {
   std::map<std::string, std::string> values;
@@ -170,7 +170,7 @@ std::vector<double> NumbersOf(View text)
   return numbers;
 }
 
-/// Columns by the names, types and widths in Properties=species:S:1:pos:R:3:...
+/// Returns names of columns from the names, types and widths in Properties=species:S:1:pos:R:3:...
 std::vector<std::string> PropertiesOf(const std::string& file, const std::string& text)
 {
   std::vector<std::string> names;
@@ -193,15 +193,15 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
   return names;
 }
 
-/// One of several steps in a file: what comes before its particles.
+/// What a file says of one of its steps, before the step's particles.
 struct Step
 {
   vtkTypeInt64 Count = 0;
-  std::vector<std::string> Names; ///< empty: as many as the first row has values
+  std::vector<std::string> Names; ///< empty: the first row decides how many there are
   std::vector<double> Cell;       ///< the cell's three sides, as vectors; empty: it has none
   std::array<double, 3> Origin = {};
   std::array<bool, 3> Periodic = {};
-  double Time = std::numeric_limits<double>::quiet_NaN(); ///< if the file gives it
+  double Time = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not given
 };
 
 /// Goes to the next step; its particles are still to be read. Returns false if there is none.
@@ -324,7 +324,7 @@ void ReadBox(Lines& lines, std::vector<View> words, Step& step)
 bool FindDumpStep(Lines& lines, Step& step)
 {
   step = {};
-  bool isTold = false; // the time has its own unit
+  bool isTold = false; // whether TIME has given the time
   bool hasBegun = false;
   while (lines.Next())
   {
@@ -380,8 +380,8 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// Returns the columns of a step's positions: as they are, unwrapped, or in units of the cell's
-/// sides, which are multiplied out.
+/// Returns the columns of a step's positions: x, unwrapped xu, or xs and xsu, which are multiplied
+/// by the cell's sides first.
 std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, const Step& step)
 {
   for (const char* kind : { "u", "s", "su" })
@@ -412,8 +412,8 @@ std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, cons
   return FindPositions(file, table);
 }
 
-/// Field data of the cell: six bounds, 0 where an axis has no period; or, where a side with a period
-/// is tilted, the cell itself, which vtkSPHFindPeriod() does not take for a period.
+/// Returns the cell for the field data: six bounds, 0 for axes without a period; or, if a side with a
+/// period is tilted, the cell itself, which vtkSPHFindPeriod() does not take as a period.
 std::vector<double> PeriodOf(const Step& step)
 {
   std::vector<double> period(6);
@@ -440,7 +440,7 @@ StepFinder FinderOf(const std::string& file)
 {
   Lines lines(file);
   const View first = lines.Next() ? lines.Get() : View();
-  // and it is not a table of positions
+  // A count of particles stands in the first line of such a file, but not of a table.
   const bool isCounted = EndsWith(file, "xyz") && CountOf(first) >= 0;
   return StartsWith(first, "ITEM:") || EndsWith(file, ".lammpstrj") || EndsWith(file, ".dump")
     ? FindDumpStep
@@ -448,8 +448,8 @@ StepFinder FinderOf(const std::string& file)
                 : nullptr;
 }
 
-/// Where steps begin, as ListTimesInText() has found them in a file of this size: a film does not
-/// go through all steps before each.
+/// Where steps begin, as ListTimesInText() has found in a file of this size. A film therefore need
+/// not go through all earlier steps to read one.
 struct Steps
 {
   std::uintmax_t Size = 0;
@@ -498,7 +498,7 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   const bool beginsStep = cells.empty() ||
     (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(cells[0], "ITEM:"));
-  // Other lines behind later steps are told of the next one.
+  // Other lines behind later steps are reported when the next step is read.
   if (!beginsStep && (number == 0 || cells.size() == table.size()))
   {
     FailToRead(file,
@@ -538,7 +538,7 @@ std::vector<double> ListTimesInText(const std::string& file)
   const StepFinder find = FinderOf(file);
   Lines lines(file);
   Step step;
-  std::error_code error; // this is said when the file is read
+  std::error_code error; // it is reported when the file is read
   Steps known = { std::filesystem::file_size(file, error), {} };
   try
   {
@@ -563,7 +563,7 @@ std::vector<double> ListTimesInText(const std::string& file)
     {
       throw;
     }
-    // The steps before this one are good; what is wrong with this one is said when it is read.
+    // The steps before this one are good; its error is reported when the step is read.
     times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
   KnownSteps[file] = known;

@@ -16,11 +16,11 @@
 namespace
 {
 
-/// How a number of a property lies in the file.
+/// How a type of numbers is stored in the file.
 struct NumberKind
 {
   std::size_t Size;
-  double (*Read)(const char* bytes); ///< in this machine's order
+  double (*Read)(const char* bytes); ///< bytes in this machine's order
   bool IsWhole;
 };
 
@@ -56,7 +56,7 @@ const std::map<std::string, NumberKind> NumberKinds = {
   { "float64", KindOf<double>() },
 };
 
-/// Reads the vertices, or skips the elements before them.
+/// An element of the head, such as the vertices, with its properties.
 struct Element
 {
   std::string Name;

@@ -144,7 +144,7 @@ void Column::Add(View cell)
   {
     this->Words.emplace_back(cell);
   }
-  // One word among numbers is no number; a column of words has words from its beginning on.
+  // A single word among numbers becomes NaN; a column of words begins with a word.
   this->Numbers.push_back(isNumber ? number : std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -298,8 +298,8 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   const bool isIdentifier = columns.size() == 1 && vtkSPHTellsApart(first.Name.c_str());
   if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
-    return ArrayWith<vtkTypeInt64Array>(first.Whole); // such an array tells particles, or kinds,
-                                                      // apart
+    return ArrayWith<vtkTypeInt64Array>(first.Whole); // such an array tells particles or kinds of
+                                                      // particles apart
   }
   if (isIdentifier && areLarge)
   {
@@ -408,7 +408,7 @@ std::vector<std::string> NamesOf(const std::vector<View>& cells)
   {
     const std::size_t bracket = cell.find(" (");
     const View inside = bracket == View::npos ? View() : cell.substr(bracket + 2);
-    const bool isUnit = // and no component, as in "v (x)"
+    const bool isUnit = // not a component, as in "v (x)"
       inside.size() != 2 || View("012345678xyzXYZ").find(inside[0]) == View::npos;
     std::string name(
       Trimmed(cell.substr(0, std::min(cell.find(" ["), isUnit ? bracket : View::npos))));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/// Tables in text files: lines, their cells, columns, and the particles that these are.
+/// Tables in text files: lines, their cells, columns, and the particles that the columns describe.
 #ifndef TextTable_h
 #define TextTable_h
 
@@ -19,13 +19,12 @@ using View = std::string_view;
 View Trimmed(View text);
 std::string Small(View text);
 
-/// Reads a number as tables have it: perhaps with a leading plus, Fortran's D, or a decimal comma;
-/// nan, inf.
+/// Reads a number as tables have it: also with a leading plus, Fortran's D, or a decimal comma, and
+/// nan and inf.
 bool ToNumber(View text, double& value);
 bool ToInteger(View text, vtkTypeInt64& value);
 
-/// The cells of a line: between separators, of which blanks count as one, unless they are in
-/// quotes.
+/// Splits a line at the separators that are not in quotes; several blanks are one separator.
 void Split(View line, char separator, std::vector<View>& cells);
 
 /// The lines of a file, one at a time.
@@ -41,7 +40,7 @@ public:
   /// Reads the next line. Returns false at the end.
   bool Next();
 
-  /// Reads the next line, which holds this; fails at the end.
+  /// Reads the next line. Fails at the end; `what` tells the user what the line should hold.
   void Need(const char* what);
 
   /// Where the next line begins.
@@ -88,14 +87,14 @@ using Table = std::vector<Column>;
 Table TableOf(const std::vector<std::string>& names);
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// Returns those of the columns x, y and z, with these letters behind the names, that exist.
+/// Returns the columns x, y and z, with these letters behind the names, as far as they exist.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
-/// The columns of positions; none where no name tells. Fails where some of x, y and z are there and
-/// others are not, unless these two are the whole table.
+/// Finds the columns of positions by their names; none if no name tells. Fails if only some of x, y
+/// and z exist, unless two of them are the whole table.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
-/// `positions`: the columns of positions; if there are none, names tell them.
+/// Makes particles of a table. positions: their columns; if empty, names tell them.
 vtkSmartPointer<vtkPolyData> ParticlesOf(
   const std::string& file, const Table& table, std::vector<std::size_t> positions);
 

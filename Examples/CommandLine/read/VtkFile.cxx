@@ -102,12 +102,12 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Counts are attributes of tags: of pieces, and of their arrays, which have so many numbers for
-/// each point or cell.
+/// Checks an XML file. Counts are attributes of tags: of pieces, and of their arrays, where they
+/// say how many numbers each point or cell has.
 void CheckXmlSizes(const std::string& file, View text)
 {
   const bool isPacked = text.substr(0, 1000).find("compressor") != View::npos;
-  // Eight bits a byte; of all that VTK reads, LZMA packs zeros closest, 7,000 to 1.
+  // A byte has eight bits. LZMA packs best of all that VTK reads: 7,000 zeros into a byte.
   const double most = static_cast<double>(text.size()) * (isPacked ? 1e4 : 8.0);
   double elements = 0.0;
   for (std::size_t begin = 0; (begin = text.find('<', begin)) != View::npos;)
@@ -146,8 +146,8 @@ void CheckXmlSizes(const std::string& file, View text)
   }
 }
 
-/// An appended data section that ends too early is read as far as it goes, in silence, and the rest
-/// of the arrays keeps whatever memory held.
+/// Checks that an XML file is complete. VTK reads appended data that end too early without an
+/// error, and the rest of the arrays then has random values.
 void CheckXml(const std::string& file, View text)
 {
   CheckXmlSizes(file, text);
@@ -183,7 +183,7 @@ bool AreDigits(View word)
   return !word.empty() && word.find_first_not_of("0123456789") == View::npos;
 }
 
-/// Whether so many whole numbers stand at the beginning of the text.
+/// Whether the text begins with `count` whole numbers.
 bool BeginsWithNumbers(View text, double count)
 {
   const char* const blanks = " \t\r\n";
@@ -200,8 +200,8 @@ bool BeginsWithNumbers(View text, double count)
   return true;
 }
 
-/// Counts stand behind words at the beginning of a line, and those of attributes in a line before
-/// them. The arrays of a field have lines with a name, two counts and a type.
+/// Checks a legacy file. A line with counts begins with a word; attributes get their count from an
+/// earlier line. The arrays of a field have lines with a name, two counts and a type.
 void CheckLegacy(const std::string& file, View text)
 {
   static const std::set<std::string> counted = { "points", "vertices", "lines", "polygons",
@@ -209,7 +209,7 @@ void CheckLegacy(const std::string& file, View text)
     "field", "lookup_table" };
   static const std::set<std::string> cells = { "vertices", "lines", "polygons", "triangle_strips",
     "cells" };
-  // VTK's reader crashes over other words in the place of these.
+  // VTK's reader crashes if other words stand where a type must stand.
   static const std::set<std::string> types = { "bit", "char", "signed_char", "unsigned_char", "short",
     "unsigned_short", "int", "unsigned_int", "long", "unsigned_long", "vtkidtype", "vtktypeint64",
     "vtktypeuint64", "float", "double", "string", "utf8_string", "variant" };
@@ -219,7 +219,7 @@ void CheckLegacy(const std::string& file, View text)
   std::string section = "point_data"; // elements that have the attributes
   double elements = 0.0;              // values of each element
   const bool isText = text.substr(0, 600).find("\nASCII") != View::npos;
-  const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // any words
+  const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // a title of any words
   for (std::size_t begin = text.find('\n', title), end = 0; begin < text.size(); begin = end + 1)
   {
     end = std::min(text.find('\n', begin), text.size());
@@ -255,7 +255,7 @@ void CheckLegacy(const std::string& file, View text)
     const bool hasAttribute = attributes.count(first) > 0;
     for (const double number : numbers)
     {
-      if (isSection || first == "dimensions") // points of an image, which may have no values
+      if (isSection || first == "dimensions") // an image may have no values
       {
         CheckSize(file, most, first, std::min(number, 0.0));
       }
@@ -286,10 +286,9 @@ void CheckLegacy(const std::string& file, View text)
 
 // Reading.
 
-/// Expat puts off the parsing of what may be an incomplete token, since 2.6 and in the security
-/// updates of older ones. VTK's parser, where it does not know this yet (ParaView 5.11 of Debian
-/// 12), then overlooks the place where XML ends and appended data begin, and cannot read such
-/// files.
+/// Expat delays the parsing of a token that may be incomplete, since version 2.6 and in security
+/// updates of older versions. A VTK that does not know this yet (ParaView 5.11 of Debian 12) then
+/// overlooks the place where XML ends and appended data begin, and cannot read such files.
 class PromptParser : public vtkXMLDataParser
 {
 public:
@@ -344,11 +343,11 @@ const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = 
 
 // Times.
 
-/// An empty data set with the field data of a file's beginning, as text, in the file's own format:
-/// VTK's readers read them alone.
+/// Returns the text of an empty data set that has the field data of a file's beginning, in the
+/// file's own format, so that VTK's reader can read the field data alone.
 std::string FieldOfXml(const std::string& head)
 {
-  // A search from npos on finds nothing, so that `close` tells of all before it.
+  // A search from npos on finds nothing, so `close` is npos if any search failed.
   const std::size_t tag = head.find("<VTKFile"), type = head.find("type=", tag);
   const std::size_t tagEnd = head.find('>', tag), begin = head.find("<FieldData", tagEnd);
   const std::size_t close = head.find("</FieldData>", begin);
@@ -419,7 +418,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
 
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names)
 {
-  std::string head(1 << 16, '\0'); // field data behind the particles are not looked at
+  std::string head(1 << 16, '\0'); // field data behind the particles are ignored
   std::ifstream stream(file, std::ios::binary);
   stream.read(&head[0], static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
@@ -460,7 +459,7 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
     // A fault is reported when the whole file is read.
   }
   Messages() = {};
-  // Field data at the end of an XML file have the least and greatest value at its beginning.
+  // If an XML file has field data at its end, its beginning has their least and greatest value.
   for (std::size_t i = 0; i < names.size() && number.empty(); ++i)
   {
     const std::size_t at = text.find("Name=\"" + names[i] + "\"");

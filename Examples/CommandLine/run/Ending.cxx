@@ -26,7 +26,7 @@ namespace
 /// People and batch systems send these to end a program.
 const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
 
-/// Ending signals, and those that were not ignored at the start, as hangups are under nohup.
+/// All ending signals; and the ones not ignored at the start. Under nohup, hangups are ignored.
 sigset_t All, Awaited;
 
 void FindAwaited()
@@ -58,7 +58,7 @@ char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // after a recursion without end, the usual stack is full
 volatile std::sig_atomic_t ClearsLine = 0;
-volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< even if Silence has replaced it
+volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< the true one, also during Silence
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
@@ -103,8 +103,8 @@ void EndByCrash(int number)
   _exit(1);
 }
 
-/// Waits for a signal. The program ends as by that itself, so that a shell or a batch system sees
-/// it.
+/// Waits for a signal. The program then ends as if by the signal itself, so that a shell or a batch
+/// system sees the signal.
 [[noreturn]] void EndBySignal()
 {
   int number = 0;
@@ -137,19 +137,19 @@ void KeepWatchOfCrashes()
   {
     sigaction(number, &action, nullptr);
   }
-  std::set_terminate(std::abort); // and writes no more lines
+  std::set_terminate(std::abort); // this writes no more lines
 }
 
 void PrepareForEnding()
 {
   ClearsLine = isatty(STDERR_FILENO);
-  // Writing fails then, which is told, where the signal would end the program in silence.
+  // Writing then fails with a message; these signals would end the program in silence.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   KeepWatchOfCrashes();
   // All later threads leave these signals to one thread that waits for them: it may lock and
-  // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes
-  // them, and its handler unblocks all others.
+  // allocate. Ignored signals are blocked, too, and never awaited: LLVM, which PoCL brings, handles
+  // them, and its handler unblocks all other signals.
   pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try
   {
@@ -253,7 +253,7 @@ bool TemporaryFile::Close()
 
 bool TemporaryFile::TakePlaceOf(const std::string& file)
 {
-  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not while the lock is held, because
+  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // before the lock is taken, because
                                                           // this may hang
   {
     return false;

@@ -14,11 +14,11 @@ void PrepareForEnding();
 /// own.
 void KeepWatchOfCrashes();
 
-/// Names possible causes of a crash. A file that PoCL has kept half-written makes it crash whenever
-/// it loads that. Its folder is named if there is one and `device` does not name the built-in one.
+/// Names possible causes of a crash. If PoCL has kept a half-written file, it crashes whenever it
+/// loads this file. Names the folder of such files if it exists, unless `device` is the built-in one.
 std::string FaultsOfDrivers(const std::string& device);
 
-/// The sentence if the program crashes while this object lives: "FAILURE: ...; HINT".
+/// Sets the sentence for a crash while this object lives: "FAILURE: ...; HINT".
 class Activity
 {
 public:
@@ -32,8 +32,8 @@ private:
   std::string OuterHint;
 };
 
-/// While one lives, nothing but the program's own sentence about a crash reaches standard error:
-/// libraries write there what they think of a damaged file.
+/// While such an object lives, only the program's own sentence about a crash reaches standard
+/// error, where libraries would write messages about a damaged file.
 class Silence
 {
 public:
@@ -43,12 +43,12 @@ public:
   void operator=(const Silence&) = delete;
 };
 
-/// A new file that nobody could name before, and that goes away with the object or the program
-/// unless it takes the place of another one.
+/// A new file with an unpredictable name. It is removed with the object, or when the program ends,
+/// unless it takes the place of another file.
 class TemporaryFile
 {
 public:
-  /// Makes a file named `begin` and six more characters. If that fails, errno tells why.
+  /// Makes a file named `begin` and six more characters. If this fails, errno tells why.
   explicit TemporaryFile(const std::string& begin);
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
@@ -56,7 +56,7 @@ public:
 
   int GetDescriptor() const { return this->Descriptor; } ///< below 0: there is no file
 
-  /// Returns false, and sets errno, if the written bytes could not be kept.
+  /// Returns false, and sets errno, if the written bytes were not stored.
   bool Close();
   bool TakePlaceOf(const std::string& file);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The field in place of a surface: at points, and along lines of sight.
+// Runs that give the field, not a surface: at points, and along lines of sight.
 #include "ColorScale.h"
 #include "DataFile.h"
 #include "Extra.h"
@@ -81,7 +81,7 @@ vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
   return line;
 }
 
-/// Points of a slice or a line, which needs the bounds of all particles.
+/// Makes the points of a line, or of a slice, which spans the bounds of all particles.
 vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
   if (job.Slice.Axis < 0)
@@ -258,8 +258,8 @@ private:
       });
   }
 
-  /// Adds a row for each point. The columns are those of the first step; a value is empty where there is
-  /// no fluid, or no such array.
+  /// Adds a row for each point. The first step decides on the columns. A value is empty if there is
+  /// no fluid at the point, or no such array.
   void AddRows(double time, vtkDataSet* points)
   {
     vtkPointData* arrays = points->GetPointData();
@@ -302,7 +302,7 @@ private:
   }
 
   static constexpr const char* MaskName = "vtkValidPointMask";
-  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< other columns have none
+  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< empty on other processes
   std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
 };
 
@@ -319,7 +319,7 @@ void MakeField(Sharing& sharing)
   const bool isProbe = job.IsProbe();
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // other files have none
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // empty on other processes
   sharing.OnFirst(
     [&]
     {

@@ -32,7 +32,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// "film.pvd" -> "film_0000.vtp", ...; "film_%04d.ply" -> "film_0000.ply", ...
+/// Lists the files of the steps: film_0000.vtp, ... for film.pvd; film_0000.ply, ... for film_%04d.ply.
 std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
 {
   const std::string& output = job.Output;
@@ -51,8 +51,8 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// Makes the image of a step in which no particle is seen, in the place of another one: 0, or no number
-/// where it is a mean.
+/// Makes the image of a step in which no particle is seen, at the place of another image. Its values
+/// are 0; of a mean, NaN.
 vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
 {
   auto empty = vtkSmartPointer<vtkImageData>::New();
@@ -102,8 +102,8 @@ public:
         {
           throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
         }
-        // Nobody has named the files beside a .pvd file, so each must be new, or a step of an older
-        // film.
+        // The user has not named the files beside a .pvd file, so each must be new, or a step of an
+        // older film.
         for (const std::string& surface : this->Surfaces)
         {
           std::error_code error;
@@ -126,7 +126,7 @@ public:
     this->Shared.OnFirst(
       [this]
       {
-        if (!this->Waiting.empty()) // and so at all times
+        if (!this->Waiting.empty()) // all steps wait: no particle was seen
         {
           SeenImage(this->Options);
         }
@@ -249,7 +249,7 @@ private:
     warnings.insert(warnings.end(), run.Warnings.begin(), run.Warnings.end());
   }
 
-  /// Writes the step's file and picture: both or none.
+  /// Writes the step's file and picture: both or neither.
   void Write(std::size_t i, const std::string& bytes,
     const std::function<std::string(const std::string& frame)>& draw)
   {
@@ -310,14 +310,14 @@ private:
   std::string Pieces, Numbers; ///< tables
   GrowingFile ListFile, PieceFile, NumberFile;
   std::unique_ptr<Picture> Drawn; ///< used if pictures are wanted
-  vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid, once its place is known
-  std::vector<std::pair<std::size_t, double>> Waiting; ///< steps before, and their seconds
+  vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid; null: no place known
+  std::vector<std::pair<std::size_t, double>> Waiting; ///< steps without a known place, and seconds
 };
 
 }
 
 bool MakeFilm(Sharing& sharing)
 {
-  sharing.Options.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
+  sharing.Options.Surface->KeepDeviceDataOn(); // the next step uses this step's buffers
   return Film(sharing).Make();
 }

@@ -27,7 +27,7 @@ std::string Sentence(const char* text)
   }
   if (message.find(" returned failure for request: ") != std::string::npos)
   {
-    message = "VTK's reader gave up"; // the message says no more, and has a page of addresses
+    message = "VTK's reader gave up"; // the message has only a page of addresses
   }
   std::replace(message.begin(), message.end(), '\n', ' ');
   std::replace(message.begin(), message.end(), '\r', ' ');
@@ -54,8 +54,8 @@ public:
   void DisplayErrorText(const char* text) override
   {
     const std::string sentence = Sentence(text);
-    // An array's range is passed over, in which VTK writes inf and cannot read it: arrays are
-    // checked when used. So are files without points, as VTK writes them.
+    // Two errors are ignored: VTK writes inf in the range of an array, and cannot read it (arrays
+    // are checked when they are used); and VTK cannot read files that it wrote without points.
     if (sentence.find("reading InformationKey element") == std::string::npos &&
       sentence.find("No Points element available") == std::string::npos)
     {

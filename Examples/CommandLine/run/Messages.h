@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-/// VTK's messages, which are kept instead of printed: one failure makes VTK report several times,
-/// over many lines, with source files and addresses, where the user needs one sentence.
+/// VTK's messages, which are kept instead of printed: for one failure, VTK prints several messages
+/// of many lines, with source files and addresses, but the user needs one sentence.
 struct KeptMessages
 {
   std::vector<std::string> Errors, Warnings; ///< sentences without file, line and address
 
-  /// Throws std::runtime_error with `error`, or with the first one that was reported, if any.
+  /// Throws std::runtime_error with `error` or, if it is empty, with the first kept error, if any.
   void Check(const std::string& error = "") const;
 };
 
-/// Returns the messages since they were last emptied. VTK has one window for all objects: from the
-/// first use on, all messages come here.
+/// Returns the messages since they were last emptied. VTK has one window for all objects: after the
+/// first call of this, all messages come here.
 KeptMessages& Messages();
 
 #endif

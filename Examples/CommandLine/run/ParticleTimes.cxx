@@ -48,7 +48,7 @@ Steps::const_iterator FindStep(const Steps& steps, double time)
     [](const ParticleTimes::Step& step, double t) { return step.Time < t; });
 }
 
-/// Steps of a .pvd file.
+/// Lists the steps of a .pvd file.
 Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
 {
   Steps steps;
@@ -63,8 +63,8 @@ Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
   return steps;
 }
 
-/// A file's name as what stands between numbers, and these: without zeros in front, each behind its
-/// number of digits, so that they compare as numbers do.
+/// A file's name, divided into the text between numbers, and the numbers: each one's count of digits
+/// and its digits, without zeros in front, so that they are ordered as numbers are.
 using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
 
 NumberedName Numbered(const std::string& name)
@@ -90,7 +90,7 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Returns the number of 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
+/// Rounds to 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
 double Rounded(double time)
 {
   std::ostringstream digits;
@@ -100,12 +100,12 @@ double Rounded(double time)
   return time;
 }
 
-/// Steps of files given one by one, at the times that the files tell of. isTold: whether they do, or
-/// --time-step does. storedStep: the time between steps that the files store instead; 0: they store none.
+/// Lists the steps of files given one by one. isTold: whether the files, or --time-step, tell the
+/// times. storedStep: the time between steps, if the files only store this; else 0.
 Steps GivenSteps(
   const Job& job, std::vector<std::string>& warnings, bool& isTold, double& storedStep)
 {
-  // If names differ in numbers alone, these tell the order: shells list tank_10 before tank_9.
+  // If names differ only in numbers, the numbers tell the order: shells list tank_10 before tank_9.
   std::vector<std::string> inputs = job.Inputs;
   const std::string words = Numbered(inputs.front()).first;
   if (std::all_of(inputs.begin(), inputs.end(),
@@ -157,8 +157,8 @@ Steps GivenSteps(
   return steps;
 }
 
-/// Adds the walls of a file to steps: to all, or to each those that have its number, or, from a .pvd
-/// file, those of its time (where steps are in a list without times, in its order).
+/// Adds the walls of a file to all steps. For a name with %d, each step gets the file of its number;
+/// of a .pvd file, each gets the walls of its time, or, if steps have no times, the next ones.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {
@@ -202,7 +202,7 @@ void AddStepWalls(
   }
 }
 
-/// Returns the stored times, or the times that were asked for.
+/// Returns the times that the user asks for; by default, the stored times.
 std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
@@ -246,8 +246,7 @@ std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 
 }
 
-/// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked
-/// for.
+/// The stored steps of a film, for VTK's pipeline: reads the particles at the requested time.
 class StoredSteps : public vtkPolyDataAlgorithm
 {
 public:
@@ -468,7 +467,7 @@ bool Series::MakeAll()
       Say("warning: " + untold);
     }
   }
-  std::map<std::string, int> counts; // sentences that were said already, with the first step
+  std::map<std::string, int> counts; // how often each warning came; only its first is printed
   for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
   {
     const std::string label = this->Label(i);

@@ -12,11 +12,10 @@
 class StoredSteps;
 class vtkSPHTemporalInterpolator;
 
-/// Returns a number near the time with as few digits as it was given with.
+/// Returns the time as text, with as few digits as it was given with.
 std::string TimeText(double time);
 
-/// The particles of a series at the times that it stores, or those that are asked for, between two
-/// steps.
+/// The particles of a series at stored times, or at requested times, also between two steps.
 class ParticleTimes
 {
 public:
@@ -24,7 +23,7 @@ public:
   {
     double Time;
     std::vector<std::string> Files; ///< parts of one set of particles
-    std::vector<std::string> Walls; ///< likewise, files of walls
+    std::vector<std::string> Walls; ///< files of the walls at this step
   };
 
   /// Throws UsageError or std::runtime_error with one sentence.
@@ -38,18 +37,18 @@ public:
   /// Returns the step of that time; null if the time is between two.
   const Step* GetStored(double time) const;
 
-  /// Lists the files that a time is made of, without walls.
+  /// Lists the files from which the particles at a time are made, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
-  /// Opens all that is read, see OpenSources().
+  /// Opens all files that will be read, see OpenSources().
   void OpenFiles() const;
 
-  /// A sentence where the times of several steps are nobody's: of tables, in which they count. Says
-  /// what they should be, where velocities tell.
+  /// Returns a warning if nobody has told the times of several steps; tables need them. Says what
+  /// the time between steps should be, if velocities tell.
   std::string CheckTold();
 
-  /// Returns the particles at a time. Throws std::runtime_error; call Reset() then, so that nothing
-  /// is left of the failure.
+  /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), so that
+  /// nothing is left of the failure.
   Sharing::Particles At(double time, std::vector<std::string>& warnings);
   void Reset();
 
@@ -57,16 +56,16 @@ private:
   const Sharing& Shared;
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
-  bool AreTold = true; ///< the times are told: by the files, a .pvd file or --time-step
-  double StoredStep = 0.0; ///< the time between steps, where files store that instead; else 0
+  bool AreTold = true; ///< whether the files, a .pvd file or --time-step tell the times
+  double StoredStep = 0.0; ///< the time between steps, if files store only this; else 0
   Sharing::Particles Walls;
   std::vector<std::string>
-    WallFiles; ///< the files that Walls were read from: once, if all steps have the same
+    WallFiles; ///< the files that Walls were read from; they are kept while steps have the same
   vtkSmartPointer<StoredSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 
-/// Works on each time of the input, and says what happens.
+/// Works on each time of the input, and reports progress and failures.
 class Series
 {
 public:
@@ -75,17 +74,17 @@ public:
   Series(const Series&) = delete;
   void operator=(const Series&) = delete;
 
-  /// If a time fails, says so and goes on with the others; returns false then.
+  /// If a time fails, reports it, goes on with the others, and returns false at the end.
   bool MakeAll();
 
 protected:
-  /// A step in sentences: its file, and its time where it was asked for.
+  /// Returns what sentences call a step: its file, and its time if the user asked for times.
   virtual std::string Label(std::size_t i) const;
   virtual void MakeStep(
     std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
   /// Notes that a step failed. If there is only one step, its error is the program's.
   virtual void Miss(std::size_t i, const std::string& error);
-  /// Whether the times are numbers of the results, and not only the order of the steps.
+  /// Whether results contain the times, which else only order the steps.
   virtual bool IsOfTimes() const { return true; }
   /// Returns the words in front of a step's line of progress.
   std::string Progress(std::size_t i) const;
@@ -99,17 +98,17 @@ protected:
 class TableSeries : public Series
 {
 public:
-  /// file: empty where rows are not written.
+  /// file: empty if rows are not written.
   TableSeries(Sharing& sharing, const std::string& file);
 
-  /// Returns false if a step failed. what: things and their number, to be told at the end.
+  /// Returns false if a step failed. what: what was measured, for the message at the end.
   bool Make(const std::string& what);
 
 protected:
   /// Adds a step's rows to the text, which only the first process needs to have.
   virtual void AddRows(std::size_t i, vtkPointSet* particles) = 0;
-  virtual bool IsTold(const std::string&) const { return true; } ///< of a warning
-  virtual std::string Finish() { return ""; } ///< returns more to tell
+  virtual bool IsTold(const std::string&) const { return true; } ///< whether a warning is told
+  virtual std::string Finish() { return ""; } ///< returns more text for the message
 
   std::string Text;
 

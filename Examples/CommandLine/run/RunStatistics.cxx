@@ -22,11 +22,11 @@
 namespace
 {
 
-/// Writes JSON, because VTK's own library for it is private in some builds. A member is a key,
-/// which is empty in a list, and a text.
+/// Members of JSON: keys, which are empty in a list, and texts. VTK's own library for JSON is private
+/// in some builds.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes a number that is read back as the same; NaN and infinity, which JSON lacks, become null.
+/// Writes a number so that it is read back exactly; NaN and infinity, which JSON lacks, become null.
 std::string Json(double number)
 {
   return std::isfinite(number) ? DigitsOf(number) : "null";
@@ -129,7 +129,7 @@ std::string Value(vtkFieldData* run, const std::string& name)
   return !text.empty() ? text : array.empty() ? stream.str() : array;
 }
 
-/// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"
+/// Returns seed_cells_not_intersected for "SeedCellsNotIntersected", search_grid for "search grid".
 std::string Key(const std::string& name)
 {
   std::string key;
@@ -227,7 +227,7 @@ Members ListSetting(const Job& job, vtkFieldData* run)
 std::string Fill(vtkFieldData* run, const std::string& form)
 {
   std::string text;
-  std::size_t begin = 0; // names of an alternative
+  std::size_t begin = 0; // where the text of an alternative begins
   bool isComplete = true;
   for (std::size_t i = 0; i < form.size(); ++i)
   {
@@ -285,7 +285,7 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
   const bool isPreview = Number(run, "Preview") != 0.0;
   const double caps = Number(run, "CapTriangles");
   const bool hasLines = run->HasArray("Lines");
-  std::string trimming; // there may be more triangles than before: a cut leaves one or two of one
+  std::string trimming; // may add triangles: a cut leaves one or two triangles of one
   if (!hasLines && Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
   {
     trimming = "{TrianglesBeforeTrimming} before trimming, which cuts some in two";

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Tables: what gauges and sections measure, pieces of surfaces, numbers of films.
+// Makes the tables of gauges and sections, of pieces of surfaces, and of numbers of films.
 #include "DataFile.h"
 #include "Job.h"
 #include "Messages.h"
@@ -39,7 +39,7 @@ namespace
 
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// An elevation map: Level is the height of the surface.
+/// Writes an elevation map: the array Level is the height of the surface.
 void WriteGrid(const Job& job, vtkTable* table)
 {
   const GaugeGrid& grid = job.Grid;
@@ -67,7 +67,7 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// A table of what gauges or sections measure, or, of a grid of gauges, an image.
+/// Makes a table of what gauges or sections measure, or, for a grid of gauges, an image.
 class MeterTable : public TableSeries
 {
 public:
@@ -119,7 +119,7 @@ private:
       for (std::size_t row = 0; row < sums.size(); ++row)
       {
         const double now = rates->GetValue(static_cast<vtkIdType>(row));
-        // where there is no flux, there is no number
+        // if the flux is NaN, so is the integral
         sums[row] += passed * 0.5 * (before[row] + now) + 0.0 * now;
         column->InsertNextValue(sums[row]);
       }
@@ -136,7 +136,7 @@ private:
   std::vector<double> Rates[2], Sums[2]; ///< integrals of volume and mass, for each section
 };
 
-/// The iso values of a run, ascending; where it had no particles, those that were asked for.
+/// Returns the iso values of a run, ascending; if it had no particles, the requested ones.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 {
   std::vector<double> values;
@@ -164,7 +164,7 @@ std::size_t LevelOf(const std::vector<Level>& levels, double iso)
   return static_cast<std::size_t>(next - levels.begin());
 }
 
-/// Sets the areas that lines of each iso value enclose, where they are closed.
+/// Sets, for each iso value, the area that its lines enclose, if they are closed.
 void MeasureLines(Run& run, const std::string& isoName)
 {
   vtkDataArray* isoValues = run.Surface->GetPointData()->GetArray(isoName.c_str());
@@ -251,8 +251,8 @@ bool MakeMeterTable(Sharing& sharing)
   return MeterTable(sharing).Make(std::to_string(places) + (job.IsFlux() ? " section" : " gauge") + (places == 1 ? "" : "s"));
 }
 
-// Describes the particles to the filter of pieces as to that of the surface. Surfaces of several iso
-// values are nested in each other, so each is measured by its pieces.
+// Describes the particles to the filter of pieces as to the filter of the surface. Surfaces of
+// several iso values are nested, so each is measured by its pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {

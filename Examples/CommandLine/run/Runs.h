@@ -21,33 +21,33 @@ class vtkSPHMeter;
 class vtkTable;
 struct Job;
 
-/// Lists the runs of the program. All throw UsageError or std::runtime_error with one sentence.
+/// The runs of the program. All throw UsageError or std::runtime_error with one sentence.
 
 /// Extracts the surface, and writes it with its tables: all files, or none.
 void MakeSurface(Sharing& sharing);
 
-/// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them.
-/// Names a step that fails, does the others, and returns false then.
+/// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them. If
+/// a step fails, names it, makes the others, and returns false.
 bool MakeFilm(Sharing& sharing);
 
-/// Measures at each time of the input the free surface along lines, or what flows through sections and has flowed since
-/// the first time. Writes the table or, for a grid of gauges, an image. Returns false if a step failed, which was said;
-/// the table has the other steps.
+/// Measures, at each time of the input, the free surface along lines, or what flows, and has flowed since the first
+/// time, through sections. Writes the table or, for a grid of gauges, an image. If a step fails, reports it and returns
+/// false; the table has the other steps.
 bool MakeMeterTable(Sharing& sharing);
 
-/// Writes a table of the field at the points of a file at each time. Returns false if a step failed, which was said;
-/// the table has the other steps.
+/// Writes a table of the field at the points of a file at each time. If a step fails, reports it and returns false; the
+/// table has the other steps.
 bool MakePointTable(Sharing& sharing);
 
-/// Writes a data set with the field: its points are those of a file, of a slice or of a line, or
-/// pixels, through which it is seen.
+/// Writes a data set with the field at the points of a file, a slice or a line, or an image of the
+/// field's integrals along lines of sight.
 void MakeField(Sharing& sharing);
 
 /// The functions below are parts of the runs above.
 
 /// Makes the settings that depend on the input, for one of the job's filters. Returns the
-/// particles, with the arrays derived from theirs. Throws std::runtime_error with one sentence
-/// where an array is lacking.
+/// particles, with the arrays of --derive. Throws std::runtime_error with one sentence if an array
+/// is missing.
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
@@ -76,12 +76,12 @@ struct Run
 /// Runs the surface once. Throws as Update().
 Run Extract(const Sharing& sharing, const std::string& before = "");
 
-/// Takes the surface's colours into the scale, and warns of arrays that its file does not hold;
-/// with hints, of a period that is not used.
+/// Includes the surface's colours in the scale, and warns of arrays that the surface's file cannot
+/// hold and, with `hasHints`, of a period that is not used.
 void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* particles,
   ColorScale& colors, bool hasHints);
 
-/// The bytes of a .png file of the surface, or of the points or the image of the field.
+/// Returns the bytes of a .png file of the surface, or of the field's points or image.
 ///@{
 std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
   vtkPointSet* particles, Picture& picture, ColorScale& colors);
@@ -89,51 +89,51 @@ std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file
   ColorScale& colors);
 ///@}
 
-/// The image of the projection, on the first process. Throws where no particle is seen.
+/// Returns the image of the projection, on the first process. Throws if no particle is seen.
 vtkImageData* SeenImage(const Job& job);
 
-/// "640 x 480 x 1 pixels"
+/// Returns a text such as "640 x 480 x 1 pixels".
 std::string DescribeSize(vtkImageData* image);
 
 /// Adds the gauges of the options to the job's filter. Returns how many there are.
 std::size_t AddGauges(const Job& job);
 
-/// The meter's table; shows its progress behind the words `progress`.
+/// Returns the meter's table; shows its progress behind the words `progress`.
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
   double time, const std::string& progress);
 
-/// The form with the run's values for names in braces, {Area}, {ScalarRange:1}: texts, also the
-/// array of a quantity that has one, and numbers, counts in full, everything else with six digits.
-/// [A|B|C] is the first one of these whose names all have values, or nothing.
+/// Returns the form with the run's values for names in braces, {Area}, {ScalarRange:1}: texts, the
+/// array of a quantity if there is one, whole counts, and other numbers with six digits. [A|B|C]
+/// becomes the first alternative whose names all have values, or nothing.
 std::string Fill(vtkFieldData* run, const std::string& form);
 
-/// Describes a run's field data in three lines, or, at length, in more, for those who know the method;
-/// empty if the run had no particles to use.
+/// Describes a run's field data in three lines, or, at length, in more, for users who know the
+/// method; empty if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run, bool atLength);
 
-/// "seconds     0.500\n", at length "seconds     input 0.010, ..., total 0.500\n", or empty as above.
+/// Returns "seconds     0.500\n"; at length "seconds     input 0.010, ..., total 0.500\n"; or empty as above.
 std::string DescribeSeconds(vtkFieldData* run, bool atLength);
 
-/// The statistics of the last of `runs` as JSON, with the seconds of each. wallSeconds has one
-/// entry per run: the time of the filter as a whole, with what VTK adds to the phases.
+/// Returns the statistics of the last of `runs` as JSON, with the seconds of each run. wallSeconds: for
+/// each run, the time of the whole filter, which is more than its phases.
 std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
   const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
   double peakResidentBytes);
 
-/// Reports a step of a film, of these files: `result` is the surface's file, or, where `run` is null,
-/// why there is none.
+/// Reports a step of a film. inputs: its files; result: the surface's file or, if `run` is null, why
+/// there is none.
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds);
 
-/// `run` is the last run that went well, or null.
+/// Returns the report of a film. run: the last run that went well, or null.
 std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run);
 
 /// Returns the most memory that this process has had so far; 0 if the system does not tell.
 double PeakResidentBytes();
 
-/// Gives the run's surface the array ComponentId, without the pieces that are to be left out, and
-/// the text of a table a row for each piece; those of films have a column of times. Sets the run's
-/// levels where a film's table needs them. Throws std::runtime_error.
+/// Gives the run's surface the array ComponentId, and drops the pieces that are to be left out. Adds a
+/// row for each piece to the text of a table, which for films has a column of times. Sets the run's
+/// levels if a film's table needs them. Throws std::runtime_error.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time = 0.0);
 

@@ -24,9 +24,9 @@ namespace
 {
 
 #if MCOR_HAS_RANKS
-/// MPI, from begin to end, and the processes of mpirun that share a job. One per process. Pieces of
-/// a file are read by all of them, a single one by the first. A surface is written as one piece
-/// each for a .pvtp file, else the first one writes the whole.
+/// MPI, from begin to end, and the processes of mpirun that share a job. There is one object per
+/// process. All processes read pieces of a file; the first reads a file without pieces. Of a surface,
+/// each writes its piece for a .pvtp file; for others, the first writes the whole.
 class RankSession : public Sharing
 {
 public:
@@ -41,7 +41,7 @@ public:
     vtkMultiProcessController::SetGlobalController(this->Controller);
     for (vtkSPHAlgorithm* filter : job.All())
     {
-      filter->SetController(this->Controller); // the numbers were found before MPI began
+      filter->SetController(this->Controller); // filters were made before MPI began
     }
   }
 
@@ -86,7 +86,7 @@ public:
   /// process.
   Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings) override
   {
-    this->Options.Periodic = this->Periodic; // of each time anew
+    this->Options.Periodic = this->Periodic; // each time may have another period
     this->Options.DetectPeriod = this->DetectPeriod;
     const ParticleTimes::Step* step = times.GetStored(time);
     if (step && step->Files.size() == 1 && step->Walls.empty())
@@ -134,8 +134,8 @@ public:
   }
 
 private:
-  /// The part of particles that each process reads of one file, or that the first one makes;
-  /// `mayBeEmpty`: all together.
+  /// Part() returns the particles that this process reads from a file; Share() those that the first
+  /// process makes. mayBeEmpty: whether all processes together may have none.
   Particles Part(const std::string& file, bool mayBeEmpty)
   {
     Particles particles;
@@ -156,8 +156,8 @@ private:
     return this->Complete(particles, mayBeEmpty);
   }
 
-  /// Processes without particles get the arrays, without values, that those of the others have:
-  /// what a name in the options is must not depend on who asks. The period is that of all.
+  /// Processes without particles get the others' arrays, without values, so that a name in the
+  /// options means the same on all processes. Finds the period of all processes' particles.
   Particles Complete(vtkPointSet* particles, bool mayBeEmpty)
   {
     const vtkIdType own = particles->GetNumberOfPoints();
@@ -176,7 +176,7 @@ private:
     vtkSPHMatchEmpty(this->Controller, form);
     const Particles complete = own > 0 || all == 0 ? particles : form.Get();
     Job& job = this->Options;
-    if (job.DetectPeriod) // of which field data tell
+    if (job.DetectPeriod) // field data tell the period
     {
       std::string problem;
       const vtkSPHPeriod found =
@@ -184,7 +184,7 @@ private:
       this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
       job.DetectPeriod = false;
     }
-    if (job.Periodic.size() == 3) // lengths alone are known, so all particles tell where the period
+    if (job.Periodic.size() == 3) // only lengths are known; the particles tell where the period
                                   // begins
     {
       job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
@@ -198,7 +198,7 @@ private:
 };
 #endif
 
-/// Returns the first of these variables that is set, as a number.
+/// Returns the first of these environment variables that is set, as a number.
 [[maybe_unused]] int Number(const char* ofOpenMpi, const char* ofOthers, int otherwise)
 {
   const char* text = std::getenv(ofOpenMpi);

@@ -15,8 +15,8 @@
 class ParticleTimes;
 struct Job;
 
-/// A job. Hides whether processes share the work; this class is that of one process. If one of them
-/// throws, all throw.
+/// A job. Hides whether processes share the work; this base class is for one process alone. If one
+/// process throws, all throw.
 class Sharing
 {
 public:
@@ -33,10 +33,10 @@ public:
   virtual int GetRank() const { return 0; }
   virtual int GetCount() const { return 1; }
 
-  /// Whether this process writes the files and says what happens.
+  /// Whether this process writes the files and prints the messages.
   bool IsFirst() const { return this->GetRank() == 0; }
 
-  /// Does work on all processes, which may differ.
+  /// Does work on all processes; the work of each may differ.
   virtual void OnAll(const std::function<void()>& work) { work(); }
 
   void OnFirst(const std::function<void()>& work)
@@ -44,7 +44,7 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// Returns this process's part of the particles: of the only input with its walls; or at a time.
+  /// Returns this process's part of the particles: of the only input, with its walls, or at a time.
   virtual Particles Read();
   virtual Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
@@ -57,14 +57,14 @@ public:
   Job& Options;
 };
 
-/// How many processes mpirun started, 1 without mpirun, and the number of this one, 0 then. Its
-/// environment tells, before MPI is asked. Built without MPI, there is one.
+/// Returns how many processes mpirun started (1 without mpirun), and the number of this one. mpirun's
+/// environment variables tell this before MPI begins. In a build without MPI there is one process.
 ///@{
 int LaunchedCount();
 int LaunchedRank();
 ///@}
 
-/// Begins MPI, and ends it with the object, for a job that processes share. One per process.
+/// Begins MPI for a job that processes share; the object's end is MPI's. Call it once in a process.
 std::unique_ptr<Sharing> NewRankSession(Job& job);
 
 #endif

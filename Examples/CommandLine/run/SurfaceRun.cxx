@@ -39,7 +39,7 @@
 namespace
 {
 
-/// Returns true, and the value, if the text is a constant and not the name of an array of the input.
+/// Returns true, and sets the value, if the text is a constant, not the name of an array of the input.
 bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
 {
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
@@ -93,8 +93,8 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
 }
 
-/// Gives the particles the smoothing lengths that --widen and --smooth make, as those of the surface,
-/// and the filter their arrays.
+/// Gives the particles the lengths that --widen and --smooth make, as for the surface, and the
+/// filter the names of their arrays.
 vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
   SetParticles(job.Surface, job, input);
@@ -120,13 +120,13 @@ vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, v
   return widened;
 }
 
-/// Arrays of the particles that are not interpolated because the surface's file could not hold
+/// Lists the particles' arrays that are not interpolated because the surface's file could not hold
 /// them.
 std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
 {
   std::vector<std::string> names;
   vtkPointData* data = particles->GetPointData();
-  const std::string& color = job.Picture.ColorBy; // all arrays are listed if none of them can be held
+  const std::string& color = job.Picture.ColorBy; // if it is unknown, an error lists all arrays
   if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
     (!color.empty() && !data->HasArray(color.c_str())))
   {
@@ -153,7 +153,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   filter->ClearExcludedArrays(); // arrays of the step before
   if (!job.Walls.empty())
   {
-    filter->AddExcludedArray(WallArrayName); // the same on the whole surface
+    filter->AddExcludedArray(WallArrayName); // its value is the same on the whole surface
   }
   for (const auto& words : ChosenWords())
   {
@@ -169,7 +169,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
   if (filter == job.Surface)
   {
-    // One iso value of all points tells nothing, unless it is their colour.
+    // A single iso value of all points is useless, unless it is their colour.
     const std::string& color = job.Picture.ColorBy;
     job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
       job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !data->HasArray(color.c_str())));
@@ -188,7 +188,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
 }
 
-/// Refuses an array to colour by that the output will not have, before it is made.
+/// Refuses an array to colour by that the output will not have, before the output is made.
 void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const std::string& name = job.Picture.ColorBy;
@@ -243,8 +243,8 @@ std::string ReasonForNoSurface(vtkFieldData* run)
       "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
-/// A run's progress line; where none is shown, a notice, once, if a driver is waited for after a few
-/// seconds.
+/// Shows a run's progress line; or, if this is not shown, a notice, once, if the driver is still
+/// compiling after a few seconds.
 class Progress
 {
 public:
@@ -281,7 +281,7 @@ public:
     {
       while (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
       {
-        if (this->IsBuilding) // and has not computed for long
+        if (this->IsBuilding) // the driver still compiles
         {
           Say("the OpenCL driver compiles its programs for the first time, which may take a "
               "minute");
@@ -304,7 +304,7 @@ private:
   std::atomic<bool> IsBuilding{ false };
   bool HasBegun = false;
   std::promise<void> End;
-  std::future<void> Waiting; ///< the last member, as its thread uses the others
+  std::future<void> Waiting; ///< the last member, because its thread uses the others
 };
 
 }
@@ -377,7 +377,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
   run.WallSeconds = Update(filter, sharing, before);
   run.Surface = vtkSmartPointer<vtkPolyData>::New();
   run.Surface->ShallowCopy(filter->GetOutput());
-  filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
+  filter->GetOutput()->Initialize(); // frees one before the next: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
   vtkDataArray* values = run.Statistics->GetArray("IsoValues");
@@ -393,7 +393,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
                 << std::endl;
     }
   }
-  // They are in the statistics, too.
+  // Warnings are in the statistics, too.
   const std::vector<std::string>& told = Messages().Warnings;
   run.Warnings.insert(run.Warnings.end(), told.begin(), told.end());
   vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // for all processes

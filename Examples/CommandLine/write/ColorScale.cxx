@@ -19,8 +19,8 @@
 namespace
 {
 
-/// Blue, green and a pale yellow: evenly brighter, also in grey, and light enough for shading to be
-/// seen on what is slow.
+/// From blue over green to a pale yellow: evenly brighter, also in grey, and light enough to show
+/// shading at low values.
 constexpr int StopCount = 9;
 const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.690 },
   { 0.210, 0.530, 0.740 }, { 0.270, 0.620, 0.760 }, { 0.370, 0.710, 0.740 },
@@ -88,7 +88,7 @@ void ColorScale::Include(vtkDataSet* data)
   }
   vtkDataArray* begins = data->GetFieldData()->GetArray("IsoValues");
   double range[2];
-  if (this->Name == "BandValue" && begins) // bands that are not there have their colours, too
+  if (this->Name == "BandValue" && begins) // missing bands have their colours, too
   {
     begins->GetFiniteRange(range, 0);
   }

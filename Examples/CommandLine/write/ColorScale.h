@@ -13,26 +13,26 @@ class vtkDataArray;
 class vtkDataSet;
 struct PictureOptions;
 
-/// Refuses an array to colour by that is none of these. Throws std::runtime_error.
+/// Throws std::runtime_error if the array to colour by is none of these.
 void CheckColorName(const std::string& name, const std::vector<std::string>& names);
 
-/// The colours of --color-by: those of a picture, and of a .ply file's points.
+/// The colours of --color-by, for a picture and for a .ply file's points.
 class ColorScale
 {
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Widens the range by the values of most of this data set's area, unless a range was given: a film's colours
-  /// cover all steps so far. Throws std::runtime_error if the data set has points but no such
-  /// array.
+  /// Widens the range by the values on most of this data set's area, unless a range was given, so
+  /// that a film's colours cover all steps so far. Throws std::runtime_error if the data set has
+  /// points but no such array.
   void Include(vtkDataSet* data);
 
-  /// The array of the data set that colours its points, or its cells; nullptr if there is none.
+  /// Returns the array of the data set that colours its points, or its cells; nullptr: none does.
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// Suggests an array if none was wanted: the one that tells several iso values of the surface
-  /// apart, if there are several.
+  /// If no array was wanted, and the surface has several iso values, suggests the array that tells
+  /// these apart.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -14,8 +14,8 @@ class vtkDataSet;
 class vtkPolyData;
 class vtkTable;
 
-/// Throws std::runtime_error with one sentence if the ending of the name is not that of a format
-/// which holds data sets of this class.
+/// Throws std::runtime_error with one sentence if no format with this ending holds data sets of this
+/// class.
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
 /// Returns the bytes of a data set in the format of the file's ending. Throws std::runtime_error.
@@ -24,29 +24,28 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data);
 /// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
 void WriteDataSet(const std::string& file, vtkDataSet* data);
 
-/// Whether the ending of the name is that of a format which WriteSurface knows.
+/// Whether SurfaceBytes() knows a format with the ending of this name.
 bool IsSurfaceFile(const std::string& file);
 
-/// Returns the endings of the formats that WriteSurface knows, ".vtp, .stl, ... or .obj", for
+/// Returns the endings of the formats that SurfaceBytes() knows, ".vtp, .stl, ... or .obj", for
 /// sentences and the help.
 std::string SurfaceFileEndings();
 
-/// The bytes of a surface in the format of the file's ending. .stl and .obj have triangles
-/// and normals; .ply also colours, and all arrays of numbers; .csv the points of lines with all
-/// arrays.
-/// Throws std::runtime_error with one sentence.
+/// Returns the bytes of a surface in the format of the file's ending. .stl and .obj have triangles
+/// and normals; .ply also has colours and all arrays of numbers; .csv has the points of lines with
+/// all arrays. Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
-/// The bytes of an XML file with a mark: a step of a film, which another film may replace.
+/// Returns the bytes of an XML file with a mark: a step of a film, which another film may replace.
 std::string MarkedStep(std::string bytes);
 
-/// Returns whether the file has this mark.
+/// Whether the file has the mark of MarkedStep().
 bool IsFilmStep(const std::string& file);
 
 /// Returns whether files in this format hold arrays of any name.
 bool HoldsArrays(const std::string& file);
 
-/// Returns a sentence about the arrays that a file in this format cannot hold; empty if it holds
+/// Returns a sentence about the arrays that a file in this format cannot hold; empty if it can hold
 /// all.
 std::string LostArrays(
   const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more);
@@ -57,16 +56,16 @@ bool IsInPieces(const std::string& file);
 /// Returns the name of a piece: OUT_3.vtp beside OUT.pvtp.
 std::string PieceName(const std::string& file, int rank);
 
-/// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
+/// Returns the text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
 std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
 
-/// A text between two commas of CSV (RFC 4180). No spreadsheet takes it for a formula.
+/// Returns a text as a field of CSV (RFC 4180) that no spreadsheet takes as a formula.
 std::string TableField(const std::string& text);
 
-/// Reads back as the same number; NaN is an empty place.
+/// Returns a value so that it is read back exactly; NaN is an empty field.
 std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component = 0);
 
-/// Appends a line for each row, behind one with the names of the columns where the text is empty.
+/// Appends a line for each row, and, to an empty text, first a line with the names of the columns.
 void AppendTable(std::string& text, vtkTable* table);
 
 #endif

@@ -83,7 +83,7 @@ private:
   std::vector<std::pair<std::string, Setter>> Before;
 };
 
-/// Every format that is written, with the class that it holds, and those derived from it.
+/// Every format that is written, with the class that it holds; it holds derived classes, too.
 const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" },
   { ".vtr", "vtkRectilinearGrid" }, { ".vts", "vtkStructuredGrid" }, { ".vtp", "vtkPolyData" },
   { ".vtu", "vtkUnstructuredGrid" }, { ".vtk", "vtkDataSet" } };
@@ -131,7 +131,7 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data)
     writer->SetInputDataObject(data);
     writer->SetDataModeToBinary(); // ParaView 5.11 of Debian 12 cannot read appended data
     writer->WriteToOutputStringOn();
-    writer->SetCompressorTypeToLZ4(); // which takes a third of the time of zlib, VTK's default
+    writer->SetCompressorTypeToLZ4(); // takes a third of the time of zlib, VTK's default
     writer->SetBlockSize(1 << 19);
     isGood = writer->Write() != 0;
     bytes = writer->GetOutputString();
@@ -171,7 +171,7 @@ std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
     return TableField(texts->GetValue(tuple));
   }
   auto* numbers = vtkDataArray::SafeDownCast(array);
-  if (array->GetDataTypeSize() == 8 && array->GetDataType() != VTK_DOUBLE) // beyond 2^53, too
+  if (array->GetDataTypeSize() == 8 && array->GetDataType() != VTK_DOUBLE) // exact beyond 2^53
   {
     const vtkVariant value =
       array->GetVariantValue(tuple * array->GetNumberOfComponents() + component);

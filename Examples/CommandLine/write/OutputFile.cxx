@@ -23,7 +23,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Fails with the system's reason, unless it is good.
+/// Fails with the system's reason, unless `isGood`.
 void Require(bool isGood, const std::string& file)
 {
   if (!isGood)
@@ -37,11 +37,11 @@ struct Target
 {
   std::string Name;    ///< as given
   std::string Path;    ///< the path behind symbolic links
-  int Descriptor = -1; ///< the open descriptor that this is a name of (/dev/stdout, /dev/fd/3)
+  int Descriptor = -1; ///< the open descriptor, if Path names one (/dev/stdout, /dev/fd/3)
   bool Exists = false;
   struct stat Status = {}; ///< identity of the file, if it exists
 
-  /// Whether a new file replaces it; otherwise bytes are written straight to it.
+  /// Whether a new file replaces the target; otherwise bytes are written straight to the target.
   bool IsReplaced() const
   {
     return this->Descriptor < 0 && (!this->Exists || S_ISREG(this->Status.st_mode));
@@ -54,8 +54,8 @@ std::string FolderOf(const std::string& path)
   return folder.empty() ? "." : folder;
 }
 
-/// The number of an open descriptor that has a name in the file system; -1 if this is none. Such a
-/// name must not be opened: that would give a file position of its own.
+/// Returns the number of the open descriptor that this path names; -1: it names none. Such a path
+/// must not be opened, because the file would then have a second position.
 int DescriptorOf(const std::string& path)
 {
   const std::string number = fs::path(path).filename().string();
@@ -72,9 +72,9 @@ int DescriptorOf(const std::string& path)
     : -1;
 }
 
-/// Follows symbolic links, also to a file that does not exist yet, and asks the system whether the
-/// file may be replaced, by the name as given: its rules for symbolic links, and for files that may
-/// not be written, hold for replacing, too. Refuses what the run reads.
+/// Follows symbolic links, also to a file that does not exist yet. Asks the system, by the given
+/// name, whether the file may be written: its rules for links and for protected files then hold for
+/// replacing, too. Refuses a file that the run reads.
 Target Find(const std::string& name)
 {
   Target target;
@@ -161,8 +161,7 @@ bool WriteAll(int descriptor, const std::string& bytes)
   return true;
 }
 
-/// Sets mode, owner and group as those of the file that is replaced; for a new one, as the umask
-/// says.
+/// Sets mode, owner and group to those of the replaced file; for a new file, the umask decides.
 void SetAttributes(int descriptor, const Target& target)
 {
   const struct stat& old = target.Status;

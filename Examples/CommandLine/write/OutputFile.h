@@ -8,17 +8,16 @@
 #include <string>
 #include <vector>
 
-/// Says before the work what would prevent writing after it, where OpenSources() was told of all that
-/// is read. Throws UsageError if an output is the same file as an input or another output, by whatever
-/// name or link; std::runtime_error if one cannot be written. An empty name is an output that nobody
-/// asked for.
+/// Checks before the work, and after OpenSources() was called for all inputs, that the outputs can
+/// be written. Throws UsageError if an output is the same file as an input or another output, by
+/// whatever name or link; std::runtime_error if it cannot be written. An empty name means no output.
 void CheckOutputs(const std::vector<std::string>& outputs);
 
 /// Outputs that belong together. Each is written under a fresh name beside its target; Commit()
-/// lets them take their places. Without it, and where the program is ended, all is as it was. A
-/// symbolic link is followed, and the file that it leads to replaced; mode, owner and group stay as
-/// they were. Other hard links of a replaced file keep what was in it. What is no regular file (a
-/// device, a FIFO, /dev/stdout) is written to by Commit(). All throw std::runtime_error with one
+/// lets them replace their targets. Without Commit(), also if the program is ended, targets stay as
+/// they were. Of a symbolic link, the file that it leads to is replaced. Mode, owner and group stay.
+/// Other hard links of a replaced file keep the old contents. Commit() writes to a target that is
+/// not a regular file (a device, a FIFO, /dev/stdout). All throw std::runtime_error with one
 /// sentence.
 class OutputFiles
 {
@@ -39,9 +38,9 @@ private:
 /// Writes one file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
-/// A file of all steps so far, which can be read while the run goes on, and after the program is ended. For a long
-/// series it is not written after each step, but only as often as takes a twentieth of the time. A device or a pipe
-/// gets it once, at the end.
+/// A file of all steps so far, which can be read during the run, and if the program was ended. In a long series it is
+/// written less often than after each step, so that this takes a twentieth of the time. A device or a pipe gets the
+/// text once, at the end.
 class GrowingFile
 {
 public:
@@ -50,8 +49,8 @@ public:
   {
   }
 
-  /// There may be more in it: `text` gives the whole. Does nothing without a name. Throws
-  /// std::runtime_error with one sentence.
+  /// Is called when the file may have grown; `text` returns all of it. Does nothing without a name.
+  /// Throws std::runtime_error with one sentence.
   void Write(const std::function<std::string()>& text, bool isLast);
 
 private:

@@ -45,7 +45,7 @@ char* Grow(std::string& bytes, std::size_t more)
   return &bytes[0] + begin;
 }
 
-/// Puts a value, its least significant byte first, on every machine.
+/// Writes a value with its least significant byte first, on every machine.
 template <typename T>
 void Put(char*& next, T value)
 {
@@ -80,8 +80,8 @@ void ForTriangles(vtkPolyData* surface, const F& use)
   }
 }
 
-/// Binary, little endian: triangles with normals of their own. Not by VTK's writer, nor is .obj:
-/// they write to files alone.
+/// Writes binary .stl, little endian: triangles, each with its normal. VTK's writers of .stl and .obj
+/// are not used, because they write only to files.
 void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
@@ -107,7 +107,7 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// With nine digits every float is read back exactly.
+/// Appends a word and a vector. With nine digits, every float is read back exactly.
 void AppendLine(std::string& text, const char* word, const double (&vector)[3])
 {
   char line[96];
@@ -143,7 +143,7 @@ void WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// A type of .ply files: its name, its size, and how a value is put. Integers of 64 bits have none.
+/// A type of .ply files: its name, its size, and how a value is written. No type has 64-bit integers.
 struct PlyType
 {
   const char* Name;
@@ -172,9 +172,8 @@ PlyType FindPlyType(vtkDataArray* array)
   return found == types.end() ? MakePlyType<double>("double") : found->second;
 }
 
-/// Writes .ply, with a property for each component of each array of numbers: of a vector NAME_x,
-/// NAME_y and NAME_z, as Blender and splashsurf name them. VTK's writer leaves
-/// all of them out.
+/// Writes .ply, with a property for each component of each array of numbers, which VTK's writer
+/// leaves out. A vector has NAME_x, NAME_y and NAME_z, as Blender and splashsurf name them.
 void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
   struct Property
@@ -203,7 +202,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
        << points;
   vtkPointData* data = surface->GetPointData();
-  vtkNew<vtkFloatArray> nowhere; // a surface without points has none
+  vtkNew<vtkFloatArray> nowhere; // for a surface without points
   nowhere->SetNumberOfComponents(3);
   vtkDataArray* normals = data->GetNormals();
   vtkNew<vtkUnsignedCharArray> colors;
@@ -262,8 +261,8 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
     });
 }
 
-/// Writes lines: a row for each point of each line, a column for each component. An array whose
-/// column would have the name of one before it gets another one: readers go by names.
+/// Writes lines: a row for each point of each line, a column for each component. If a column's name
+/// is taken, the column gets another name, because readers go by names.
 void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   struct Column
@@ -288,7 +287,7 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     add(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
   }
   for (const bool isVector :
-    { true, false }) // names of components are made of arrays' names: they go first
+    { true, false }) // vectors first: their columns' names are made of the arrays' names
   {
     for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
     {
@@ -317,7 +316,7 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   }
 }
 
-/// The type has VTK's XML name, which tells its size.
+/// Describes an array. VTK's XML name of its type tells the size.
 void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)
 {
   const int type = array->GetDataType();
@@ -332,7 +331,7 @@ void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& na
        << array->GetNumberOfComponents() << "\"/>\n";
 }
 
-/// The arrays and which are the normals, and so on, as VTK's writers say it of a single file.
+/// Describes the arrays, and says which are the normals, and so on, as VTK's writers do in a file.
 void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* arrays)
 {
   text << "    <" << element;
@@ -353,7 +352,7 @@ void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* 
   text << "    </" << element << ">\n";
 }
 
-/// Every format that is written, with all that is known of it; of .vtp, DataSetBytes() knows it.
+/// Every format that is written, with its writer; DataSetBytes() writes .vtp.
 using Writer = std::function<void(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", nullptr }, { ".stl", WriteStl },
   { ".ply", WritePly }, { ".obj", WriteObj }, { ".csv", WriteCsv } };

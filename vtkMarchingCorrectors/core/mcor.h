@@ -135,8 +135,8 @@ extern "C"
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
     MCOR_TOPOLOGY_FIELD = 1  /* by the field at the saddles of the face's bilinear and the cell's
-                              * trilinear interpolant: bridges and tunnels as wide as a cube are those
-                              * of the field */
+                              * trilinear interpolant: bridges and tunnels as wide as a cube are as
+                              * in the field */
   } mcor_topology;
 
 /* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks
@@ -485,7 +485,7 @@ extern "C"
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
-    int64_t correction_count; /* vertices in the mean: those of the surface that are not cuts */
+    int64_t correction_count; /* vertices in the mean: all but trim vertices and points of caps */
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
@@ -508,9 +508,9 @@ extern "C"
 #define MCOR_POINT_KEY 3
 
   /* The key of a triangle: the number of the iso value, then its cell or the square of a cap.
-   * Triangles are in the order of their keys; those of one cell have the same key. In the surface
-   * of a box, triangles have the same keys as in the whole surface. Each cell is in one box, so a
-   * stable sort by key of the triangles of all boxes gives those of the whole surface in order. */
+   * Triangles are in the order of their keys; triangles of one cell have the same key. In the
+   * surface of a box, triangles have the same keys as in the whole surface. Each cell is in one
+   * box, so a stable sort by key of the triangles of all boxes gives the whole surface's order. */
 #define MCOR_TRIANGLE_KEY 2
 
   /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to
@@ -583,7 +583,7 @@ extern "C"
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
-  /* Kernel by its short name ("cubic", "wendland", ...), and back; -1 or NULL if there is none. */
+  /* Find a kernel by its short name ("cubic", "wendland", ...), or its name; -1 or NULL: none. */
   int mcor_find_sph_kernel(const char* name);
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files,
- * are those of the paper named in mcor.h. */
+/* mcor_extract: the phases in order. Numbers in brackets, here and in the phases' files, are
+ * sections of the paper named in mcor.h. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"

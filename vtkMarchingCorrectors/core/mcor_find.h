@@ -64,7 +64,7 @@ extern "C"
     MCOR_ROLE_FLUID, /* tells which particles are fluid */
     MCOR_ROLE_SCALAR,
     MCOR_ROLE_SCALAR_DOT, /* the second vector of a dot product */
-    MCOR_ROLE_WEIGHT,     /* of a projection that is a mean */
+    MCOR_ROLE_WEIGHT,     /* the weight of a projection that shows a mean */
     MCOR_ROLE_COUNT
   } mcor_role;
 #define MCOR_ROLE_VALUES 4
@@ -115,17 +115,17 @@ extern "C"
     double within[6];      /* bounds of the particles that count, unless all are 0 */
     const mcor_only* only; /* [only_count]; of several ranges of one array, any may hold */
     int only_count;
-    /* Names, one a line, or NULL: of arrays that are computed, and of others that are not to be
-     * attributes. The array of iso values has the name of what is contoured, unless a computed one
-     * has it. */
+    /* Names, one a line, or NULL. taken: arrays that are computed; excluded: others that must not
+     * be attributes. The array of iso values has the name of what is contoured, unless a computed
+     * array has this name. */
     const char *taken, *excluded;
     int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
     int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
     const char* label;  /* the name of the scalar's component; NULL: X, Y, Z or a number */
   } mcor_request;
 
-  /* Made by mcor_find_input; free it with mcor_free_found. Indices are those of the arrays given;
-   * -1: none. Indices behind the last one mean made[0], made[1]. */
+  /* Made by mcor_find_input; free it with mcor_free_found. Indices are indices of the given arrays;
+   * -1: none. Indices behind the last array mean made[0], made[1]. */
   typedef struct mcor_found
   {
     mcor_input input; /* ready to use, until this is freed */
@@ -152,9 +152,9 @@ extern "C"
     int own_count;
   } mcor_found;
 
-  /* Finds what the request wants. positions: [tuples][3]. ranks: NULL, or those that share the
-   * particles: all call this with the same request and arrays of the same form, and agree on the
-   * fluid and on the array to contour. MCOR_INVALID_ARGUMENT: see found->error;
+  /* Finds what the request wants. positions: [tuples][3]. ranks: NULL, or the ranks that share the
+   * particles: all of them call this with the same request and arrays of the same form, and agree
+   * on the fluid and on the array to contour. MCOR_INVALID_ARGUMENT: see found->error;
    * MCOR_OUT_OF_CAPACITY: memory ran out. *found is overwritten. */
   mcor_status mcor_find_input(const mcor_request* request, const mcor_named* positions,
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
@@ -170,9 +170,9 @@ extern "C"
   mcor_message mcor_describe_unused(
     const mcor_request* request, unsigned given, unsigned used, const char* volumes);
 
-  /* Take the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities, borrowed, for an
-   * input that needs them. Densities are then the scalar; volumes follow from them, too, where
-   * there are masses without densities. */
+  /* Take the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities, borrowed, for
+   * an input that needs them. Densities become the scalar; volumes follow from them, too, if there
+   * are masses, but no densities or volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 

@@ -117,8 +117,8 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 /* The most lattice nodes along an axis, for which single-precision fixed point resolves 2^-9
  * cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
-/* The most cubes along an axis for a lattice that is cut to a box or to points, around which long
- * supports may reach far. Fixed point then resolves 2^-7 cubes. */
+/* The most cubes along an axis for a lattice that is cut to a box or to points; particles of long
+ * supports may lie far from these. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
 /* Keys have bits for this many nodes along an axis, and for this many cells in all; see
  * MCOR_RING_CELL. */
@@ -324,8 +324,8 @@ bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
-/* Finds the edge between two vertices among those that are cut, mesh.cut_edges; -1: it is not
- * cut. */
+/* Finds the edge between two vertices in `cuts`, the edges that are cut, mesh.cut_edges; -1: this
+ * edge is not cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* the least weight of the fluid itself at a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
@@ -340,8 +340,8 @@ bool mcor_output_evaluates(const mcor_context* context);
 /* Appends the mesh to the surface. all: also the vertices that no triangle uses. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
-/* mcor_surface.c. Prepares the surface's attributes: finds those to leave out, and the
- * components of the others that vary. */
+/* mcor_surface.c. Prepares the surface's attributes: finds which attributes to leave out, and which
+ * components of the others vary. */
 mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The arrays of a surface's points except attributes, and their bytes per point. */

@@ -22,8 +22,8 @@ extern "C"
     double largest;     /* greatest absolute value; 0 if it does not vary */
     double low, high;   /* range; low > high without fluid particles */
     int varies;         /* 0: all values, also at solids, are the same */
-    int64_t not_finite; /* the first particle at which its attribute is not finite, as attribute_not_finite in
-                         * mcor_surface */
+    int64_t not_finite; /* the first particle at which the attribute is not finite, as
+                         * attribute_not_finite in mcor_surface */
   } mcor_global_component;
 
   /* The plane in which all particles lie, in two dimensions. */
@@ -48,8 +48,8 @@ extern "C"
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
     double scalar_min, scalar_max;                /* over fluid particles */
     int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */
-    double cube;        /* cube size, or the longest of its edges; ignored where it is given */
-    double edge[3];     /* edges of the cubes along x, y, z; ignored where the cube size is given */
+    double cube;        /* cube size, or longest edge of a cube; ignored if a cube size is given */
+    double edge[3];     /* edges of the cubes along x, y, z; ignored if a cube size is given */
     double wall_share;  /* the wall share, if the options ask for it; 0: not measured */
     mcor_plane plane;
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
@@ -111,9 +111,9 @@ extern "C"
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
-  /* Moves each period that does not hold the box, of ranks the whole box, so that the box lies in
-   * the middle. A period shorter than the box stays. mcor_extract does this by itself unless globals
-   * are given, which are to be measured with the period that is moved. */
+  /* Moves each period that does not hold the box (with ranks, whole_box), so that the box lies in
+   * the middle. A period shorter than the box stays. mcor_extract does this by itself unless
+   * globals are given; these must be measured with the moved period. */
   void mcor_move_period(mcor_options* options);
 
   /* Measures an input for options.globals of later calls, in this or another context, with
@@ -128,13 +128,13 @@ extern "C"
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
   /* Returns how far from a box all particles are needed, however short their supports are, because
    * what reaches the box depends on them; 0: none. All lengths have one unit. computes_volumes:
-   * whether the call computes volumes; widest: options.widen of mcor_widen, 0 of other calls; reach:
-   * the most by which a particle that reaches the box may be away from it, 0 if none does; margin:
-   * at least two cubes, as particles and the box are rounded. */
+   * whether the call computes volumes; widest: options.widen of mcor_widen, 0 of other calls;
+   * reach: how far a particle that reaches the box may be away from the box, 0 if no particle
+   * reaches it; margin: at least two cubes, because particles and the box are rounded. */
   double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,
     double reach, double margin);
 
-  /* Area and volume of a surface in parts: to the last bit those in the statistics of the whole
+  /* Area and volume of a surface in parts, with the same bits as in the statistics of the whole
    * surface. */
   typedef struct mcor_measures
   {
@@ -146,7 +146,7 @@ extern "C"
   } mcor_measures;
 
   /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call
-   * mcor_measure_sums for each part, and reduce those marked 2. numbers: [point_count], the
+   * mcor_measure_sums for each part, and reduce the members marked 2. numbers: [point_count], the
    * points' numbers in the whole surface; NULL: their indices. */
   void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
   void mcor_measure_sums(

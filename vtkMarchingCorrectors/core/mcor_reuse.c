@@ -77,7 +77,7 @@ void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor
 {
   const mcor_input* last = &context->kept.input;
   const bool particles = mcor_same_particles(input, last);
-  /* Compares globals without their components, because nothing that is kept depends on those. */
+  /* Compares globals without their components, because nothing that is kept depends on them. */
   const mcor_globals none = { 0 };
   const mcor_globals *a = &context->kept.globals, *b = options->globals ? options->globals : &none;
   const mcor_measure *m = &a->measured, *n = &b->measured;

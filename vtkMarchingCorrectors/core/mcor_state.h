@@ -30,8 +30,8 @@ typedef struct mcor_lattice
   int levels; /* of cubes; 1: all have one size */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where a period begins, from origin */
-  /* Where each level's blocks begin, and the end. With uniform cubes, higher levels serve the
-   * particles of longer supports. */
+  /* The blocks of each level, and their end. With uniform cubes, blocks of higher levels are the
+   * larger cubes that mcor_make_blocks divides. */
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
@@ -40,7 +40,7 @@ typedef struct mcor_space
 {
   int axes;             /* 3, or 2 */
   int flat;             /* axes that cells lack; kernels take it as `plane` */
-  int brick_nodes;      /* in a plane, those of the lowest layer */
+  int brick_nodes;      /* nodes of a brick; in a plane, only the lowest layer */
   int region_depth;     /* the depth that mcor_seed_regions takes */
   double ball;          /* volume of a ball of radius 1, or area of a disc */
   const char* evaluate; /* the kernel for nodes */
@@ -129,8 +129,8 @@ typedef struct mcor_mesh
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count; /* vertices on lattice edges; sorted by level, as the trim boundary's are */
   int
-    vertex_count; /* first the vertices on lattice edges, then those on the trim boundary, and from
-                   * cap_first on those of caps */
+    vertex_count; /* first vertices on lattice edges, then vertices on the trim boundary, then, from
+                   * cap_first on, vertices of caps */
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
@@ -176,7 +176,7 @@ typedef struct mcor_adaptive
   mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many come before */
   mcor_buffer cells, finer; /* int4, uint: the listed leaves, in order; which bricks around each are
                              * finer */
-  mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of each leaf's nodes */
   mcor_buffer mixed;        /* uchar: whether each leaf has nodes on both sides of the iso value */
   mcor_buffer proofs;       /* uchar: state of each slot */
   mcor_buffer quadrants;    /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
@@ -256,11 +256,11 @@ typedef struct mcor_attributes
   mcor_buffer nearest; /* int: the particle nearest to each vertex */
 } mcor_attributes;
 
-/* Which box counts a vertex; 0: none. */
+/* Which rank counts a vertex; 0: none. */
 enum
 {
-  MCOR_OWN = 1,
-  MCOR_ANOTHERS = 2 /* counted by another rank */
+  MCOR_OWN = 1,     /* this rank */
+  MCOR_ANOTHERS = 2 /* another rank */
 };
 
 /* The cells that a call owns, see mcor_box.c. */

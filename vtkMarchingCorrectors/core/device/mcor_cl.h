@@ -61,7 +61,7 @@ typedef enum mcor_program
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
-/* Sets of programs: those of the lattice, of a build's surfaces, of probes. On the built-in device
+/* Sets of programs: for the lattice, for a build's surfaces, for probes. On the built-in device
  * each set is one program. */
 #define MCOR_PARTS_LATTICE ((1 << MCOR_PROGRAM_ATTRIBUTES) - 1)
 #define MCOR_PARTS_PROBE (1 << MCOR_PROGRAM_PROBE)

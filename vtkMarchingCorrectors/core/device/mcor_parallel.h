@@ -38,8 +38,8 @@ int mcor_parallel_for(
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices);
 
-/* Returns the number of processors for one of `count` processes, among those that the calling
- * thread may use; at least 1. */
+/* Returns how many of the processors that the calling thread may use are for one of `count`
+ * processes; at least 1. */
 int mcor_processors(int count);
 
 /* Returns the threads to use on `usable` processors: at most the variable MCOR_THREADS, if that

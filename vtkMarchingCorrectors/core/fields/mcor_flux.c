@@ -25,7 +25,7 @@
  * more (MCOR_FLUX_SMALL), because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* Most divisions of a piece, and of one that is unclear. */
+/* The most divisions of a piece, and of an unclear piece. */
 #define MCOR_FLUX_DEPTH 12
 #define MCOR_FLUX_UNCLEAR_DEPTH 6
 

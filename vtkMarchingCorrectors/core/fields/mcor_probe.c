@@ -200,7 +200,7 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   return mcor_unmap_all(context, views, count, status);
 }
 
-/* Whether the attributes on the device are those of this call. */
+/* Whether the device holds this call's attributes already. */
 static bool mcor_has_attributes(const mcor_context* context, const mcor_input* input)
 {
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;

@@ -75,7 +75,7 @@ typedef struct mcor_project_job
   const mcor_view* view;
   mcor_projection* out;
   double axes[3][3]; /* out->axes, in the axes of the turned particles */
-  bool is_aligned;   /* the image's axes are those of the particles */
+  bool is_aligned;   /* the image's axes are axes of the particles, too */
   bool places_only;  /* only the image's frame is wanted */
   double box[6];     /* the box in turned axes; sides that are not given are infinite */
   double period[3];  /* periods; 0: open */

@@ -11,8 +11,8 @@
 #include <float.h>
 #include <math.h>
 
-/* Finds the ranges of the particles along x, y, z: first the fluid's, then those of the solids that
- * play a part. */
+/* Finds the ranges of the particles along x, y, z: first of the fluid, then of the solids that play
+ * a part. */
 typedef struct mcor_spread_job
 {
   const mcor_input* input;

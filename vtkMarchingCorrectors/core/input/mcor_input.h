@@ -155,7 +155,7 @@ struct mcor_far
   double place[3];
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
-/* Marks the same particles in a call with globals: those beyond the bounds of the others. */
+/* Marks the same particles in a call with globals: all particles beyond the measured bounds. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
 /* Finds the bounds of a lattice that is cut. low, high: the bounds of the positions of all

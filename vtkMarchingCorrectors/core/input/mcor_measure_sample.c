@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Chooses a few particles that stand for all: those whose positions have the least hashes. So
- * neither the order of the input matters, nor how ranks share the particles. From such a sample one
+/* Chooses a few particles that stand for all: the particles whose positions have the least hashes.
+ * So it does not matter in which order they come, or how ranks share them. From such a sample one
  * smoothing length is estimated for particles that have none. */
 
 #include "mcor_input.h"

@@ -523,10 +523,10 @@ extern "C"
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
     /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
      * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on
-     * its left, seen against the constant axis. A closed line ends with its first point. Open lines
-     * come first. Normals lie in the plane; with `filled`, all normals are those of the triangles,
-     * along the constant axis. Where statistics count triangles, they count lines between two
-     * points; lines have no triangle_keys. */
+     * its left, seen from the positive end of the constant axis. A closed line ends with its first
+     * point. Open lines come first. Normals lie in the plane; with `filled`, all normals are those
+     * of the triangles, along the constant axis. Where statistics count triangles, they count lines
+     * between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */

@@ -42,8 +42,8 @@ mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grai
  * processes; at least 1. */
 int mcor_processors(int count);
 
-/* Returns the threads to use on `usable` processors: at most the variable MCOR_THREADS, if that
- * is a number above 0. */
+/* Returns how many threads to use on `usable` processors. If MCOR_THREADS in the environment is a
+ * number above 0, it is the most. */
 int mcor_limit_threads(int usable);
 
 /* Treats elements [first, last) of a loop without slices. */

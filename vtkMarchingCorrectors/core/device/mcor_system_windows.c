@@ -48,9 +48,9 @@ void mcor_use_large_pages(void* memory, size_t bytes)
   (void)memory, (void)bytes;
 }
 
-/* Rejects Wine's own OpenCL.dll: its objects do not begin with tables of functions, through
- * which all others are called. Wine's libraries name themselves behind their first 64 bytes,
- * where others have a DOS program. */
+/* Rejects Wine's own OpenCL.dll: its objects do not begin with tables of functions, which this
+ * library needs. Wine's libraries name themselves behind their first 64 bytes, where other
+ * libraries have a DOS program. */
 mcor_function mcor_system_opencl(void)
 {
   static const char mark[] = "Wine builtin DLL";

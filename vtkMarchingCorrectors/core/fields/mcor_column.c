@@ -110,7 +110,7 @@ static double mcor_density_at(const mcor_column_job* job, double x, double y)
 }
 
 /* Integrates w(sqrt(r^2 + z^2)) over z > 0. Pieces of the integral grow with z, and end where w
- * changes. */
+ * changes to another polynomial. */
 static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_column_job* job = data;

@@ -302,7 +302,7 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
       MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_NOT_FINITE), label.text, p[0], p[1], p[2]);
   }
   MCOR_TRY(mcor_add_shape(job, number));
-  /* Whether the section has an area, or would have one beside the plane of the particles. */
+  /* Whether the section has an area or, in two dimensions, may have one outside of the plane. */
   const double* x = section->points;
   bool has_size = section->shape == MCOR_SECTION_DISC
     ? section->radius > 0 && mcor_dot(x + 3, x + 3) > 0

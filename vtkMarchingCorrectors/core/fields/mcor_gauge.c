@@ -328,8 +328,7 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
  * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
- * equals the level where F is exactly this share of T. Far from solids F = T, and F stays as it is.
- * */
+ * equals the level where F is exactly this share of T. Far from solids F = T, and F stays. */
 mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

@@ -27,8 +27,7 @@ typedef struct mcor_probe_run
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes sorted particles [first, first + count) to the batch as points. If the call has a box,
- * with the cells from `cells` to `end`, points.flags tells whether each particle lies in the box.
- * */
+ * with the cells from `cells` to `end`, points.flags tells whether each particle lies in it. */
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
 /* Writes the caller's points [first, last) to the device. */

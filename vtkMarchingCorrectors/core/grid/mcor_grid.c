@@ -191,7 +191,7 @@ static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket, so keys are not needed. The scalar needs memory next. */
+    /* Each cell has a bucket, so keys are not needed. The scalar takes their memory next. */
     mcor_release(context, &context->stage.values);
     context->stage.values = grid->cell_keys;
     grid->cell_keys = (mcor_buffer){ 0 };

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are so far away that the virtual grid around all of them would be too long. Such a
- * call fails where the grid is measured, and runs once more without some particles. With a box, or
- * with a probe's points, it leaves out all particles that do not reach these; otherwise the ones
+/* Particles that are so far away that the virtual grid around all of them would be too long. A call
+ * with them fails where the grid is measured, and runs once more without some of them. With a box,
+ * or with a probe's points, it leaves out all particles that do not reach these; otherwise the ones
  * that are farthest away, if they are few. The choice depends on the particles of all ranks
  * together, so ranks agree. */
 

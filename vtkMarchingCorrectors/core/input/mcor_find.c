@@ -428,8 +428,7 @@ static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
   return (f->request->not_on_points & 1 << role) != 0;
 }
 
-/* Finds the array of the scalar. Returns -1 if there is none, or if the scalar is summed instead.
- * */
+/* Finds the array of the scalar. Returns -1 if there is none, or if the scalar is summed. */
 static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
 {
   mcor_found* found = f->found;

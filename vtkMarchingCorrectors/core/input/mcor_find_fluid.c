@@ -116,7 +116,7 @@ static mcor_message mcor_describe_kinds(const char* name, const mcor_kind* kinds
   return mcor_describe_unused_type(name, values, counts, count);
 }
 
-/* Whether ranges of this array choose particles, so that it is used. */
+/* Whether the request has ranges of this array, so the array is used. */
 static bool mcor_chooses_particles(const mcor_finder* f, const char* name)
 {
   bool chooses = false;
@@ -314,7 +314,8 @@ void mcor_mark_particles(mcor_finder* f)
   }
 }
 
-/* Finds, for each component, the first value that is a number, and whether another value differs from it. */
+/* Finds the first value of a component that is a number, and whether another value differs from it.
+ * */
 static void mcor_find_variation(const mcor_named* a, int component, double* first, double* varies)
 {
   for (int64_t i = 0; i < a->tuples && !*varies; ++i)

@@ -181,8 +181,7 @@ size_t mcor_count_components(const mcor_input* input);
 mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 
-/* Finds a value near the median of the scalar of fluid particles, whose range is measured already.
- * */
+/* Finds a value near the median of the scalar of fluid particles, whose range is known already. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
 /* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, one axis' factor. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);

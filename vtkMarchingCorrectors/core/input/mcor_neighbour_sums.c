@@ -365,8 +365,8 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is about the distance of near particles: of the nearer one of two particles,
-   * four places before and behind along the curve, because the curve jumps. */
+  /* The first guess is the distance of a near particle: the nearer one of those four places before
+   * and behind along the curve, because the curve may jump. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {

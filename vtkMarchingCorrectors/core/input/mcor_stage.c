@@ -158,7 +158,7 @@ static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count
   }
 }
 
-/* Gaps of fewer particles between marked ones are read, too, not jumped over. */
+/* Gaps between marked particles that are shorter than this are read, too. */
 #define MCOR_STAGE_GAP 8
 
 /* Finds the next run of particles to read at once, and sets *begin to its beginning; returns its

@@ -907,7 +907,7 @@ extern "C"
    * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles of 3/4
    * of the smallest (scaled) smoothing length, which are cut where the weight sum is the level, and
    * divided further until two divisions agree to 2.5e-6 of the largest flux that the section's
-   * velocities allow. Options, globals and ranks as for mcor_gauge. *fluxes is overwritten. */
+   * velocities allow. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);

@@ -103,7 +103,7 @@ typedef struct mcor_cl
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
   bool is_apart;                  /* memory is not the host's, see mcor_locked */
-  bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
+  bool has_fp64, rounds_division; /* the latter: divisions and roots can be exact to the last bit */
   int lanes;              /* evaluation points that a work-item treats at once */
   int segments;           /* segments into which scans and sorts cut their arrays */
   size_t real_size, fix_size;

@@ -314,8 +314,7 @@ void mcor_mark_particles(mcor_finder* f)
   }
 }
 
-/* Finds the first value of a component that is a number, and whether another value differs from it.
- * */
+/* Finds the first number among a component's values, and whether another value differs from it. */
 static void mcor_find_variation(const mcor_named* a, int component, double* first, double* varies)
 {
   for (int64_t i = 0; i < a->tuples && !*varies; ++i)

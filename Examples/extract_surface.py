@@ -40,7 +40,7 @@ def main(particles, free_surface, speed):
     surface.FreeSurfaceOn()
     write(surface, free_surface)
 
-    # The same filter again: what depends on the particles alone is kept.
+    # The same filter runs again, and keeps what depends on the particles alone.
     surface.FreeSurfaceOff()
     # A vector is contoured by its magnitude.
     surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")

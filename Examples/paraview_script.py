@@ -14,7 +14,7 @@ from paraview.simple import (ColorBy, GetColorTransferFunction, GetScalarBar, Lo
 
 
 def extract_surfaces(particles):
-    """The filter twice: it appears in paraview.simple once the plugin is loaded."""
+    """Makes two surfaces. The filter appears in paraview.simple once the plugin is loaded."""
     surface = MarchingCorrectors(Input=particles)  # noqa: F821
     surface.FluidArray = "ParticleType"  # 0 is fluid, 1 is wall
     surface.FreeSurface = 1

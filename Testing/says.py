@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Has the core's sentences by their codes, so that tests do not repeat the words."""
+"""Holds the core's sentences by their codes, so that tests do not repeat the words."""
 import re
 from pathlib import Path
 
@@ -15,7 +15,7 @@ _PART = re.compile(r"%[-+0-9.]*(?:ll|z)?[a-z]|\{[a-z_]+[^}]*\}")
 
 
 def fill(text, word):
-    """With word(name, value) in place of each slot."""
+    """Returns the text with word(name, value) in place of each slot."""
     return re.sub(r"\{([a-z_]+)(?: ([^{}]+))?\}", lambda slot: word(slot[1], slot[2] or ""), text)
 
 

@@ -29,10 +29,10 @@ def print_table(title, columns, rows):
 
 
 def walls():
-    """Makes a channel between walls of three layers at y = 0 and y = 12, in which everything moves with (1, 1, 0), and a tank with a floor."""
+    """Measures a channel between walls of three layers at y = 0 and y = 12, in which everything moves with (1, 1, 0), and a tank with a floor."""
     x = lattice((-8, 8), (-3, 15), (-8, 8))
     solid = (x[:, 1] < 0) | (x[:, 1] > 12)
-    in_place = x.copy()  # Here the layer beside each wall stays half a spacing away from it.
+    in_place = x.copy()  # Here the layer beside each wall stays half a spacing away from the wall.
     x[~solid] += np.random.default_rng(1).normal(0, 0.2, (np.count_nonzero(~solid), 3))
     x[~solid, 1] = x[~solid, 1].clip(0.5, 11.5)
     layer = ~solid & ((in_place[:, 1] < 1) | (in_place[:, 1] > 11))
@@ -119,7 +119,7 @@ def curvature():
 
 
 def attributes():
-    """Compares values at the free surface of a spinning ball, and of still water, with those of the flow."""
+    """Compares values at the free surface of a spinning ball, and of still water, with the flow's true values."""
     spinning = lattice((-10, 10), (-10, 10), (-10, 10))
     spinning = spinning[np.linalg.norm(spinning, axis=1) < 9]
     water = lattice((0, 12), (0, 12), (0, 10))
@@ -156,7 +156,8 @@ def mean_and_corrected(x, values, h, volume, points):
 
 
 def corrected():
-    """Prints what first-order corrected values would be: of white noise on disordered water, and of the dam break's velocities. Needs SciPy."""
+    """Prints how values with a first-order correction would differ: for white noise on disordered water, and for the dam break's velocities. Needs
+    SciPy."""
     from marchingcorrectors import io
     random = np.random.default_rng(0)
     x = lattice((-6, 6), (-6, 6), (0, 10))

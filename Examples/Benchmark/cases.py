@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The cases of the benchmark beside the tables, each by itself; see README.md."""
+"""All cases of the benchmark but the tables; see README.md."""
 import pathlib
 import statistics
 import time
@@ -215,7 +215,7 @@ class Watch:
 
     def run(self, stop_at=None):
         """Returns the seconds of the whole run; the longest gaps between reports, by clock and by processors, with the phase in which each begins;
-        the seconds after a stop."""
+        and the seconds that the run goes on after a stop."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -328,7 +328,7 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids outside of the fluid, one spacing away, of the fluid's volume."""
+    """Writes the particles with a layer of solids outside of the fluid, one spacing away; each solid has the volume of a fluid particle."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
@@ -393,9 +393,8 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OM
 
 
 class Model:
-    """Particles in a box of these side lengths, halved across its longest side until each rank has one; lengths are
-    distances of particles. Copies lie in shells, so many particle distances deep, on all sides of a rank's box that are
-    not the whole's."""
+    """Divides a box of particles, halving the longest side, until each rank has its own box; lengths are in distances of particles. Copies lie in
+    shells of a given depth on the sides that a rank's box shares with other ranks."""
 
     def __init__(self, count, shape, ranks):
         scale = (count / (shape[0] * shape[1] * shape[2])) ** (1 / 3)
@@ -407,7 +406,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns the mean number of ranks' copies: a side that is cut into p parts has a neighbour with probability 1 - 1/p; or the largest."""
+        """Returns the mean number of copies of a rank, or the largest. If a side is cut into p parts, a part has a neighbour on either side with
+        probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))
@@ -449,7 +449,7 @@ def ranks(benchmark):
                      f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
                      excess(found["rank_nodes_evaluated"])])
     out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean"], rows)
-    # With one file, all particles travel that the first rank does not own, and all copies.
+    # With one file, all copies travel, and all particles that the first rank does not own.
     sent = sum(sum(found["rank_bytes_sent"]) for _, found in runs) / sum(
         sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found in runs)
     nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found in runs) /
@@ -461,7 +461,7 @@ def ranks(benchmark):
         for number in (1, 8, 64, 512, 1024):
             model = Model(total, shape, number)
             copies, most = ((model.copies(depth, of_most) if number > 1 else 0) for of_most in (False, True))
-            moved = model.each * (1 - 1 / number) + copies  # No particle begins where it belongs.
+            moved = model.each * (1 - 1 / number) + copies  # Particles begin on any rank.
             rows.append([text_of(total), number, f"{model.each:.3g}", f"{copies:.3g}", f"{most:.3g}",
                          f"{copies / model.each:.2f}", f"{moved * sent / 1e6:.3g}",
                          f"{model.surface() * nodes:.3g}"])

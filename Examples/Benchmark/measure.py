@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Has what all cases of the benchmark share: particle sets, runs of the program and of its competitors, tables."""
+"""Holds what all cases of the benchmark share: particle sets, runs of the program and of its competitors, tables."""
 import functools
 import hashlib
 import importlib.util
@@ -33,8 +33,8 @@ SETS = {
     "dense-tank": ("tank", ("--ratio", "1.814"), ("--kernel", "quadratic")),
     # These have 70 neighbours and variable h, and stand for the paper's dam break.
     "dam-break": ("dam_break", (), ()),
-    # A full lattice: stands for the paper's vortex rings. There is no free surface, so nothing is trimmed: with a
-    # shortened kernel, weights between the particles of a lattice are low.
+    # A full lattice stands for the paper's vortex rings. It has no free surface, so nothing is trimmed: with a shortened kernel, weights between the
+    # particles of a lattice are low.
     "vortex-rings": ("vortex_rings", ("--keep-all",),
                      ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0)),
     "plane": ("plane", (), ()),
@@ -58,7 +58,7 @@ def text_of(count):
 
 
 class Sets:
-    """Has the folder of the particle sets. A set that exists already, made in the same way, is not made again."""
+    """Keeps particle sets in a folder. A set that exists already, made in the same way, is not made again."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -77,8 +77,8 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """Writes these particles with one array alone, and returns options in place of the others: smoothing length, mass and density must be the
-        same for all particles."""
+        """Writes these particles with one array alone, and returns options that replace the other arrays: smoothing length, mass and density must be
+        the same for all particles."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)
@@ -131,7 +131,7 @@ class Program:
 
     def __init__(self, path, device, runs, folder):
         self.path, self.device, self.runs = pathlib.Path(path).resolve(), device, runs
-        self.folder, self.surface = folder, folder / "surface.vtp"  # These are of the last run.
+        self.folder, self.surface = folder, folder / "surface.vtp"  # The last run's.
         self.run = functools.lru_cache(None)(self.measure)
 
     def measure(self, path, options):
@@ -210,7 +210,7 @@ def interpolator(particles, image, h, dimension, *kept):
 
 
 def run_vtk(path, iso="0", dimension="3", length=None):
-    """vtkSPHInterpolator of one scalar to an image of the particles' bounds, then vtkFlyingEdges."""
+    """Runs vtkSPHInterpolator of one scalar on an image of the particles' bounds, then vtkFlyingEdges."""
     particles, dimension = read(path), int(dimension)
     h = float(length) if length else particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
     image = lattice(particles, CUBE_FACTOR * h, dimension)
@@ -227,7 +227,7 @@ def run_vtk(path, iso="0", dimension="3", length=None):
 
 
 def run_splashsurf(path):
-    """Free surface with one attribute and normals."""
+    """Makes the free surface with one attribute and normals."""
     from importlib.metadata import version
 
     import pysplashsurf
@@ -250,7 +250,7 @@ def has_splashsurf():
 
 
 def smoothed_by_splashsurf(points, spacing, cube=0.5):
-    """The mesh, with its normals, of splashsurf's recommended settings; cubes are in particle radii."""
+    """Returns the mesh, with normals, of splashsurf's recommended settings; cubes are in particle radii."""
     import pysplashsurf
     return pysplashsurf.reconstruction_pipeline(
         points.astype("float32"), particle_radius=spacing / 2, smoothing_length=2.0, cube_size=cube, iso_surface_threshold=0.6,
@@ -271,7 +271,7 @@ COMPETITORS = {"vtk": run_vtk, "splashsurf": run_splashsurf, "splashsurf, smooth
 
 
 def available_bytes():
-    """Returns the memory that Linux could give without swapping: what is free, or only caches files."""
+    """Returns the memory that Linux could give without swapping: free memory, and caches of files."""
     for line in pathlib.Path("/proc/meminfo").read_text().splitlines():
         if line.startswith("MemAvailable:"):
             return 1024 * int(line.split()[1])
@@ -323,7 +323,7 @@ class Report:
         self.text(*([""] if self.lines[-1:] != [""] else []), f"{mark} {line}", "", *words, *([""] if words else []))
 
     def table(self, header, rows):
-        """First column to the left, all others to the right."""
+        """Aligns the first column to the left, all others to the right."""
         rows = [[str(cell) for cell in row] for row in rows]
         widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
 

@@ -11,7 +11,7 @@ import numpy as np
 from measure import (compete, has_splashsurf, make_particles, points_of, processor_seconds, read, smoothed_by_splashsurf,
                      vtk_to_numpy)
 
-DROPS, RADIUS, HEIGHT = 40, 13, 13  # These are of the crown.
+DROPS, RADIUS, HEIGHT = 40, 13, 13  # The crown's lone drops, the radius and height of its sheet.
 WAYS = {"as it is": [], "--compact": ["--compact"], "--widen 2": ["--widen", "2"], "--smooth": ["--smooth"],
         "--smooth --iso 0.55": ["--smooth", "--iso", "0.55"]}
 SPLASHSURF = {"splashsurf, cubes 0.5 r": 0.5, "splashsurf, cubes 1.0 r": 1.0}  # It runs with its recommended smoothing.

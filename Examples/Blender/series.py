@@ -13,7 +13,7 @@ from marchingcorrectors._usd import Film, find_velocity
 from marchingcorrectors.io import ENDINGS, count_steps, read
 
 __all__ = ["ENDINGS", "Error", "Step", "end", "find_velocity", "list_arrays", "list_steps", "make_surface", "read", "write_usd"]
-_context = None  # The context is a device with what it keeps from call to call.
+_context = None  # The context has a device, and keeps data there from call to call.
 
 
 class Step(NamedTuple):

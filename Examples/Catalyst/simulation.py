@@ -11,7 +11,7 @@ channel "particles". Each process moves every RANKS-th particle, so none has a r
 import sys
 
 import numpy as np
-from paraview.catalyst import bridge  # This must be imported before anything else of ParaView.
+from paraview.catalyst import bridge  # This import must come before all others of ParaView.
 from vtkmodules.vtkCommonDataModel import vtkPointSet
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 from vortex import advanced, ball, fill

@@ -70,8 +70,8 @@ def dam_break(count, ratio=1.28):
         spacing *= (len(lattice(spacing)[0]) / count) ** (1 / 3)
     positions, spacings = lattice(spacing)
     volumes = spacings.prod(1)
-    # A share of the spacing, either way. The sum of V W at particles deep inside then varies by 1.4 %; in dam_break_45k.vtp,
-    # which was simulated, it varies by 1.5 % (standard deviations).
+    # Particles move by up to 0.06 spacings. The sum of V W at particles deep inside then varies by 1.4 %; in dam_break_45k.vtp, which was
+    # simulated, it varies by 1.5 % (standard deviations).
     positions += np.random.default_rng(477).uniform(-0.06, 0.06, positions.shape) * spacings
     return positions, {"SmoothingLength": ratio * np.cbrt(volumes), "Density": np.full(len(positions), 1000.0),
                        "Mass": 1000.0 * volumes, "Lambda2": lambda2(positions, 2 * np.pi / 1.1, 2.3)}
@@ -105,7 +105,7 @@ def graded(count, ratio=1000):
     def shells(step):
         return 1 + int(math.log(ratio) / math.log(1 + 0.9 * step))
 
-    low, step = 1e-3, 1.0  # spacing per distance from the middle that gives about so many particles; the wedge takes 0.3
+    low, step = 1e-3, 1.0  # spacing over distance from the middle, for about `count` particles; the wedge takes 0.3
     for _ in range(60):
         middle = (low + step) / 2
         more = 0.7 * shells(middle) * 4 * math.pi / middle**2 > count
@@ -253,7 +253,7 @@ def moving_rings(sigma=0.1, z0=0.6, amplitude=0.012, time=3.5, dt=0.03, nodes=38
 
 
 def deposit(rings, sigmas, origin, dims, dx, cut=4.0):
-    """Vorticity on the lattice, as array [nz, ny, nx, 3] float32."""
+    """Returns the vorticity on the lattice, as array [nz, ny, nx, 3] float32."""
     w = np.zeros((dims[2], dims[1], dims[0], 3), np.float32)
     axes = [origin[k] + dx * np.arange(dims[k]) for k in range(3)]
     for p, s in zip(rings, sigmas):
@@ -307,7 +307,7 @@ def vortex_rings(count, keep_all=False, threshold=1e-3):
 
 
 def poly_data(positions, arrays):
-    """Writes a file. positions: [n, 3]; arrays: by name, of n values or vectors. Types stay as they are."""
+    """Returns vtkPolyData. positions: [n, 3]; arrays: by name, of n values or vectors. Types stay as they are."""
     particles = vtk.vtkPolyData()
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(positions, deep=1))

@@ -47,7 +47,7 @@ def store(folder):
 
 
 def animate(file):
-    """The scene and the view; the frames are the interpolator's time steps."""
+    """Makes the scene and the view; the frames are the interpolator's time steps."""
     film = SPHTemporalInterpolator(Input=PVDReader(FileName=file), ResampleFactor=BETWEEN + 1)  # noqa: F821, the plugin's
     surface = MarchingCorrectors(Input=film, FreeSurface=1, Smooth=1)  # noqa: F821
     view = CreateRenderView(ViewSize=[360, 360], UseColorPaletteForBackground=0, Background=[1.0, 1.0, 1.0],

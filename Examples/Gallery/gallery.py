@@ -34,7 +34,7 @@ RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE, WHITE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5), (1, 1, 1)
 # Cameras have position, focus and angle; the whole tank is seen from farther with more panels in a row.
 TANK = {n: ((-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), angle) for n, angle in ((1, 27), (2, 38), (3, 52))}
-NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # It looks at the water behind the obstacle.
+NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # This camera looks at the water behind the obstacle.
 EDGE = (0.3, 0.75, 0.4), (0.82, 0.44, 0.12), 22
 README = (-0.35, 2.5, 4.4), (1.565, 0.45, 0.0), 31
 
@@ -115,7 +115,7 @@ def panel(actors, text, place, size, camera, up):
 
 
 def in_tank(reader, panels, camera, place=(12, 370), size=18):
-    """Panels of (text, actors...) with the particles' outline."""
+    """Makes panels of (text, actors...) with the particles' outline."""
     outline = vtkOutlineSource()
     outline.SetBounds(reader.GetOutput().GetBounds())
     renderers = []
@@ -188,7 +188,7 @@ FIGURES = {
 
 
 def figure(name):
-    """Computes Vorticity and Lambda2, in place of the file's own."""
+    """Draws a figure of FIGURES. Vorticity and Lambda2 are computed; the file's own arrays of these names are not used."""
     reader, (camera, panels) = read(), FIGURES[name]
     derived = water(vtkSPHDerivatives(), reader, "Velocity")
 
@@ -210,7 +210,7 @@ def figure_4():
 
 
 def figure_5():
-    """Returns the colours: green where the sum of the kernels is 1, red where it is 0.5 or less."""
+    """Draws surfaces that are green where the sum of the kernels is 1, and red where it is 0.5 or less."""
     reader, table = read(), vtkLookupTable()
     table.SetTableRange(0.5, 1.0)
     table.SetHueRange(0.0, 0.33)
@@ -221,12 +221,12 @@ def figure_5():
         for scale, text in ((1.0, "pressure 1500 Pa, h"), (0.75, "0.75 h"), (0.5, "0.5 h"))], TANK[3])
 
 
-FINEST, SHARE = 0.002, 0.1  # These are the smallest spacing, and its growth with the distance from the point.
+FINEST, SHARE = 0.002, 0.1  # The smallest spacing, and how it grows with the distance from the point.
 
 
 def graded_particles():
-    """A half-space below rings of waves, each half as high and as wide as the next one outside: cubes, divided until they are
-    fine enough for their distance from the point. Their centres, and their edges."""
+    """Returns the centres and edges of cubes that are divided until they are fine enough for their distance from the point. They fill a
+    half-space below rings of waves, each half as high and as wide as the next ring outside."""
     centres, edge, found = np.zeros((1, 3)), 2.0, []
     while len(centres):
         far, beside = np.linalg.norm(centres, axis=1), np.hypot(centres[:, 0], centres[:, 1]) + 0.5 * FINEST
@@ -240,9 +240,9 @@ def graded_particles():
 
 
 def graded():
-    """Adaptive cubes: the whole, and two looks from nearer, with the triangles' edges."""
+    """Draws adaptive cubes: the whole surface, and two views from nearer, with the triangles' edges."""
     rows, renderers, extract = graded_particles(), [], vtkMarchingCorrectors()
-    # 1.5 edges: the kernel reaches across the step from one edge to the next.
+    # The smoothing length is 1.5 edges, so that kernels reach across the step from one size of cubes to the next.
     extract.SetInputData(poly_data(rows[:, :3].copy(), {"SmoothingLength": 1.5 * rows[:, 3], "Volume": rows[:, 3] ** 3}))
     extract.FreeSurfaceOn()
     extract.SetCubeSizeModeToAdaptive()

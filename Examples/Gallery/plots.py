@@ -48,7 +48,7 @@ def legend_of(title):
 
 
 def flux():
-    """The dam break with a section, and fluxes along the tank."""
+    """Plots the dam break with a section, and fluxes along the tank."""
     particles, place = dam_break(), 1.0
     section = pyvista.Plane(center=(place, 0.3, 0), direction=(1, 0, 0), i_size=1.0, j_size=0.8, i_resolution=400,
                             j_resolution=400)
@@ -59,7 +59,7 @@ def flux():
     plotter.add_mesh(section, scalars="v_x", cmap="coolwarm", clim=(-3, 3), lighting=False,
                      scalar_bar_args=legend_of("velocity along the tank in m/s"))
     places = np.linspace(0.02, 3.2, 160)
-    # Across the tank; the normal is along it.
+    # The sections lie across the tank; their normals point along it.
     walls = {f"{x:.3f}": np.array([[x, -0.1, -0.6], [x, 1.3, -0.6], [x, -0.1, 0.6]]) for x in places}
     found = particles.sph.flux(walls, fluid=FLUID)
     figure, (above, below) = plt.subplots(2, 1, figsize=(9, 7.6), height_ratios=(1.5, 1), layout="constrained")
@@ -89,8 +89,8 @@ PERIOD = 2 * np.pi / np.sqrt(9.81 * WAVE * np.tanh(WAVE * DEPTH))
 
 
 def level(time):
-    """At the tank's end, of particles moved as the linear theory of a standing wave moves water: time, the gauge's level,
-    the theory's, and that of the highest particle nearby."""
+    """Moves particles as the linear theory of a standing wave moves water. Returns the time and three levels near the
+    tank's end: by the gauge, by the theory, and of the highest particle nearby."""
     axes = [np.arange(SPACING / 2, extent, SPACING) for extent in (LENGTH, 0.2, DEPTH)]
     x, y, z = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
     phase = np.cos(2 * np.pi * time / PERIOD)
@@ -110,7 +110,7 @@ def volumes_of(surface):
 
 
 def numbers():
-    """A wave gauge over time; drops by their volume."""
+    """Plots a wave gauge over time, and drops by their volume."""
     time, gauge, theory, highest = np.array([level(time) for time in np.linspace(0, 2 * PERIOD, 41)]).T
     print(f"gauge: off the theory by {np.abs(gauge - theory).max() / SPACING:.3f} spacings at most; the highest particle by "
           f"{np.abs(highest - theory).max() / SPACING:.3f}")
@@ -136,8 +136,8 @@ def numbers():
 
 
 def projection(count=60000, size=480, decades=3.5):
-    """A disc galaxy, gas in two spiral arms, thin in the middle, face on and from the side; its column density, and beside
-    it what counting particles in pixels gives."""
+    """Plots a disc galaxy, with gas in two spiral arms, from above and from the side: its column density, and beside it
+    counts of particles in pixels."""
     random = np.random.default_rng(5)
     radius = 0.22 * random.gamma(2, size=count)
     angle = random.uniform(0, 2 * np.pi, count)
@@ -172,7 +172,7 @@ def interpolate(particles, square):
 
 
 def plane_bands(values=(-1, 1000, 2000, 3000)):
-    """Bands of pressure in a flume, and those of vtkSPHInterpolator, on squares as large, below."""
+    """Plots bands of pressure in a flume and, below, the bands of vtkSPHInterpolator on squares of the same size."""
     with tempfile.TemporaryDirectory() as folder:
         flume = Path(folder) / "flume.vtp"
         subprocess.run([sys.executable, DATA / "make_particles.py", "wave", "20000", flume], check=True, stdout=subprocess.DEVNULL)
@@ -206,7 +206,7 @@ def plane_bands(values=(-1, 1000, 2000, 3000)):
 
 
 def smooth():
-    """The free surface as it is, smooth, and splashsurf's, with cubes of half a particle radius."""
+    """Plots the free surface, the smooth free surface, and splashsurf's with cubes of half a particle radius."""
     particles = dam_break()
     water = particles.extract_points(particles["ParticleType"] == 0)
     made = smoothed_by_splashsurf(water.points, float(np.median(water["Mass"] / water["Density"])) ** (1 / 3))
@@ -231,13 +231,13 @@ CUBE, ISO, WIDE, HIGH = 1.3, 0.2, 7.8, 6.5  # These are for the method's picture
 
 
 def method():
-    """The method's four steps, by plain sums over a few particles in a plane."""
-    x, y = np.meshgrid(np.arange(0.5, WIDE), np.arange(0.3, 5))  # It is a lattice, moved at random, below empty space.
+    """Plots the method's four steps, by plain sums over a few particles in a plane."""
+    x, y = np.meshgrid(np.arange(0.5, WIDE), np.arange(0.3, 5))  # a lattice, moved at random, below empty space
     at = np.stack([x.ravel(), y.ravel()], 1) + np.random.default_rng(3).uniform(-0.18, 0.18, (x.size, 2))
     value = 0.5 + 0.5 * np.tanh(3 * (3.2 - at[:, 0] + 1.2 * np.sin(1.1 * at[:, 1])))
 
     def sums(point, h=1.3):
-        """The weight sum, and the Shepard mean."""
+        """Returns the weight sum, and the Shepard mean."""
         q = np.hypot(*(at - point).T) / h
         w = 10 / (7 * np.pi * h * h) * (0.25 * np.maximum(2 - q, 0) ** 3 - np.maximum(1 - q, 0) ** 3)
         return w.sum(), (w * value).sum() / max(w.sum(), 1e-12)

@@ -16,7 +16,7 @@ from paraview.simple import (Calculator, ColorBy, CreateLayout, CreateRenderView
                              Render, SaveScreenshot, Show, Text, Threshold, XMLPolyDataReader)
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Data", "dam_break_45k.vtp")
-CUTS = (-1.0, 0.9, 1.7, 4.0)  # of three slabs along x
+CUTS = (-1.0, 0.9, 1.7, 4.0)  # the ends of three slabs along x
 # ParaView 5.12 gave the filter and its array other names.
 PROCESS_IDS, NUMBER = ((simple.ProcessIds, "PointProcessIds") if hasattr(simple, "ProcessIds")
                        else (simple.ProcessIdScalars, "ProcessId"))

@@ -24,7 +24,7 @@ WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh
 
 
 def drop_privileges():
-    """Drops root's powers, for preexec_fn, so that the modes of files count. The user stays root, because another user may not reach the build
+    """Drops root's rights, as preexec_fn, so that the modes of files count. The user stays root, because another user may not reach the build
     tree."""
     if os.geteuid() == 0:
         libc = ctypes.CDLL(None)
@@ -91,7 +91,7 @@ class CommandLineTest(unittest.TestCase):
         return json.loads(statistics.read_text())
 
     def refuse(self, result, status, sentence):
-        """A failed run has one line on stderr, which matches, and no output file of any kind."""
+        """Checks that the run failed, with one line on stderr, which matches, and without any output file."""
         self.one_sentence(result, status, sentence)
         left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
         self.assertEqual(left, [])
@@ -104,7 +104,7 @@ class CommandLineTest(unittest.TestCase):
         self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
 
     def refuse_all(self, status, cases, *common, source=None):
-        """Refuses each of `cases`, which are pairs of ([options], sentence)."""
+        """Checks that each of `cases`, ([options], sentence), is refused."""
         for options, sentence in cases:
             with self.subTest(options):
                 self.refuse(self.extract(*common, *options, source=source), status, sentence)

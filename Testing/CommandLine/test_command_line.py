@@ -67,7 +67,8 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output, or is refused with what it needs. A surface without a scalar is the free surface."""
+        """A mode as the first word changes no output, or a sentence refuses it and says what it needs. A surface without a scalar is the free
+        surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
         self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))
@@ -94,7 +95,7 @@ class Usage(CommandLineTest):
                     self.refuse(self.extract(*contour, *pair), 2, "{} and {} exclude each other: .*; leave out one".format(*names))
 
     def test_options_that_do_not_fit(self):
-        """test_modes.py tries what options need by Options.def; other rules stand here."""
+        """Options that do not fit are refused. test_modes.py tries the needs in Options.def; other rules are tried here."""
         free = ["--free-surface"]
         self.refuse_all(2, [
             *(([*how, "--derive", "Velocity", *more], "what --derive makes is neither the --scalar nor among")
@@ -225,7 +226,7 @@ class BadData(CommandLineTest):
         self.assertGreater(self.succeed(*fine, "1000")["statistics"]["device_bytes_peak"], 1 << 20)
 
     def test_no_home(self):
-        """PoCL needs a folder for its compiled programs, and this home is no folder."""
+        """If the home is no folder, PoCL cannot keep its compiled programs. Runs work all the same, and leave nothing behind."""
         temporary = self.directory / "temporary"
         temporary.mkdir()
         environment = {k: v for k, v in os.environ.items()

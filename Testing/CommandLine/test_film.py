@@ -56,7 +56,7 @@ class Film(CommandLineTest):
     # Films
 
     def test_ten_steps_by_one_command(self):
-        """Of ten times five lie between two steps and are interpolated."""
+        """Five of the ten times lie between two steps, and are interpolated."""
         self.write_steps(6)
         times = [0.05 * i for i in range(10)]  # One of these times is 0.30000000000000004.
         result = self.run_good("steps.pvd", self.film, *FREE, "--times", ",".join(map(repr, times)), "--stats", "s.json")
@@ -147,7 +147,7 @@ class Film(CommandLineTest):
         self.one_sentence(self.run_program(*paths, "o.vtp", "--probe", "points.csv"), 2, ".csv")
 
     def test_color_names(self):
-        """A wrong array name is told before a surface is made, and one that differs only in case is offered as a correction."""
+        """A wrong array name is reported before a surface is made, and a name that differs only in case is offered as a correction."""
         files.write_vtp(self.input, *files.drop_at(0.0))
         picture = ("--screenshot", "p.png")
         for outputs in ((self.input, "film_%04d.ply", "--free-surface"), ("o.vti", "--slice", "z=0", *picture),

@@ -68,7 +68,7 @@ class Meter(CommandLineTest):
             (self.directory / name).write_text(text.replace("<PolyData>", f"<PolyData><FieldData>{array}</FieldData>"))
         for source, end, times in ((stored[:2], r"'dt' says, 0.05; give .* with --time-step\n$", [0, 0.05]),
                                    (stored[2:], r"'dt' says, 0.2; give .* with --time-step, which is about 0.05.* by 'Velocity'\n$", [0, 0.2]),
-                                   (stored[1:3], "at 0, 1, 2", [0, 1])):  # In these files it differs.
+                                   (stored[1:3], "at 0, 1, 2", [0, 1])):  # In these files the time differs.
             self.run_good(*source, self.table, *self.one, says=end)
             self.assertEqual([float(row["time"]) for row in read_table(self.table)], times)
 
@@ -96,7 +96,8 @@ class Meter(CommandLineTest):
                     self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
-        """Refuses these usages (status 2) and data (status 1), and the ones that are wrong for both tables. The table stays as it was."""
+        """Checks that these usages (status 2) and data (status 1) are refused, and also all that is wrong for gauges and fluxes alike. The table
+        stays as it was."""
         many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
             (["--iso", "0.2,0.5"], "all but one --iso value"), (["--iso", "0"], "--iso value above 0"),
@@ -316,7 +317,7 @@ class Volumes(CommandLineTest):
     """Tests the level of a block of 10 x 10 x 10 particles around the origin, whose surface is half a spacing beyond the particles."""
 
     def level(self, *options, arrays=(), points=None):
-        """Returns the level, in spacings above the uppermost particles, and what the program said about volumes."""
+        """Returns the level, in spacings above the uppermost particles, and what the program says about volumes."""
         given = points or self.points
         files.write_vtp(self.input, given, {name: self.arrays[name][:len(given)] for name in arrays})
         table = self.directory / "levels.csv"
@@ -325,7 +326,7 @@ class Volumes(CommandLineTest):
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):
-        """The level is the same whatever tells the volumes, and gauges say what did."""
+        """The level is the same wherever volumes come from, and the program says where."""
         for options, arrays, told in (
                 (("--smoothing-length", "0.13"), (), "computed from the positions"),
                 (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),
@@ -346,7 +347,7 @@ class Volumes(CommandLineTest):
             self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
 
     def test_spray(self):
-        """A particle by itself has a surface with computed volumes alone, or a large one, and a run counts those that have none."""
+        """A single particle has a surface only if its volume is computed, or large; a run counts the particles without a surface."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
         files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})
         given = ("--smoothing-length", "0.13")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every option of the program in every mode: it changes the outputs, or one sentence refuses it.
+"""Tries every option of the program in every mode: the option changes the outputs, or one sentence refuses it.
 
 test_modes.py PROGRAM PRELOAD [unittest arguments]; writes options_in_modes.csv, a row for each option and a column for each
 mode, to the folder that it runs in.
@@ -40,7 +40,7 @@ class Trial(collections.namedtuple("Trial", "value context extra output inputs",
     replaces; and other files."""
 
 
-# These rows say how each option is tried. In each mode, options of the context that do not act there are left out.
+# These rows say how each option is tried. In each mode, options of `context` that do not act in the mode are left out.
 TRIALS = {
     "--scalar": Trial("Noise"), "--component": Trial("0", {"--scalar": "Velocity", "--iso": "0.02"}), "--iso": Trial("0.25"),
     "--free-surface": Trial("", {}, FREE), "--derive": Trial("Velocity"), "--field": Trial("sum"), "--probe": Trial("others.vtp"),
@@ -92,8 +92,8 @@ OTHER_TRIALS = {
     **{(option, mode): TRIALS[option]._replace(inputs=STEPS, output=output)
        for option in ("--times", "--ids", "--time-step", "--fps", "--slow")
        for mode, output in (("project", "out.pvd"), ("probe", "out.csv"))}}
-QUESTIONS = {"--list-devices", "--list-arrays", "--help", "--version"}  # which are asked without a mode
-# What an option asks for is there anyway, or it changes nothing but the time.
+QUESTIONS = {"--list-devices", "--list-arrays", "--help", "--version"}  # these need no mode
+# The option's effect is there anyway, or the option changes nothing but the time.
 HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("slice", "line", "probe")),
          *(("--threads", mode) for mode in MODES)}
 
@@ -111,8 +111,8 @@ def parameters_of(report):
 
 
 def is_shown(option, value, report, base):
-    """Returns whether, of parameters named like the option, one has changed, to the option's value if that is a number or a word. A number may also stand
-    for an array's name. Reports need not have such a parameter."""
+    """Returns whether a parameter named like the option has changed: to the option's value, if this is a number or a word. A number may also replace
+    an array's name. True if the reports have no such parameter."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}
@@ -228,7 +228,7 @@ class Modes(CommandLineTest):
         self.assertEqual(said, listed)
 
     def test_what_options_need(self):
-        """Where nothing is there that an option needs, as Options.def has it, the sentence names what is."""
+        """Without anything that Options.def says an option needs, the sentence names what is needed."""
         text = (pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options" / "Options.def").read_text(encoding="utf-8")
         rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
         self.assertGreater(len(rows), 15)

@@ -37,7 +37,7 @@ class OutputFiles(CommandLineTest):
     # ---- Outputs that are not regular files ----
 
     def device(self, name, minor):
-        """Returns a device file of the test's own, where one may be made, because a fault would destroy the machine's."""
+        """Returns a device file of the test's own, if the user may make one, because a fault would destroy the machine's."""
         path = self.directory / name
         try:
             os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, minor))

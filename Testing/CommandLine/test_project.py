@@ -74,7 +74,7 @@ class Project(CommandLineTest):
         self.assertAlmostEqual(self.mass("--project", "z", "--box=-2,2,-2,2,-1,0", "--resolution", "40"), 500, delta=1e-3)
 
     def test_plane(self):
-        """Of particles in a plane, the image shows the field itself."""
+        """For particles in a plane, the image shows the field itself."""
         points = [(x, y, 0.5) for x, y, z in self.points if z == self.points[0][2]]
         arrays = {name: self.arrays[name][:100] for name in ("SmoothingLength", "Density", "Mass")}
         arrays["Mass"] = [10.0] * 100
@@ -118,7 +118,7 @@ class Project(CommandLineTest):
             self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else "^$")
 
     def test_steps_without_fluid(self):
-        """The image of a step without particles has its neighbour's pixels, whose values are 0, or no number in a mean."""
+        """The image of a step without particles has the neighbouring step's pixels. Their values are 0, or NaN in a mean."""
         files.write_vtp(self.directory / "none.vtp", [], {})
         options = ["--project", "z", "--resolution", "9", "--scalar", "Kind"]
         for more, empty in (([], lambda value: value == 0), (["--weighted-by", "Mass"], math.isnan)):

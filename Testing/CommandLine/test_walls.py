@@ -41,7 +41,7 @@ class Walls(CommandLineTest):
                          self.surface(*free, "--fluid", "Kind=0"))
 
     def test_several_bodies(self):
-        """Walls may come in all formats and any order. Arrays that they lack are filled from the fluid, all of whose particles are alike here."""
+        """Walls may come in all formats and any order. Arrays that walls lack are filled from the fluid, whose particles are all alike here."""
         wanted = self.surface(*HOW, "--fluid", "Kind=0")
         lacking = ["Density", "Velocity", "SmoothingLength", "Mass", "Radius"]
         low = self.write("Left.vtu", lambda kind, point: kind == 1 and point[1] < 0, lacking[:2])

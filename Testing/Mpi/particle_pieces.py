@@ -28,7 +28,7 @@ def arrays_of(surface):
 
 
 def take(whole, indices):
-    """These points and their arrays, and the time of the whole; no cells."""
+    """Returns these points with their arrays and the time of the whole, but without cells."""
     part = vtkPolyData()
     part.SetFieldData(whole.GetFieldData())
     ids = vtkIdList()

@@ -25,7 +25,7 @@ PROCESS_IDS, NUMBER = ((simple.ProcessIds, "PointProcessIds") if hasattr(simple,
 CASES = {
     "free": {"FreeSurface": 1},
     "speed": {"ContourBy": ["POINTS", "Speed"], "Isosurfaces": [1.2, 2.0], "Topology": "Field", "ComputeWeightSum": 1},
-    "middle": {"ContourBy": ["POINTS", "Speed"], "CubeSizeMode": "Uniform"},  # of the range, which all agree on
+    "middle": {"ContourBy": ["POINTS", "Speed"], "CubeSizeMode": "Uniform"},  # the range's middle is the same on all ranks
     "box": {"FreeSurface": 1, "OnlyInABox": 1, "BoxPosition": [-0.4, -10, -0.2], "BoxLength": [0.91, 10.33, 10.2]},
 }
 

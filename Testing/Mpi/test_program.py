@@ -74,7 +74,7 @@ class Program(unittest.TestCase):
                                           array.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
-        """Processes with pieces of the particles write, to one file, what one process writes: points, triangles and arrays."""
+        """Checks that processes with pieces of the particles write to one file what one process writes: points, triangles and arrays."""
         done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
@@ -177,7 +177,7 @@ class Program(unittest.TestCase):
             self.check_point_data(alone, ranks)
 
     def test_fields_in_a_plane(self):
-        """Points on a line, what is derived, gauges and fluxes, with walls, too."""
+        """Compares points on a line, derived arrays, gauges and fluxes, with walls, too."""
         plane = self.write_plane()
         particles = read(plane)
         wall = vtkDoubleArray()
@@ -218,7 +218,7 @@ class Program(unittest.TestCase):
             self.assertGreater(os.path.getsize(self.path("out.ply")), 50000)
 
     def test_tables_and_images(self):
-        """Compares gauges, fluxes, an image of levels and projections, also with lengths and volumes that are found from all particles."""
+        """Compares gauges, fluxes, an image of levels and projections, also with lengths and volumes that depend on all particles."""
         bare = read(PARTICLES)
         bare.GetPointData().RemoveArray("Density")
         write(bare, self.path("bare.vtp"))
@@ -461,8 +461,8 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """A film with its tables, at stored times and between, has the same bytes as one process makes, and so have gauges. A step that fails is named
-        once, and the others are made."""
+        """A film with its tables, at stored times and between, and gauges have the same bytes as one process makes. A step that fails is named once,
+        and all other steps are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")
@@ -559,7 +559,7 @@ class Program(unittest.TestCase):
                     self.assertEqual(stream.read(), "old", name)
 
     def test_files_of_others(self):
-        """No process overwrites a piece that is read, nor one of the surface."""
+        """No process overwrites a piece of the particles, nor a piece of the surface."""
         pieces = write_pieces(PARTICLES, self.folder.name, 2)
         before = {name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}
         self.assertIn("piece_1.vtp", before)
@@ -590,7 +590,7 @@ class Program(unittest.TestCase):
         self.assertGreater(np.count_nonzero(self.image_arrays(self.path("slice.vti"))["vtkValidPointMask"]), 100)
 
     def test_first_without_particles(self):
-        """What is told about the particles, and which array is active, do not depend on which process has them."""
+        """Sentences about the particles, and the choice of the active array, do not depend on which process has the particles."""
         particles = read(PARTICLES)
         kinds = numpy_to_vtk((np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32), deep=1)
         kinds.SetName("Type")

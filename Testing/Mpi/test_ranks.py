@@ -47,7 +47,7 @@ def random_rank(index, count):
     return (((bits * 2246822519) & 0xffffffff) >> 8) % count
 
 
-# These functions return each particle's rank of `count`, by its number, and its place within the bounds, from 0 to 1.
+# Each function takes the particles' numbers, and their places within the bounds, from 0 to 1, and returns each particle's rank, below `count`.
 WAYS = {
     "scattered at random": lambda index, at, count: random_rank(index, count),
     "all on one rank": lambda index, at, count: np.full(len(index), count - 1),
@@ -84,7 +84,7 @@ def same(found, expected):
 FREE, SPEED, FLUID = {"FreeSurface": 1}, {"Scalar": "Speed", "Values": [2.0]}, {"FluidArrayName": "ParticleType"}
 VARIED = {"Scalar": "Velocity", "Values": [1.0], **FLUID, "SmoothingLengthArrayName": "SmoothingLengthAdaptive", "CubeSizeFactor": 0.8,
           "CubeSizeMode": 1}
-# Areas and smoothing lengths are larger on one side.
+# Particles' areas and smoothing lengths are larger on one side.
 LINES = {"Scalar": "Speed", "Values": [2.0, 1.0], "SmoothingLengthArrayName": "h", "VolumeArrayName": "area", "CubeSizeFactor": 0.2,
          "ComputeBoundaryFlag": 1, "CubeSizeMode": 1}
 COMPUTED, PERIODS = {"DetectArrays": 0}, {"PeriodicBounds": (-1, 1, 0, 0, -1, 0.5)}
@@ -133,7 +133,7 @@ SURFACES = {
     "filled": (PLANE, {**LINES, "Filled": 1}),
     "filled, period and box": (PLANE, {**LINES, "Filled": 1, "PeriodicBounds": (0, 0, -0.2, 0.9, 0, 0), **BOX})}
 
-# These statistics describe the surface, and so do not depend on how ranks share the work. Sums of others than the exact ones are rounded.
+# These statistics describe the surface, so they do not depend on how ranks share the work. All but the exact ones may differ by rounding.
 EXACT = ("Area", "Volume", "Length")
 STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
               "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices", "TrimVerticesLinear",
@@ -141,8 +141,8 @@ STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", 
 
 
 def make_two_sizes():
-    """Makes small particles for x < 2, beyond these large ones, whose supports hold many small ones: a rank that has no large one must be told how far
-    others need its particles."""
+    """Makes small particles for x < 2 and large ones beyond, whose supports hold many small particles. A rank without large particles must be told
+    how far away its particles are needed."""
     points, lengths = [], []
     for size, first, along in (0.05, 0.0, 40), (0.8, 2.0, 1):
         x, y, z = np.indices((along, *[round(1.2 / size)] * 2)).reshape(3, -1)
@@ -156,7 +156,7 @@ def make_particles(file):
     if file == TWO_SIZES:
         return make_two_sizes()
     particles = read(os.path.join(FOLDER, (DAMS if file in (PLANE, MESH) else file) + ".vtp"))
-    bounds = numpy_to_vtk(np.array([-1.0, 1, 0, 0, -1, 0.5]), deep=1)  # They matter only where they are used.
+    bounds = numpy_to_vtk(np.array([-1.0, 1, 0, 0, -1, 0.5]), deep=1)  # The bounds matter only where they are used.
     bounds.SetName("PeriodicBounds")
     particles.GetFieldData().AddArray(bounds)
     if file == PLANE:
@@ -178,7 +178,7 @@ def take_beside_mesh(particles, way):
 
 
 def extract(settings, particles, controller):
-    """Returns the surface, and what the filter tells: ranges and cells, of the run and of the next one; statistics."""
+    """Returns the surface, and what the filter tells: the ranges and cells of this run and of the next; statistics."""
     made, settings = vtkMarchingCorrectors(), dict(settings)
     made.SetController(controller)
     if "Scalar" in settings:
@@ -242,7 +242,7 @@ def compare_surfaces(whole, parts):
 
 
 def compare_told(whole, all_told):
-    """Returns what ranks tell otherwise than rank 0 alone, or that it has no cells."""
+    """Returns the names whose values differ between the ranks and rank 0 alone, and numbers of cells that are 0."""
     unknown = [("NextScalarRange", i) for i in range(2) if whole["NextScalarRange", 1] == 0]  # One process does not sum densities ahead.
     return [name for told in all_told for name, value in told.items() if name[0] == "EstimatedCells" and value <= 0
             or name not in unknown and abs(value - whole[name]) > (0 if name in EXACT else 1e-12 * abs(whole[name]))]
@@ -285,7 +285,7 @@ SAMPLES = {
 
 
 def make_points(particles, name, constant):
-    """Makes a lattice somewhat larger than the particles' bounds, with points that are nowhere; where the particles lie in a plane, most points do, too."""
+    """Makes a lattice somewhat larger than the particles' bounds, with NaN points. If the particles lie in a plane, so do most points."""
     low, high = np.reshape(particles.GetBounds(), (3, 2)).T
     cell = np.indices((1 if name == "plane" else 27, 29, 31)).reshape(3, -1)[::-1].T
     share = 1.2 * cell / [30, 28, 26] - 0.1

@@ -21,8 +21,8 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRendere
 
 DATA = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
 BASELINES, OUTPUT = os.environ["MCOR_TEST_BASELINES"], os.environ["MCOR_TEST_OUTPUT"]
-THRESHOLD = 10.0  # VTK's own for its image tests
-PLUGIN_THRESHOLD = 30.0  # This is for ParaView's pictures; it is about the number of pixels that differ, where shifts of one pixel are tolerated.
+THRESHOLD = 10.0  # the threshold of VTK's own image tests
+PLUGIN_THRESHOLD = 30.0  # For ParaView's pictures: about the number of pixels that differ by more than a shift of one pixel.
 MODES = ("Iso", "Speed", "FreeSurface", "Preview", "Untrimmed", "Wall", "Weight", "Slice", "Filled")
 WEIGHT = ("WeightSum", 0.0, 1.0)
 COLORS = {"Weight": WEIGHT, "Untrimmed": WEIGHT, "Speed": ("Velocity_Magnitude", 0.0, 3.0)}

@@ -100,7 +100,7 @@ class TestColours(unittest.TestCase):
             pieces = vtkSPHComponents()
             pieces.SetInputData(1, inputs[1])
             found, told = run(pieces, inputs[0])
-            # There is one piece, whose number would be all colours.
+            # There is one piece, so colours by its number would all be alike.
             self.assertEqual((told, active(found)), ([], "Velocity"))
             self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1912)
 

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Real data sets: a box beside them, how large surfaces are, and where they end at walls. oracle_data has tests of their points, core_box of boxes."""
+"""Tests real data sets: a box beside them, how large surfaces are, and where they end at walls. oracle_data tests their points, core_box tests
+boxes."""
 import pathlib
 import unittest
 

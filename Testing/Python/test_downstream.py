@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Users' filters behind the surface: a closed surface, and one with a trimmed border."""
+"""Runs users' filters on a closed surface, and on one with a trimmed border."""
 import unittest
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
@@ -62,7 +62,7 @@ class TestDownstream(unittest.TestCase):
             self.assertEqual(self.count_edges(surface, "NonManifoldEdges"), 0)
 
     def test_counts(self):
-        """Each filter makes so many cells of each cell, on the closed surface, and on the open one unless `both` is false."""
+        """Each filter makes from `low` to `high` cells of each cell: on the closed surface and, if `both`, on the open one."""
         for kind, call, low, high, both in (
                 *((kind, ("SetNumberOfSubdivisions", 1), 4, 4, True) for kind in (
                     vtkLinearSubdivisionFilter, vtkLoopSubdivisionFilter, vtkButterflySubdivisionFilter)),

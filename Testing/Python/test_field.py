@@ -143,7 +143,7 @@ class TestDerivatives(unittest.TestCase):
             self.assertEqual((run(made, DetectFluid=1)[1], made.GetUsedFluid()), ([], "ParticleType = 0"))
 
     def test_outputs(self):
-        """A run that is stopped, input of another class, and the standard form of the gradient."""
+        """Tests a run that is stopped, input of another class, and the standard form of the gradient."""
         grid, made = vtkUnstructuredGrid(), vtkSPHDerivatives()
         grid.SetPoints(cube().GetPoints())
         grid.GetPointData().ShallowCopy(cube().GetPointData())

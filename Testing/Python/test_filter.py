@@ -136,7 +136,7 @@ class TestPoints(FilterTest):
         self.assertIn("Compact: 1", str(extract))
 
     def make_plane(self):
-        """Makes 21^2 particles in the plane y = 0.5, for two isolines and a least value below all."""
+        """Makes a filter on 21^2 particles in the plane y = 0.5, with two isolines and a least value below all values."""
         places = lattice(21, 1, 21, around_origin=True) + [0, 0.5, 0]
         extract = sphere(particles_of(places, SmoothingLength=numpy.full(441, H), Volume=numpy.full(441, SPACING ** 2),
                                       Radius=numpy.hypot(*places[:, ::2].T)))

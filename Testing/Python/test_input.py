@@ -239,7 +239,7 @@ class TestKinds(unittest.TestCase):
 
 
 class TestFound(unittest.TestCase):
-    """What is given reaches the core; core_find tests all that is found, and wheel.both compares the interfaces."""
+    """Settings reach the core; core_find tests what the core finds, and wheel.both compares the interfaces."""
 
     def test_volumes(self):
         volume = SPACING ** 3

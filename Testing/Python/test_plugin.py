@@ -48,7 +48,8 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # The default is the free surface; without it velocities, their median in the fluid, which is detected, and an end at the walls.
+    # The default is the free surface. Without it the filter contours velocities at their median in the fluid, which it detects, and the surface
+    # ends at the walls.
     assert list(extract.Isosurfaces) == []
     extract.UpdatePipeline()
     extract.UpdatePropertyInformation()
@@ -309,7 +310,7 @@ def check_slices(reader):
     assert data.GetNumberOfPoints() == 50 and abs(found["arc_length"][-1] - numpy.linalg.norm(high - low)) < 1e-6
     Delete(line)
     volume = SPHVolume(Input=reader, WeightThreshold=0.4)  # noqa: F821
-    data, found = arrays_of(volume)  # The output is drawn as a volume, with about a million cubes.
+    data, found = arrays_of(volume)  # The output is drawn as a volume of about a million cubes.
     assert data.IsA("vtkImageData") and 0.8e6 < data.GetNumberOfPoints() < 1.3e6, data.GetDimensions()
     assert not numpy.isnan(found["Height"]).any()
     volume.Dimensions = [20, 21, 22]
@@ -340,7 +341,7 @@ def check_gauge(reader):
 def check_flux(reader):
     """One Apply is enough: through the middle of a body that turns, the inflow and the outflow are equal."""
     flux = SPHFlux(Particles=reader)  # noqa: F821
-    flux.UpdatePipeline(reader.TimestepValues[0])  # when the body is along the axes
+    flux.UpdatePipeline(reader.TimestepValues[0])  # the body lies along the axes then
     assert numpy.allclose(flux.Origin, 0, atol=1e-6) and abs(flux.Radius - (SIDE - 1) * SPACING) < 1e-6, (flux.Origin, flux.Radius)
     rows = flux.GetDataInformation().GetRowDataInformation()
     value = {name: rows.GetArrayInformation(name).GetComponentRange(0)[0] for name in ("area", "volume_flux", "velocity")}

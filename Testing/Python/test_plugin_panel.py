@@ -5,8 +5,7 @@
 
     test_plugin_panel.py PARAVIEW
 
-Lists of events say what the player does to widgets, and what it must find in them; states that it saves in
-between tell what came of it.
+Lists of events say what the player does to widgets, and what it must find in them; the states that it saves in between tell the effect.
 """
 import os
 import subprocess
@@ -18,7 +17,7 @@ SECONDS = 600
 WINDOW = "pqClientMainWindow"
 PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
 FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
-PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
+PAUSE = (WINDOW, "pause", "600")  # longer than the panel waits before it looks ahead
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
 GAUGE = (FILTERS[0], "activate", "SPHGauge")
 ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # Widgets that are not shown do not become grey.
@@ -164,12 +163,12 @@ def check_chart(file):
     assert len(series) > 10 and len(drawn) == 1 and drawn.pop().startswith("last"), series
     gauge = {p.get("name"): [float(e.get("value")) for e in p.findall("Element")] for p in
              state.findall(".//Proxy[@type='SPHGauge']/Property") if p.get("name") in ("Point1", "Point2")}
-    # It stands in the water, which is at one side of the tank, and is upright.
+    # The gauge is upright, and stands in the water, which is at one side of the tank.
     assert gauge["Point1"][::2] == gauge["Point2"][::2] and gauge["Point1"][1] < 0 < gauge["Point2"][1], gauge
 
 
 def check_colours(file):
-    """The colours of the speed are those of most of the area in the box, where drops go from 0.1 to 4."""
+    """The colours span the speeds of most of the area in the box, though drops have speeds from 0.1 to 4."""
     state = xml.parse(file)
     colours = state.find(".//ProxyCollection[@name='lookup_tables']/Item[@name='Velocity.PVLookupTable']").get("id")
     points = [float(e.get("value")) for e in state.findall(f".//Proxy[@id='{colours}']/Property[@name='RGBPoints']/Element")]

@@ -95,8 +95,8 @@ class TestPluginXml(unittest.TestCase):
         label = self.main.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
-        # Quick search takes the first label, in alphabetical order, that begins with the typed text. It must be this filter's, among ParaView's SPH
-        # Dataset Interpolator and all of the plugin's.
+        # Quick search takes the first label, in alphabetical order, that begins with the typed text. For "sph" this must be this filter's label,
+        # not that of ParaView's SPH Dataset Interpolator or of another filter of the plugin.
         labels = [proxy.get("label").lower() for proxy in self.proxies]
         self.assertGreater(len(labels), 8)
         self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)
@@ -164,7 +164,7 @@ class TestPluginXml(unittest.TestCase):
                 continue
             ends = [int(text) for text in domain_values(element)]
             beyond = [(min(ends) - 1, min(ends))] if not command.endswith("Component") else []
-            beyond += [(max(ends) + 1, max(ends))] if len(ends) > 1 else []  # Or all greater values are legal.
+            beyond += [(max(ends) + 1, max(ends))] if len(ends) > 1 else []  # With a lower end alone, all greater values are legal.
             for value, legal in beyond:
                 made = kind()
                 getattr(made, command)(value)

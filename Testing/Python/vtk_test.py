@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes particles and blocks, and runs filters and collects what they say, for the tests of VTK's filters."""
+"""Makes particles and blocks, runs filters, and collects what they say, for the tests of VTK's filters."""
 import sys
 from pathlib import Path
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from says import says  # noqa: E402, F401
 
 SPACING, H = 0.1, 0.13
-COUNT = 21 ** 3  # of cube()
+COUNT = 21 ** 3  # particles of cube()
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 
 

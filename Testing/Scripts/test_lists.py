@@ -45,7 +45,7 @@ class Options(unittest.TestCase):
         in_help = 0
         for name, default in self.defaults.items():
             with self.subTest(name):
-                self.assertIn(name, said)  # parameters.md has a row of it.
+                self.assertIn(name, said)  # parameters.md has a row for it.
                 option, cell = said.pop(name)
                 number = re.search(r"-?\d[\d.e-]*", cell)
                 if re.match(r"-?\d", default):

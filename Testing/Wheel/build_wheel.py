@@ -63,7 +63,7 @@ def main():
     ahead = f"--config-settings=cmake.define.MCOR_AHEAD={sys.argv[4]}"
     if tree == sources:
         run(*pip, "wheel", "--no-deps", "-w", folder / "built", f"--config-settings=cmake.define.MCOR_AHEAD_KEPT={sys.argv[3]}", ahead, tree)
-    else:  # As beside a build in the folder of the sources, whose kernels are taken.
+    else:  # The wheel takes the kernels of a build in the folder of its sources, such as this one.
         (tree / "build" / "vtkMarchingCorrectors" / "core").mkdir(parents=True)
         (tree / "build" / "vtkMarchingCorrectors" / "core" / "ahead").symlink_to(sys.argv[3])
         said = run(*pip, "wheel", "-v", "--no-deps", "-w", folder / "built", ahead, tree)

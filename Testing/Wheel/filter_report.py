@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-# Which array serves for what, and defaults, before a run and in it.
+# Which array has which role, and defaults, before a run and in it.
 FOUND = [f"Used{name}ArrayName" for name in ("SmoothingLength", "Volume", "Mass", "Density")] + [
     "UsedFluid", "UsedIsoValues", "IsoValueArrayName", "NextArray", "NextIsoValue", "NextScalarRange", "NextComponents",
     "NextDimension", "NextFluid", "NextCells"]

@@ -49,8 +49,8 @@ def write(folder, name, arrays, fields=(), positions=None, sides=9, kind=np.floa
 
 
 def make_cases(folder):
-    """Makes {name: (file, scalar, iso value, filter's properties, program's words, accessor's keywords, codes of warnings)}. words, keywords: None where the
-    interface lacks the option."""
+    """Returns {name: (file, scalar, iso value, filter's properties, program's words, accessor's keywords, codes of warnings)}. Words or keywords are
+    None if the interface lacks the option."""
     plane = lattice(40, 40, 1)
     sizes = np.concatenate([plane, 4 * plane + [4.2, 0.0, 0.0]])
     dam, small = str(DATA / "dam_break_45k.vtp"), str(DATA / "double_dam_break_small.vtp")
@@ -81,7 +81,7 @@ def make_cases(folder):
 
 
 def make_found(folder):
-    """Makes sets of all kinds for which nothing is chosen: {name: [file, what --list-arrays tells]}."""
+    """Makes sets of all kinds for which nothing is chosen. Returns {name: [file, what --list-arrays tells]}."""
     def of(name, *arrays, **more):
         return write(folder, "found " + name, *arrays, **more)
 
@@ -209,7 +209,7 @@ class Test(unittest.TestCase):
                     self.assertEqual(codes_of([str(each.message) for each in caught]), codes)
                     self.assertEqual({part: found.get(part) for part in ("triangles", "lines")},
                                      {part: report_mesh(surface).get(part) for part in ("triangles", "lines")})
-                    computed = {scalar, scalar + "_Magnitude", "Normals"}  # The filter has the iso value in these.
+                    computed = {scalar, scalar + "_Magnitude", "Normals"}  # In these arrays the filter has the iso value.
                     self.assertEqual(set(surface.point_data.keys()) | computed, set(found["arrays"]) | computed)
 
     def check_program(self, words, found):

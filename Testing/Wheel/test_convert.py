@@ -50,7 +50,8 @@ class Convert(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def refuse(self, done, sentence, left=()):
-        """One line is printed, and the folder is as it was, except for the names in `left`, which hold "old"."""
+        """Checks that one line is printed, and that the folder is as it was, except for the files in `left`, which hold
+        "old"."""
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr, "^marchingcorrectors: .*" + sentence + ".*\n$")
         self.assertEqual({p.name: p.read_bytes() for p in self.folder.iterdir() if p.is_file()},

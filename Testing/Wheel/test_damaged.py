@@ -72,7 +72,7 @@ class Hostile(Case):
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file["PartType0"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
         self.assert_refused("is a link", self.at("snap.hdf5"))
-        with h5py.File(self.at("snap.hdf5"), "a") as file:  # This is a link inside of the file to that.
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # This link leads to the link to the other file.
             file["elsewhere"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
             del file["PartType0"]
             file["PartType0"] = h5py.SoftLink("/elsewhere")

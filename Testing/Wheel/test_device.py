@@ -25,7 +25,7 @@ print(*mc.devices(), sep=";")
 {after}
 """
 
-# This replaces RUN's own run.
+# This replaces the function `run` in RUN.
 ALL = """
 import hashlib
 from marchingcorrectors._options import words_of

@@ -62,7 +62,7 @@ OTHER_TRIALS = {
             "free_surface", "widening")}, ("widening", "widen"): (3, {}), ("project", "volume"): ("Space", SCALAR),
     ("project", "density"): (2000.0, SCALAR), ("project", "precision"): ("double", {**SCALAR, **COMPUTED}),
     ("project", "memory_limit"): (1, {**SCALAR, **COMPUTED}), ("project", "ignore_solids"): (True, {**SCALAR, **SOLIDS, **COMPUTED})}
-# These do nothing, as the end of the line tells.
+# These keywords change nothing, for the reason at the end of the line.
 HOLDS = {("accessor", "isosurface", "seeds")}  # Pairs miss nothing of this surface; its statistics, which PyVista lacks, differ.
 
 
@@ -125,7 +125,7 @@ class Keywords(unittest.TestCase):
         if keyword not in parameters:
             self.assertRegex(told[0], f"has no option '{keyword}'|unexpected keyword", f"{interface}.{function}")
             return "refused"
-        if keyword == "seeds" and interface != "accessor" and base is not None:  # They change a result only where something would be missed.
+        if keyword == "seeds" and interface != "accessor" and base is not None:  # Seeds change a result only where pairs miss something.
             return "acts" if base.statistics["seed_cells"] != result.statistics["seed_cells"] else None
         return "; ".join(new) if new else None if same(base, result) else "acts"
 

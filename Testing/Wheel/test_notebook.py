@@ -1,10 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the notebook of Examples/Notebook in its own folder, as people do: it says again what is kept in it, and draws the
-same pictures.
+"""Runs the notebook of Examples/Notebook in its own folder, as people do: it must print the texts and draw the pictures that are stored in it.
 
     test_notebook.py [write]
-write: what it says and draws now is kept instead. Look at the pictures then.
+write: stores what it prints and draws now. Look at the pictures then.
 """
 import base64
 import io

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests gauge(), flux() and project(): of a block of particles by hand, of others against probe() and counts; PyVista's methods and files; and
-refusals."""
+"""Tests gauge(), flux() and project(): for a block of particles by hand, for other particles against probe() and counts; PyVista's methods and
+files; and refusals."""
 import os
 import sys
 import tempfile

@@ -283,7 +283,7 @@ class Inputs(unittest.TestCase):
 
     def test_dlpack(self):
         class Tensor:
-            """Has all that such a library must have."""
+            """Has the two methods that DLPack requires."""
 
             def __init__(self, array):
                 self.array = array

@@ -78,10 +78,10 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 public, re.M))
         self.assertGreater(len(names), 100)
-        # The wheel's filter has no ranks, and these others only serve the C++ plugin's panels and C++.
+        # The wheel's filter has no ranks, and these methods serve only C++ and the panels of the C++ plugin.
         names -= {"GetNextBounds", "GetNextDensest", "GetNextEstimate", "SetWord"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
-        self.assertEqual(lacking, [])  # They belong into the plugin's XML, or into MarchingCorrectorsFilter.py.
+        self.assertEqual(lacking, [])  # What is lacking belongs in the plugin's XML, or in MarchingCorrectorsFilter.py.
         constants = {name: int(value) for name, value in re.findall(r"^    ([A-Z]\w+) = (-?\d+)\b", public, re.M)}
         self.assertGreater(len(constants), 25)
         self.assertEqual({name: getattr(vtkMarchingCorrectors, name, None) for name in constants}, constants)

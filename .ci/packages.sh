@@ -1,5 +1,5 @@
-# Sourced by Examples/quickstart.sh and Testing/run-tests.sh: the Debian packages they need. Bash only.
-# Nothing is installed, and no network is used, where all of them are there already.
+# Examples/quickstart.sh and Testing/run-tests.sh source this for the Debian packages that they need. Bash only. If all
+# packages are installed already, nothing is installed and no network is used.
 . .ci/steps.sh
 
 # CMakeLists.txt says the same; here it is said before anything is installed.
@@ -12,9 +12,9 @@ mcor_is_installed() { # PACKAGE
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-# Plain VTK's and ParaView's development packages exclude each other on Debian, so a machine has one
-# of them. Prints the one to use: what was asked for, else what is there, else the answer to a question, or
-# plain VTK where nobody can answer.
+# Plain VTK's and ParaView's development packages exclude each other on Debian, so a machine has one SDK. Prints the SDK
+# to use: what was asked for, else what is installed, else the answer to a question, or plain VTK where nobody can
+# answer.
 mcor_choose_sdk() { # "" | vtk | paraview
   case "${1:-}" in
     vtk) mcor_is_installed python3-paraview &&
@@ -30,7 +30,7 @@ mcor_choose_sdk() { # "" | vtk | paraview
   else mcor_ask_sdk; fi
 }
 
-# Before anything is installed.
+# Asks before anything is installed.
 mcor_ask_sdk() {
   local answer=
   echo "No SDK is installed yet: paraview (the plugin, and ParaView itself) or vtk (program, Python and C++" >&2
@@ -52,8 +52,9 @@ mcor_common_packages() {
     xvfb xauth libgl1-mesa-dri
 }
 
-# python3-venv: for the wheel's tests, which fetch the rest from PyPI. gdb: for the stacks of what stands still.
-# Mesa's OpenCL on the CPU compiles as GPUs' drivers do. The simulator of a device: that of Debian 12 is known to do; elsewhere its test is left out.
+# The wheel's tests need python3-venv, and fetch the rest from PyPI. gdb shows the stacks of processes that stand still.
+# Mesa's OpenCL on the CPU compiles as GPUs' drivers do. oclgrind simulates a device; only Debian 12's is known to work,
+# so other systems leave its tests out.
 mcor_test_packages() {
   echo libcmocka-dev mesa-opencl-icd python3-venv mpi-default-bin gdb
   if [ "$(. /etc/os-release && echo "${VERSION_ID:-0}")" -eq 12 ]; then echo oclgrind; fi

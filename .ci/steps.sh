@@ -1,5 +1,5 @@
-# Sourced by the scripts: long commands as steps that say what they do, how long they take, and that
-# end at Ctrl-C. Bash only.
+# Scripts source this to run long commands as steps. A step says what it does and how long it takes,
+# and ends at Ctrl-C. Bash only.
 
 mcor_die() { echo "$(basename "$0"): $*" >&2; exit 1; }
 
@@ -16,8 +16,8 @@ mcor_stop_step() { # PID can-stop|must-finish
 }
 
 # Runs a command whose output nobody needs unless it fails: one line at the start, a sign of life
-# every 15 s, one line at the end. The command gets a process group of its own, so that Ctrl-C comes
-# to this shell alone, which then ends the command; "must-finish" is for those that must not be cut.
+# every 15 s, one line at the end. The command gets its own process group, so that Ctrl-C reaches
+# this shell alone, which then ends the command. "must-finish" lets the command finish first.
 mcor_step() { # [must-finish] LABEL COMMAND...
   local stop=can-stop label log pid status=0 start=$SECONDS next=15
   if [ "$1" = must-finish ]; then stop=$1; shift; fi
@@ -56,12 +56,12 @@ mcor_step() { # [must-finish] LABEL COMMAND...
   rm -f "$log"
 }
 
-# Configures and builds for the SDK, plain VTK or ParaView. A build folder holds paths of the one for
-# which it was made.
+# Configures and builds for the SDK, plain VTK or ParaView. A build folder holds paths of its SDK, so
+# it starts anew for another.
 mcor_build() { # FOLDER vtk|paraview CMAKE ARGUMENTS...
   local build=$1 sdk=$2 made_for fresh=() other kept
   shift 2
-  # Kernels that another build of these sources has compiled already.
+  # Takes kernels that another build of these sources has compiled already.
   for other in build build-tests; do
     kept=$PWD/$other/vtkMarchingCorrectors/core/ahead
     if [ "$other" != "$build" ] && [ -d "$kept" ]; then set -- "-DMCOR_AHEAD_KEPT=$kept" "$@"; fi
@@ -71,7 +71,7 @@ mcor_build() { # FOLDER vtk|paraview CMAKE ARGUMENTS...
     echo "The folder $build was made for another SDK ($made_for): its configuration starts anew"
     fresh=(--fresh)
   fi
-  # A build tree that is there already keeps its generator.
+  # An existing build tree keeps its generator.
   export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
   # Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
   mcor_step "Configuring in $build for the SDK: $sdk" cmake "${fresh[@]}" -Wno-dev -S . -B "$build" \

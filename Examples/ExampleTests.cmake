@@ -25,7 +25,8 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 
-# From a solver's files, which are made, to films and tables; without the plot, which needs matplotlib.
+# Scripts from a solver's files, which they make here, to films and tables; they draw no plot, which would need
+# matplotlib.
 if (MCOR_VTK_PYTHON STREQUAL "/usr/bin/python3")
   foreach (script IN ITEMS dualsphysics:0.0266 splishsplash:0.0133 dam_break_2d:)
     string(REPLACE ":" ";" script "${script}")
@@ -35,7 +36,8 @@ if (MCOR_VTK_PYTHON STREQUAL "/usr/bin/python3")
   endforeach ()
 endif ()
 
-# The cases with tiny sets. VTK's own Python; splashsurf is compared only where that has the package.
+# Runs the benchmark's cases on tiny sets in VTK's own Python; splashsurf is compared only if this Python has the
+# package.
 if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
   mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Benchmark/benchmark.py" $<TARGET_FILE:marching-correctors> --quick

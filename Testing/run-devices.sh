@@ -35,13 +35,13 @@ trap 'rm -rf "$scratch"' EXIT
 trap 'exit 130' INT TERM
 mkdir "$scratch/vendors" "$scratch/none"
 failed=0
-programs=("$build/bin") # their folder, after what runs them
+programs=("$build/bin") # the programs' folder, behind a command that runs them
 
 from_pypi() { # PACKAGE...
   python3 -m venv "$scratch/venv" && "$scratch/venv/bin/pip" install -q --disable-pip-version-check "$@"
 }
 
-# Prints the hashes of all cases; what a device without double precision leaves out is not compared.
+# Writes the hashes of all cases, but not of cases that a device without double precision leaves out.
 run() { # NAME SETTING...
   local name=$1 begin=$SECONDS
   shift
@@ -78,15 +78,15 @@ compare_forms() { # NAME SETTING...
   fi
 }
 
-# The core and its tests with all that the built-in device can have compiled.
+# Builds the core and its tests with all kernels of the built-in device.
 build_core() { # FOLDER CMAKE ARGUMENTS...
   cmake -S . -B "$scratch/$1" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_VTK=OFF \
     -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_AHEAD=all "${@:2}" &&
     cmake --build "$scratch/$1" --target core_bits core_modules
 }
 
-# For arm64, by clang and Debian's libraries for it. The test library is taken from a package of that
-# architecture, without a change to this system's.
+# Builds for arm64 with clang and Debian's arm64 libraries. The test library comes from an arm64 package; this
+# system's packages do not change.
 build_arm64() {
   local apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=
     -o "Dir::State=$scratch/apt" -o "Dir::State::status=$scratch/apt/status" -o "Dir::Cache=$scratch/apt")

@@ -38,7 +38,7 @@ mcor_install $(mcor_common_packages) $(mcor_test_packages) $(mcor_sdk_packages "
 mcor_mend_sdk "$sdk"
 mcor_build "$build" "$sdk" -DMCOR_BUILD_TESTING=ON -DMCOR_WERROR=ON
 
-# ctest would leave out only what all of several patterns match.
+# Joins patterns, because ctest would leave out only tests that match all of several patterns.
 without() { local IFS="|"; [ $# -eq 0 ] || printf -- '-LE\n%s\n' "$*"; }
 mapfile -t rest < <(without "${left_out[@]}")
 
@@ -53,7 +53,7 @@ say_what_is_left_out() {
   sed 's/^/Not possible here: /' "$build/Testing/tests_not_here.txt"
 }
 
-# A virtual display even where there is a real one: pictures then do not depend on its driver.
+# Uses a virtual display even if there is a real one, so that pictures do not depend on its driver.
 run_tests() {
   env -u DISPLAY Testing/with-display.sh \
     ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@" | mcor_show_tests 60

@@ -11,7 +11,7 @@ vtk_module_build(
   MODULES             ${mcor_modules}
   PACKAGE             MarchingCorrectors
   INSTALL_EXPORT      MarchingCorrectors
-  TEST_DIRECTORY_NAME NONE # its tests are for VTK's own build
+  TEST_DIRECTORY_NAME NONE # the module's tests are for VTK's own build
   CMAKE_DESTINATION   "${mcor_package_dir}"
   VERSION             "${PROJECT_VERSION}"
   SOVERSION           "${PROJECT_VERSION_MAJOR}")

@@ -1,13 +1,13 @@
-# Finds plain VTK, or ParaView and the VTK inside it. Sets MCOR_VTK_PACKAGE (VTK or ParaView) and
-# MCOR_WRAP_PYTHON, and offers MCOR_BUILD_PLUGIN: on where there is a ParaView, unless it was turned
-# off. On Debian only one of both SDKs can be installed; a build folder serves the one it was made for.
+# Finds plain VTK, or ParaView and the VTK inside it. Sets MCOR_VTK_PACKAGE (VTK or ParaView) and MCOR_WRAP_PYTHON, and
+# offers MCOR_BUILD_PLUGIN, which is on if ParaView is found, unless it was turned off. On Debian only one of the two
+# SDKs can be installed; a build folder serves the SDK for which it was made.
 #
-# Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
+# Components are named, because a bare find_package(VTK) asks for every optional dependency of VTK.
 set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc ParallelCore)
 set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersSources IOXML IOXMLParser IOLegacy IOImage
   IOGeometry IOPLY IOHDF hdf5 RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 TestingRendering ParallelMPI ParallelDIY IOParallelXML)
 
-# VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
+# VTK 9.3 passes empty arguments on. Without this policy CMake 3.31 warns of that.
 set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)
 
 set(mcor_hint "")
@@ -15,7 +15,7 @@ if (DEFINED MCOR_SDK)
   string(CONCAT mcor_hint " This build folder was made for ${MCOR_SDK}. If that is no longer the one to "
     "use, take another folder, or start this one anew with cmake --fresh and the same options.")
 endif ()
-# Debian 13's ParaView names files that are not there; its own message comes from deep inside.
+# Debian 13's ParaView names files that are not there; the error that follows does not say so clearly.
 if (NOT MCOR_BUILD_PLUGIN STREQUAL "OFF" AND UNIX)
   execute_process(COMMAND "${PROJECT_SOURCE_DIR}/.ci/mend-paraview-sdk" --needed
     RESULT_VARIABLE mcor_mended OUTPUT_QUIET ERROR_QUIET)
@@ -66,7 +66,7 @@ if (DEFINED MCOR_SDK AND NOT MCOR_SDK STREQUAL mcor_sdk)
   message(FATAL_ERROR "${mcor_sdk} was found.${mcor_hint}")
 endif ()
 set(MCOR_SDK "${mcor_sdk}" CACHE INTERNAL "What this build folder is made for")
-# Only now: a run that failed must not decide for the next one.
+# The option is set only now, because a run that failed must not decide for the next one.
 option(MCOR_BUILD_PLUGIN "Build the ParaView plugin" "${ParaView_FOUND}")
 message(STATUS "Building for ${MCOR_VTK_PACKAGE} ${${MCOR_VTK_PACKAGE}_VERSION}")
 
@@ -89,7 +89,7 @@ if (TARGET VTK::WrappingPythonCore AND TARGET VTK::Python)
 endif ()
 option(MCOR_WRAP_PYTHON "Make the filter usable from Python" ${mcor_can_wrap})
 
-# Where VTK was built with MPI, many processes can share a surface.
+# If VTK was built with MPI, many processes can share a surface.
 set(mcor_can_share OFF)
 if (TARGET VTK::ParallelMPI AND TARGET VTK::ParallelDIY)
   set(mcor_can_share ON)

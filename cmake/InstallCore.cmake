@@ -1,12 +1,12 @@
-# Installs the core: the library, its headers and mcor.pc. Included by the top level, after the core.
-# The installed library is shared where the build is; the tests and filters here call the static one.
+# Installs the core: the library, its headers and mcor.pc. Included by the top level, after the core. The installed
+# library is shared if the build's libraries are; the tests and filters here call the static one.
 find_package(Threads REQUIRED)
 set(mcor_installed mcor)
 if (BUILD_SHARED_LIBS AND NOT MCOR_BUILD_PYTHON_WHEEL)
   set(mcor_installed mcor_shared)
   set_source_files_properties(${mcor_ahead_objects} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
   add_library(mcor_shared SHARED $<TARGET_OBJECTS:mcor> ${mcor_ahead_objects})
-  add_dependencies(mcor_shared mcor) # which makes the objects of kernels
+  add_dependencies(mcor_shared mcor) # mcor makes the kernels' objects
   set_target_properties(mcor_shared PROPERTIES
     OUTPUT_NAME     mcor
     EXPORT_NAME     mcor
@@ -20,7 +20,7 @@ install(TARGETS ${mcor_installed} EXPORT mcor
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-# For those who do not use CMake; it may be moved along with all that is installed.
+# mcor.pc is for users without CMake. It has a relative path, so the installed tree may be moved.
 file(RELATIVE_PATH mcor_pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" mcor_pc_prefix "${mcor_pc_prefix}")
 if (UNIX)

@@ -12,7 +12,7 @@ file(REMOVE_RECURSE "${WORK}")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/install")
 run("${PYTHON}" "${SOURCE}/../library_paths.py" "${BUILD}/bin" "${BUILD}/${LIBRARIES}" "${WORK}/install")
 
-# Kernels that the build keeps are installed on its own machine, and are no part of a package for others.
+# Kernels that the build keeps are installed on this machine only, not in a package for other machines.
 function (find_kept variable folder)
   set(name marching-correctors-kernels)
   file(GLOB kept RELATIVE "${folder}" "${folder}/lib*/${name}/*.ready" "${folder}/lib*/*/${name}/*.ready")
@@ -51,7 +51,7 @@ if (WITH_VTK)
   run("${WORK}/all/uses_filter")
 endif ()
 
-# The installed program finds the library that it loads only for some files and pictures.
+# The installed program must find the library that it loads only for some files and pictures.
 file(GLOB program "${WORK}/install/bin/marching-correctors")
 if (program)
   execute_process(COMMAND "${program}" --list-arrays "${SOURCE}/../CommandLine/film.vtkhdf"

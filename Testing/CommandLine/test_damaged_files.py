@@ -89,7 +89,7 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """Without the program's own look at them first, these files crash the readers of VTK 9.1 and 9.3."""
+        """If the program did not check these files first, the readers of VTK 9.1 and 9.3 would crash."""
         for name in ("inline.vtp", "appended.vtu"):
             with self.subTest(name):
                 data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')
@@ -105,7 +105,7 @@ class DamagedFiles(CommandLineTest):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_huge_numbers(self):
-        """No memory is allocated that a file of some kilobytes cannot need."""
+        """The program allocates no more memory than a file of some kilobytes can need."""
         for name, good, bad in (
                 ("inline.vtp", b'Components="1"', b'Components="2147483647"'),
                 ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"'),
@@ -117,7 +117,7 @@ class DamagedFiles(CommandLineTest):
                 self.cannot_read(result, name, "more than a file of its size can hold; it may be damaged$")
 
     def test_crash_of_the_reader(self):
-        """The program survives any crash of VTK's XML library, which is replaced here by one that aborts, faults or recurses."""
+        """The program survives any crash of VTK's XML library. Here another library replaces it, which aborts, faults or recurses."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):

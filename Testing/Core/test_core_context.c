@@ -156,8 +156,8 @@ static void test_order_of_input(void** state)
   CORE_CHECK(different == 0, different);
 }
 
-/* A limit below the peak fails with a sentence. One at the peak suffices, even while the context keeps buffers from
- * other particles. */
+/* A memory limit below the peak fails with a sentence. A limit at the peak suffices, even while the context keeps
+ * buffers from other particles. */
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;

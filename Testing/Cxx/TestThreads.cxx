@@ -22,7 +22,7 @@
 
 namespace
 {
-/// Returns a ball of particles, a separate one for each filter.
+/// Returns a new ball of particles, because each filter gets its own.
 vtkSmartPointer<vtkPolyData> MakeParticles()
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();

@@ -3,7 +3,7 @@
 """Run by mpirun: what ranks make together is, bit for bit, what rank 0 makes alone, however particles and points are strewn over the ranks.
 
     test_ranks.py FOLDER_OF_DATA surfaces [CASE]
-    test_ranks.py FOLDER_OF_DATA samples [some]     some: of each case one way to strew, all of them in turn
+    test_ranks.py FOLDER_OF_DATA samples [some]     some: strews each case in one way only; the ways take turns
 """
 import math
 import os

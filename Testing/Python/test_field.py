@@ -234,7 +234,7 @@ class TestProbe(unittest.TestCase):
         self.assertTrue(results[0] == results[1])
 
     def test_point_sets(self):
-        """VTK 9.1 cannot make this class by its name: points without cells, alone and as a block."""
+        """Points without cells work, alone and as a block, though VTK 9.1 cannot make their class by its name."""
         points = vtkPointSet()
         points.ShallowCopy(self.make().GetSource())
         for filter_ in (self.make(), vtkSPHDerivatives()):

@@ -112,7 +112,7 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """The panel, too, tells that the first output is empty. When there is something to draw, it has the colours that a first output would have."""
+    """The panel also tells that the first output is empty. The first output with something to draw gets the colours that a first output gets."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),

@@ -93,7 +93,7 @@ class Command(unittest.TestCase):
             np.testing.assert_array_equal(mine["MeanCurvature"], its["MeanCurvature"])
 
     def test_left_out(self):
-        """Of several ranges for one array any may hold; ranges for several arrays, and bounds, must all hold."""
+        """If an array has several ranges, one of them must hold. Ranges of several arrays, and bounds, must all hold."""
         words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
                  "ParticleType=0"]
         mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"]))

@@ -485,7 +485,8 @@ class Layouts(Case):
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
 
     def test_lists(self):
-        """Pieces are one set, without copies that one has of another's particles. Where a part occurs twice for one time, the later one counts."""
+        """Pieces are one set, without the copies that a piece has of another piece's particles. If a part occurs twice for one time, the later one
+        counts."""
         def write(name, numbers, ghosts=()):
             text = " ".join(map(str, numbers))
             self.at(name).write_text(

@@ -129,7 +129,7 @@ class Results(unittest.TestCase):
         self.assertGreater(surface.points[:, 0].min(), 0.2)
 
     def test_left_out(self):
-        """Particles that are left out might as well not be there, whatever they hold."""
+        """Particles that are left out change nothing, whatever they hold."""
         kind = np.arange(N ** 3) % 4
         near = POSITIONS[:, 0] < 0.7
         for more, present in (({"within": (-np.inf, 0.7, -1, 2, -1, 2)}, near),
@@ -290,7 +290,7 @@ class Inputs(unittest.TestCase):
 
 class Refused(unittest.TestCase):
     def check(self, error, *cases, call=sphere, **common):
-        """cases: a sentence, then keywords, each of which is refused with it."""
+        """Each of `cases` is a sentence, then keywords; a call with any of these keywords fails with the sentence."""
         for sentence, *several in cases:
             for words in several:
                 with self.subTest(str(words)[:80]), self.assertRaisesRegex(error, sentence):

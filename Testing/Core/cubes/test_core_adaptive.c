@@ -45,7 +45,7 @@ static void few_nodes_are_evaluated(void** state)
   assert_true(surface.statistics.cells_used > 100);
 }
 
-/* Two groups differ in size by thousands and are as far apart. Nothing in memory is as large as the finest lattice
+/* Two groups differ in size by a factor of 4000, and lie as far apart. Memory must not grow with the finest lattice
  * between them. */
 static void far_apart(void** state)
 {

@@ -110,8 +110,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* Checks ambiguous faces: one side of a triangle goes around each corner above or, where those are joined, around each
- * corner below. */
+/* Checks ambiguous faces: one side of a triangle goes around each corner above or, if the corners above are joined,
+ * around each corner below. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };
@@ -236,8 +236,8 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
-/* Checks a side between two triangles of a cell. It may not be a line within one part of a face, because the cell
- * beside it could have it, too, unless both triangles lie flat in the face. Places are in half cells. */
+/* Checks a side that two triangles of a cell share. The side may not lie within one part of a face, because the cell
+ * beyond could have the same side, unless both triangles lie flat in the face. Places are in half cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {

@@ -362,9 +362,9 @@ static void test_period(void** state)
     here.mass_flux, there.mass_flux);
 }
 
-/* A channel has walls of solids beyond y = 0 and y = 12. The fluid begins a spacing inside of them. With solids it ends
- * where both weigh the same, a quarter of a spacing inside; without, half a spacing beyond its last particles. The
- * solids have no velocities. */
+/* A channel has walls of solids beyond y = 0 and y = 12, and the fluid begins a spacing inside of the walls. With
+ * solids the fluid ends where fluid and solids weigh the same, a quarter of a spacing inside; without solids it ends
+ * half a spacing beyond its last particles. The solids have no velocities. */
 static void test_walls(void** state)
 {
   const shape across = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 0, 5, 8.2, 12, 5, 8.2, 0, 9 }, 0 };

@@ -73,7 +73,7 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
     const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
     CORE_CHECK(error <= ERROR_OF_WEIGHT, number, error);
     CORE_CHECK(i == 0 || at[i] >= at[i - 1], number);
-    /* A close pair is less than half a sample distance apart, which is 10 steps. */
+    /* Samples are 10 steps apart; a close pair is less than 5 steps apart. */
     counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step;
   }
   double before = weight_at(field, line, 0), depth = 0;

@@ -213,8 +213,8 @@ static void test_fluid(void** state)
   mcor_free_found(&found);
 }
 
-/* The scalar is chosen by its name, as the most suitable of three arrays, or summed; then attributes, and what a flow
- * needs. */
+/* The scalar may be named, or chosen as the most suitable of three arrays, or summed. Attributes, and the arrays that
+ * a flow needs, are tested, too. */
 static void test_scalar_and_attributes(void** state)
 {
   const int32_t id[COUNT] = { 3, 1, 2, 0 };

@@ -111,7 +111,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* Sums may be asked for at some particles, with all as neighbours; particles that play no part change nothing. */
+  /* A call may ask for sums at some particles, with all particles as neighbours. Particles that play no part change
+   * nothing. */
   input = core_input(&set);
   CORE_FREED uint8_t* marks = oracle_allocate(count, 1);
   CORE_FREED double* some = oracle_allocate(count, sizeof *some);

@@ -79,7 +79,7 @@ static particle_set take_reaching(
   return near;
 }
 
-/* Levels are measured once. The boxes get them, and only nearby particles. */
+/* Levels are measured once. Each box gets these levels, and only nearby particles. */
 static void given_levels(void** state)
 {
   static const double iso = 0.2;

@@ -130,7 +130,7 @@ static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
   return input;
 }
 
-/* Global values are measured once. The boxes get them, and only nearby particles. */
+/* Global values are measured once. Each box gets these values, and only nearby particles. */
 static void given_globals(void** state)
 {
   const double iso = 1;

@@ -59,7 +59,7 @@ static void test_weight_is_1_inside(void** state)
   }
 }
 
-/* A coordinate of -0 counts as 0, wherever in the order the particles with it are. */
+/* A coordinate of -0 counts as 0, wherever the particles with -0 are in the order. */
 static void test_minus_zero(void** state)
 {
   for (int axis = 0; axis < 3; ++axis)

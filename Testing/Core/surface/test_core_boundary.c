@@ -101,8 +101,8 @@ static void test_eigenvalues(void** state)
   }
 }
 
-/* The array, which is there on request whatever trims, has the reference's values. Where the eigenvalue trims, nearly
- * all Newton steps along its gradient end at the threshold. */
+/* The array is there on request, whatever trims the surface, and has the reference's values. Where the eigenvalue
+ * trims, nearly all Newton steps along the eigenvalue's gradient end at the threshold. */
 static void check_surface(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, mcor_field field_kind)
 {

@@ -149,8 +149,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Returns whether a flagged vertex where no crossing is expected is a cut. It is not where rounding decides about a
- * crossing there, unless its weight is the threshold. */
+/* Returns whether a flagged vertex where no crossing is expected is a cut. If rounding decides about a crossing there,
+ * the vertex is a cut only if its weight is the threshold or it was cut linearly (flag 2). */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;
@@ -323,7 +323,7 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Checks that every segment is a side of one triangle for each cell that has it, in the right direction. */
+/* Checks that every segment is a side of one triangle for each cell that has the segment, in the right direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;

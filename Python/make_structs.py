@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes what the Python package must know of the C sources, so that it stands there alone.
+"""Writes what the Python package must know of the C sources, so that only the C sources have to be edited.
 
     make_structs.py mcor_parts.h mcor.h mcor_find.h FOLDER
 
-_structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of the shapes of arrays, and
-the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types, the codes of mcor_says.def, and the options of
-the program marching-correctors. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
-the functions that the library shows, for the linkers of Linux, Windows and macOS.
+_structs.py: the structures and enumerations of mcor.h for ctypes; the shapes of arrays, from its comments; the rows of
+mcor_statistics.def and mcor_options.def, beside mcor.h, with the options' types; the codes of mcor_says.def; and the
+options of the program marching-correctors. check_structs.c: checks that the C compiler has the same layout.
+exports.map, .def, .txt: the functions that the library exports, for the linkers of Linux, Windows and macOS.
 """
 import ctypes
 import re
@@ -27,7 +27,7 @@ def fail(sentence):
 
 
 def tokens_of(text):
-    """Returns the declarations, with one blank between all tokens whatever lines they are on, and the comments. A comment's token is @NUMBER; it is
+    """Returns the declarations, with one blank between all tokens, and the comments. A comment's token is @NUMBER; it is
     @<NUMBER if the comment begins on the line on which a declaration ends, and then belongs to this declaration."""
     text = re.sub(r"^[ \t]*#(?:.*\\\n)*.*$", "", text, flags=re.M)
     tokens, comments, end = [], [], 0
@@ -131,8 +131,8 @@ class Header:
 class Rows:
     """The core's lists of statistics and of options.
 
-    statistics: (how, when, member, name); options: {member: ({word: number}, scope, property)}; types: {member: as
-    Python has it}
+    statistics: (how, when, member, name); options: {member: ({word: number}, scope, property)}; types: {member: its
+    type in Python}
     """
 
     def __init__(self, folder, header):
@@ -166,7 +166,7 @@ class Rows:
 
 
 def program_options(folder):
-    """Returns {option: (argument, help, modes, member)} of Options.def. Modes are words as "surface"; "usual" marks what most people need."""
+    """Returns {option: (argument, help, modes, member)} of Options.def. Modes are words, as "surface"; "usual" marks what most people need."""
     words = {}
     for name, value in re.findall(r"^  ([A-Z]+) = ([\w| ]*\w)", (folder / "Job.h").read_text(encoding="utf-8"), re.M):
         words[name] = [name.lower()] if value.isdigit() else [word for each in value.split(" | ") for word in words[each]]
@@ -219,7 +219,7 @@ def python_module(header, rows):
 
 
 def c_checks(module, header):
-    """Returns the offsets that ctypes computes."""
+    """Returns a C file that checks sizes and offsets against those of ctypes."""
     scope = {}
     exec(compile(module, "_structs.py", "exec"), scope)  # This is the file that was just written.
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",

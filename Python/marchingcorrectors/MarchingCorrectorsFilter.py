@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkMarchingCorrectors for VTK without our C++ class: the same properties, the same results.
+"""vtkMarchingCorrectors for a VTK without our C++ class: it has the same properties, and gives the same results.
 
 This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
@@ -14,7 +14,7 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
-    # ParaView loads this file alone, and knows no package. Other modules beside it must not become importable.
+    # ParaView loads this file alone, not its package. The other modules in the folder must not become importable.
     _folder = Path(__file__).resolve().parent
     _spec = spec_from_file_location("marchingcorrectors", _folder / "__init__.py",
                                     submodule_search_locations=[str(_folder)])
@@ -55,13 +55,13 @@ def read_panel():
 
 
 def read_properties():
-    """The panel's properties of one value. name: (default, conversion, whether it has NameOn and NameOff, limits)"""
+    """Returns the panel's properties of one value, {name: (default, conversion, whether it has NameOn and NameOff, limits)}."""
     found = {"ScalarComponent": (-1, int, False, (-BIG, BIG)), "DetectArrays": (1, int, True, ())}  # These are not in the panel.
     for each in read_panel().find(".//SourceProxy[@class='vtkMarchingCorrectors']"):
         name = each.get("command", "")[len("Set"):]
         if each.get("number_of_elements") != "1" or each.get("information_only") or name in OTHERS:
             continue
-        # Ranges of real numbers are those of sliders: other values are for the core to refuse.
+        # Ranges of real numbers are only for sliders; the core refuses illegal values.
         limits = [int(entry.get("value")) for entry in each.findall("EnumerationDomain/Entry")]
         for domain in each.findall("IntRangeDomain"):
             limits = int(domain.get("min", -BIG)), int(domain.get("max", BIG))
@@ -82,7 +82,7 @@ def snake(name):
 
 
 def with_properties(kind):
-    """Defines SetX, GetX, XOn and XOff, and the property x."""
+    """Defines SetX, GetX, XOn and XOff, and the property x, for each X of PROPERTIES."""
     for name, (_, convert, is_flag, limits) in PROPERTIES.items():
         def set_it(self, value, name=name, convert=convert, limits=limits):
             value = convert(value)
@@ -164,7 +164,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 raise AttributeError(f"vtkMarchingCorrectors has no property '{name}'")
             setattr(self, name, value)
 
-    # -- as every poly data algorithm --
+    # -- methods that every poly data algorithm has --
 
     def GetInput(self, port=0):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) else None
@@ -175,7 +175,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def RequestDataObject(self, request, inInfo, outInfo):
-        """Makes a poly data, or blocks of poly data as the input has blocks."""
+        """Makes a poly data; blocks of poly data if the input has blocks."""
         data = self.GetInputData(inInfo, 0, 0)
         info = outInfo.GetInformationObject(0)
         blocks = isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART
@@ -240,7 +240,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return lib.mcor_sph_kernel_name(self.Kernel).decode()
 
     def _set_list(self, name, *entries):
-        """Adds these arrays; without any, ends with none."""
+        """Adds entries to the list; without entries, empties it."""
         setattr(self, name, [*getattr(self, name), *entries] if entries else [])
         self.Modified()
 
@@ -270,7 +270,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return "".join(f"{i}: {device}\n" for i, device in enumerate(devices()))
 
     def ReleaseDeviceMemory(self):
-        """Releases memory; during a run, which uses it, only at the run's end."""
+        """Releases memory; during a run, which uses the memory, only when the run ends."""
         if self._in_run:
             self._release = True
         elif self._context:
@@ -299,18 +299,18 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return self._ahead
 
     def _settle(self, choice, points):
-        """Where nobody chose what to contour, the particles tell."""
+        """If nobody chose what to contour, the particles decide."""
         if choice.FreeSurface >= 0:
             return
         values = [self.ContourValues.GetValue(i) for i in range(self.ContourValues.GetNumberOfContours())]
         choice.FreeSurface = int(not Request(self, 0, points).name and all(value != value for value in values))
         if choice.FreeSurface:
-            with suppress(Unusable, Error):  # the run says why
+            with suppress(Unusable, Error):  # The run reports the error.
                 particles = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
                 choice.FreeSurface = particles.has_free_surface()
 
     def _look_at(self, points, ahead):
-        """Adds what is known about these points: the range needs no smoothing length, the number of cells no scalar."""
+        """Adds to `ahead` what these points tell: the range needs no smoothing length, the number of cells no scalar."""
         choice, none = self._choice(), Request(self, 9, points)
         self._settle(choice, points)
         with suppress(Unusable):
@@ -368,7 +368,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return data if is_one else self._keep(join_blocks, data)
 
     def _process_blocks(self, given, output):
-        """Extracts block by block. A block that fails leaves its place empty; the others are made."""
+        """Extracts the surface of each block. A block that fails leaves its place empty, and the others go on."""
         data = given.NewInstance()  # An observer of the progress may remove blocks from the input, or change them.
         getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # This gives the same blocks before VTK 9.3, too.
         output.CopyStructure(data)
@@ -448,7 +448,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     @staticmethod
     def _options(choice):
-        """Returns the core's options, where a property means more than its value."""
+        """Returns the core's options; some properties mean more than their values."""
         options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
         lib.mcor_set_default_options(ctypes.byref(options))
         for member, (_, _, name) in c.OPTIONS.items():
@@ -469,7 +469,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if not choice.CubeSizeMode:  # uniform
             options.level_limit = 0
         if choice.UseBox and not any(choice.Box):
-            options.box[0] = 5e-324  # This is refused, as in the C++ filter.
+            options.box[0] = 5e-324  # The core refuses this, as for the C++ filter, but would take zeros for no box.
         options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (
             choice.Solids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
@@ -573,7 +573,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
 
     def _warn_once(self, kind, sentence):
-        """Says this for the first of several blocks only, because the others would say the same."""
+        """Warns once in a run for each kind, because other blocks would give the same warning."""
         if sentence and kind not in self._warned:
             self._warned.add(kind)
             self._say(sentence, "Warning")
@@ -605,7 +605,7 @@ def factor_options(options):
 
 
 def keep_factors(widening):
-    """Returns the factors for the next run, which spends no seconds on them; None if there are none."""
+    """Returns the factors for the next run, without the seconds that they took; None if there are none."""
     if widening is None:
         return None
     statistics = c.mcor_statistics.from_buffer_copy(widening[2])
@@ -614,12 +614,12 @@ def keep_factors(widening):
 
 
 def in_panel(sentence):
-    """Says a sentence with the panel's words for properties."""
+    """Returns a sentence with the panel's words for properties."""
     return sentence.say(lib.mcor_label_word) if isinstance(sentence, Sentence) else sentence
 
 
 def paraview_plugin(kind):
-    """Returns the panel: the C++ plugin's XML, with this class in it."""
+    """Gives ParaView the filter and its panel: the C++ plugin's XML, with this class in it."""
     root = read_panel()
     group = root.find("ProxyGroup[@name='filters']")
     for other in list(root):

@@ -44,7 +44,7 @@ __path__ = _extend_path(__path__, __name__)
 
 
 def read_pyvista(path: Any, **words: Any) -> "pyvista.PolyData":
-    """A solver's file as pyvista.PolyData, for particles.sph; words are those of io.read().
+    """A solver's file as pyvista.PolyData, for particles.sph. words: the keywords of io.read().
 
     Example: read_pyvista("snapshot.hdf5").sph.isosurface("Density", 1e-4).plot()
     """
@@ -60,7 +60,7 @@ def __dir__() -> List[str]:
     return sorted([*__all__, "__version__", "io", "vtkMarchingCorrectors"])
 
 
-if not TYPE_CHECKING:  # Type checkers know the names above, and no others.
+if not TYPE_CHECKING:  # Type checkers know only the names above.
     def __getattr__(name):
         """Imports VTK's classes, and io, when they are asked for, because NumPy users need no VTK."""
         if name == "io":

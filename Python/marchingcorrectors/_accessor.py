@@ -50,7 +50,7 @@ class Particles(Shared, total=False):
 
 
 def _method(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Decorator: the method takes the keywords of Particles, and these options; all stand in its signature and text."""
+    """Returns a decorator: the method takes the keywords of Particles, and these options; its signature and text have all."""
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
         def call(self: Any, *arguments: Any, **words: Any) -> Any:
@@ -74,7 +74,7 @@ def _triangles_in(sections):
 
 
 class PointData(FileParticles):
-    """Makes the points of a data set particles like those of a file: their names tell what arrays are."""
+    """Particles of a data set, like particles of a file: names tell what the arrays are."""
 
     def __init__(self, data):
         points = data.point_data
@@ -107,7 +107,7 @@ class SphAccessor:
 
     @property
     def _particles(self) -> pyvista.DataSet:
-        """Returns the data set, or the vertices in it; they are kept while the data set stays the same."""
+        """Returns the data set, or the vertices in it; the result is kept while the data set stays the same."""
         time = self._data.GetMTime()
         if self._taken[0] != time:
             taken = take_vertices(self._data)
@@ -250,10 +250,10 @@ class SphAccessor:
                                 **words)
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
-        """Returns particles, and keywords for the functions of NumPy."""
+        """Returns particles, and keywords for the functions that take NumPy arrays."""
         particles, words = PointData(self._particles), dict(given)
         names = words.pop("attributes", None)
-        words.setdefault("periodic", None)  # Only "auto" takes the period that the field data tell of.
+        words.setdefault("periodic", None)  # Without "auto", a period in the field data is ignored.
         if with_attributes:
             words["attributes"] = list(particles.arrays if names is None else names)
         return particles, words

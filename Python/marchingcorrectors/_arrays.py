@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""NumPy arrays to the core and back."""
+"""Passes NumPy arrays to the core, and copies its results to NumPy arrays."""
 import contextlib
 import ctypes
 import os
@@ -20,7 +20,7 @@ FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
 ABSENT = 2  # MCOR_ABSENT
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 WORDS = {int: "whole number", float: "number"}
-# The words are those of the header: "cubic_spline" is also "cubic".
+# Names of the header are words, too: "cubic_spline" is "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
@@ -31,7 +31,7 @@ def is_real(array):
 
 
 def as_array(values, role):
-    """Calls np.asarray, and raises one sentence if that fails or would lose something. Arrays on a CUDA device are copied to the host."""
+    """Calls np.asarray, and raises one sentence if this fails or would lose something. Arrays on a CUDA device are copied to the host."""
     if np.ma.is_masked(values):
         raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
     parts = values if isinstance(values, (list, tuple)) else [values]
@@ -55,7 +55,7 @@ def as_array(values, role):
 
 
 def contiguous(values, role):
-    """Returns float and double arrays that lie in one piece as they are, and all others as a copy."""
+    """Returns an array of floats or doubles in one piece as it is, any other array as a copy."""
     array = as_array(values, role)
     if array.dtype == object:  # A data frame with columns of several types gives such objects.
         with contextlib.suppress(TypeError, ValueError):
@@ -86,8 +86,8 @@ def as_points(values, role, shape):
 
 
 def as_named(attributes):
-    """Returns {name: array} with texts as names. A data frame gives its columns; an array with a unit its numbers; an array of objects, as data
-    frames have them, text or numbers."""
+    """Returns {name: array} with texts as names. A data frame gives its columns, an array with a unit its numbers. An array
+    of objects, which data frames may have, becomes an array of texts or numbers."""
     if attributes is None:
         return {}
     if not isinstance(attributes, Mapping) and hasattr(attributes, "columns"):
@@ -110,7 +110,7 @@ SUMMED = "Density"  # isosurface() has none if there is no such array.
 
 
 class Arguments:
-    """Fills structures for one call, and keeps the arrays alive that the core borrows."""
+    """Fills the structures for one call, and keeps alive the arrays that the core borrows."""
 
     def __init__(self, positions):
         self.kept, self.present, self.kinds, self.widening = [], None, {}, None
@@ -168,7 +168,7 @@ class Arguments:
                       for view, (name, values) in zip(views, attributes.items())}
 
     def set_widening(self, factors, volumes, of_surface):
-        """Takes factors of smoothing lengths. of_surface: they become the last attribute, too, but belong to none of the kinds."""
+        """Takes factors of smoothing lengths. of_surface: they also become the last attribute, which has no entry in `kinds`."""
         self.input.widening = self.view(factors, "Widening")
         if volumes is not None:
             self.input.volume = self.view(volumes, None)
@@ -200,7 +200,7 @@ class Arguments:
         lib.mcor_spell_out(ctypes.byref(self.options))
 
     def per_neighbours(self, found, function, *more):
-        """Returns numbers, (particles,), that a function of the core sums over neighbours. found: a Found, which knows all masses."""
+        """Returns numbers, (particles,), which a function of the core sums over neighbours. found: a Found, which has all masses."""
         given, values, why = c.mcor_input.from_buffer_copy(found.found.input), np.empty(self.count), c.mcor_message()
         given.mass = found.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_MASS"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
@@ -211,7 +211,7 @@ class Arguments:
         return values
 
     def bounds_of_period(self, period):
-        """Returns six bounds. Where three lengths are given, the particles tell where the bounds begin."""
+        """Returns six bounds. For three lengths, the particles tell where the bounds begin."""
         if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
             raise InvalidArgument(f"periodic is {period!r}; it must be {BOUNDS}, or three lengths, 0 along axes that are not "
                                   "periodic.")
@@ -240,7 +240,7 @@ def place_period(lengths, extent):
 
 
 def set_option(target, name, kind, value):
-    """Fills an option that is an array (box), which counts if it is given."""
+    """Sets an option of the core. An option that is an array (box) is set only if it is given."""
     if "[" not in kind:
         converted = number(name, kind, value)
         setattr(target, name, converted)
@@ -269,7 +269,7 @@ def convert(to, name, value):
 
 
 def number(name, kind, value):
-    """Returns an option's value for the core, from a word, its number, or any number."""
+    """Returns an option's value for the core. The user gives a word, the word's number, or any other number."""
     words = words_of(name)
     if isinstance(value, str) and (words or kind in c.ENUMS):
         word = value.lower().replace(" ", "_").replace("-", "_")
@@ -313,7 +313,7 @@ def take_rows(pointer, count):
 
 
 def take_all(struct, result, sizes):
-    """Returns the arrays of a result that need no other array, by name."""
+    """Returns, by name, the arrays of a result whose shapes follow from `sizes`."""
     arrays = {}
     for name, shape in c.SHAPES[struct].items():
         if "->" not in shape and shape[0] in sizes and name != "attribute_not_finite":
@@ -328,7 +328,8 @@ def take_lines(surface):
 
 
 def take_each(pointers, arguments, shape, more=()):
-    """Returns one array per attribute, float32 if the attribute was; attributes that the core left out are missing. An empty result may have none."""
+    """Returns one array for each attribute that the core did not leave out, float32 if the attribute was. pointers: may be NULL in an
+    empty result."""
     arrays = {}
     for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
         values = take(pointers[i], shape + components + more) if pointers else None

@@ -15,11 +15,11 @@ def frames(begin, end, step):
 
 
 def between(before, after, first, last, time, velocity=None):
-    """The particles at a time between those of two steps, at the times first and last.
+    """Returns the particles at a time between two steps, which are at the times first and last.
 
-    Particles are matched by their ids. Positions follow the cubic curve with both velocities; without a velocity they are
-    linear, as numbers are; integers are those of the nearer step. What is in one step alone is there in the half of the
-    interval beside it.
+    Particles are matched by their ids. Positions follow the cubic curve with both velocities; without velocities they
+    are linear in time, as other numbers are; integers are the nearer step's. A particle that only one step has is there
+    in the half of the interval beside this step.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []

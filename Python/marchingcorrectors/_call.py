@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Has what the functions share: their keywords, particles of files in place of positions, and one call of the core."""
+"""The parts that the functions share: keywords, particles of files in place of positions, and one call of the core."""
 from __future__ import annotations
 
 import contextlib
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .io import Particles
 
     class Frame(Protocol):
-        """Whether this is a table of columns, as of pandas."""
+        """A table of columns, such as a data frame of pandas."""
 
         @property
         def columns(self) -> Any: ...
@@ -46,7 +46,7 @@ ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIE
 
 
 class Shared(Options, total=False):
-    """Has the keywords of all functions, and of PyVista's methods."""
+    """The keywords that all functions, and the methods for PyVista, have."""
 
     fluid: Optional[Fluid]
     smoothing_length: Optional[ArrayLike]
@@ -66,16 +66,16 @@ class Keywords(Shared, total=False):
 
 
 def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str, Any]:
-    """Returns {name: type} of a class of keywords, without the options; without outputs if no option is an output."""
+    """Returns {name: type} of a class of keywords, without the core's options; without `outputs` if no option is an output."""
     return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__
             and (name != "outputs" or not OUTPUTS.keys().isdisjoint(options))}
 
 
 def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Decorator: the function takes Keywords, and these options; all stand in its signature and its text.
+    """Returns a decorator: the function takes Keywords, and these options; its signature and text have all.
 
-    Particles of io.read() may stand in place of positions. An array's name is then an array, and what the file says of
-    h, mass, walls, kernel and period is taken, unless it is given.
+    Positions may be particles of io.read(). Names then mean the file's arrays, and smoothing length, mass, walls, kernel
+    and period come from the file unless they are given.
     """
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
@@ -96,7 +96,7 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
 
 
 def words_of_file(particles, given):
-    """Returns keywords of a function, with arrays in place of names. source: the particles, whose arrays fluid and only may name."""
+    """Returns keywords of a function, with arrays in place of names. Adds `source`: the particles, whose arrays `fluid` and `only` may name."""
     words = dict(given)
     for name in ARRAYS:
         text = words.get(name)
@@ -132,12 +132,12 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
 
 
 class Ranges(list):
-    """Has pairs (name, value or (low, high)) in place of the dictionary `only`, of which several may have one name: then any counts."""
+    """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. Several may have one name: one of them must hold."""
 
 
 class Finder:
-    """Lets the core find volumes, fluid, particles that are left out, and the scalar among the arrays that are given, and those of a file
-    (source: None, or its particles). Without a file, fluid and only name attributes."""
+    """Lets the core find volumes, fluid, particles to leave out, and the scalar among the given arrays and the arrays of a file
+    (source: its particles, or None). Without a file, `fluid` and `only` name attributes."""
 
     def __init__(self, arguments, source, attributes):
         self.arguments, self.source = arguments, source
@@ -147,7 +147,7 @@ class Finder:
         self.request = {"find": source is not None}
 
     def add(self, name, array):
-        """Returns the name that the array has for the core, where each is different."""
+        """Returns the array's name for the core, where all names differ."""
         while name in self.named and self.named[name] is not array:
             name += "'"
         self.named[name] = array
@@ -161,7 +161,7 @@ class Finder:
         return array if array.dtype in ELEMENTS or array.dtype.kind not in "fiu" else contiguous(array, name)
 
     def add_sizes(self, given, estimate):
-        """given: {role: array, value or None}, of which the scalar may also be a name. estimate: as estimate_smoothing_length."""
+        """Adds quantities. given: {role: array, value or None}; the scalar may also be a name. estimate: estimate_smoothing_length."""
         self.ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
         self.request.update(lengths_by_neighbours=bool(self.ratio), estimate_smoothing_length=bool(self.ratio) or number(
             "estimate_smoothing_length", "int", estimate), compute_volumes=isinstance(given["volume"], str) and given["volume"] == "computed")
@@ -219,7 +219,7 @@ class Finder:
             self.ranges.append((self.add("only", only), 1, 1))
 
     def find(self, wants, options, nothing):
-        """Sets the input and the options. nothing: what there is without fluid; None: that is an error."""
+        """Sets the input and the options. nothing: the warning's words for no fluid; None: no fluid is an error."""
         arguments = self.arguments
         found = Found(arguments.positions, self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges,
                       **self.request)
@@ -256,7 +256,7 @@ def parse_fluid(fluid):
 
 
 def parse_range(name, wanted):
-    """Returns the lowest and the highest value of what only has for this array."""
+    """Returns the lowest and the highest value that `only` wants of this array."""
     ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
     if len(ends) != 2:
         raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a value, or the lowest and the highest one.")
@@ -308,7 +308,7 @@ def warn_of_missing(missing):
 
 @contextlib.contextmanager
 def called(function, kind, arguments, *more):
-    """Yields what a function of the core returns, and frees it at the end. If the options ask for that, smoothing lengths are widened first."""
+    """Yields the result of a function of the core, and frees it at the end. Widens smoothing lengths first if the options want it."""
     if arguments.options.widen != 1 and kind is not c.mcor_widening:
         of_surface = kind is c.mcor_surface
         arguments.widening = arguments.widening or widen(arguments, of_surface)
@@ -335,8 +335,8 @@ def called(function, kind, arguments, *more):
 
 
 def widen(arguments, of_surface):
-    """Returns the factors of the smoothing lengths, the volumes if they are computed, and the statistics. of_surface: by the rule of this surface;
-    else by that of the free surface."""
+    """Returns the factors of the smoothing lengths, the volumes if they are computed, and the statistics. of_surface: this surface
+    decides on the factors; else the free surface."""
     options = arguments.options
     if not of_surface:
         arguments.options = c.mcor_options.from_buffer_copy(options)

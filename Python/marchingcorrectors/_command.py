@@ -49,7 +49,7 @@ def named_line(text):
 
 
 def chosen(text):
-    """Returns an array's name, and a value, a word or two limits."""
+    """Reads NAME=VALUE, NAME=WORD or NAME=LOW:HIGH."""
     name, _, ends = text.rpartition("=")
     ends = [quantity(end) for end in ends.split(":")]
     if not name or len(ends) > 2 or len(ends) == 2 and str in map(type, ends):
@@ -62,7 +62,7 @@ def plane(text):
     return "xyz".index(axis), float(place)
 
 
-# These values are read in ways of their own; other ways follow from what the program's help says of a value.
+# These options have their own readers; for others, the value's name in the program's help tells how to read it.
 READERS = {"--smoothing-length": quantity, "--volume": quantity, "--mass": quantity, "--density": quantity, "--fluid": str, "--only": chosen,
            "--wall-share": quantity, "--component": lambda text: -1 if text == "magnitude" else int(text), "--periodic": period, "--gauge": named_line, "--slice": plane,
            "--times": _film.to_times, "--attributes": lambda text: text.split(","), "--device": str}
@@ -74,7 +74,7 @@ COMMANDS = {
     "gauge": (GAUGE, "water levels along lines", ".csv"),
     "slice": (PROBE, "the field on a plane", ".vti or .npz"),
     "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
-# Options that are no keywords of the functions.
+# Options that are not keywords of the functions.
 OWN = {"--smoothing-length", "--dp", "--coefh", "--volume", "--mass", "--density", "--fluid", "--within", "--only", "--walls", "--solids",
        "--device", "--threads", "--quiet"}
 OF = {"surface": {"--scalar", "--iso", "--free-surface", "--curvature", "--cubes", "--times", "--attributes", "--no-attributes"},
@@ -96,7 +96,7 @@ def options_of(command):
 
 
 def add_option(parser, option, is_required):
-    """Adds an option of the program's table, with its words."""
+    """Adds an option with the words of the program's table."""
     argument, about, _, _ = c.PROGRAM[option]
     words = {"help": (about or ", ".join(WORDS[option])).replace("%", "%%"), "dest": option[2:].replace("-", "_"), "default": None}
     if option == "--no-attributes":
@@ -149,7 +149,7 @@ def in_shell(failure):
 
 
 def find_words(given, names, particles, command):
-    """Returns keywords of the functions; the file completes them."""
+    """Returns keywords of the functions from the options; the file gives some of the missing ones."""
     words = {}
     for option in options_of(command):
         keyword, value = keyword_of(option), getattr(given, option[2:].replace("-", "_"), None)
@@ -193,7 +193,7 @@ def attributes_of(given, particles, more=()):
 
 
 def surface_of(given, particles, more=()):
-    """Returns the surface, and the words that made it."""
+    """Returns the surface, and the keywords that made it."""
     names = FREE_SURFACE if given.scalar is None else ISOSURFACE
     words = {**find_words(given, names, particles, "surface"), "attributes": attributes_of(given, particles, more)}
     words.setdefault("iso_value", len(given.iso or ()) > 1 or given.scalar is not None and given.iso is None)
@@ -234,7 +234,7 @@ def run_gauge(given, particles):
 
 
 def write_table(output, head, rows):
-    """Writes a number; NaN becomes an empty cell."""
+    """Writes a .csv file; NaN becomes an empty cell."""
     if not output.lower().endswith(".csv"):
         raise InvalidArgument(f"The output is a .csv file, not '{output}'.")
     with open(output, "w", newline="") as file:
@@ -243,7 +243,7 @@ def write_table(output, head, rows):
 
 
 def run_probe(given, particles, points, make, command):
-    """Calls make(pyvista), which returns the data set of these points (points, 3)."""
+    """Probes points (points, 3) and writes the result. make(pyvista): returns a data set of these points."""
     found = probe(particles, points, attributes=attributes_of(given, particles), **find_words(given, PROBE, particles, command))
     arrays = found._point_arrays()
     ending = os.path.splitext(given.output)[1].lower()

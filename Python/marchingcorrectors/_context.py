@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contexts: a device with its compiled programs, and what it keeps between calls."""
+"""Contexts: devices with their compiled programs, and the data that they keep between calls."""
 from __future__ import annotations
 
 import contextlib
@@ -46,7 +46,7 @@ class Context:
 
     @contextlib.contextmanager
     def _alone(self):
-        """Waits for other threads. A callback of the present call would wait for ever."""
+        """Waits for other threads' calls. Refuses a callback of the present call, which would wait for ever."""
         if self._used_by == threading.get_ident():
             raise InvalidArgument("A progress callback cannot use the context whose call it belongs to. Use "
                                   "another Context there, or do it when the call has returned.")
@@ -84,7 +84,7 @@ class Context:
         self.close()
 
     def __reduce__(self):
-        """Refuses pickle and copy: two contexts would give the same device back."""
+        """Refuses pickle and copy: two contexts would both release the device."""
         raise TypeError("A Context cannot be copied or pickled: make another one for the same device.")
 
     def __del__(self):
@@ -92,8 +92,8 @@ class Context:
             self.close()
 
     def run(self, call, options, progress):
-        """call(handle) with the context to itself; raises what went wrong, the callback's exceptions
-        and KeyboardInterrupt included."""
+        """Runs call(handle) while no other thread uses the context. Raises the error, also an exception of the callback, or
+        KeyboardInterrupt."""
         start()
         with self._alone(), callback_of(progress) as callback, Watch(callback) as watch:
             if not self._handle:
@@ -108,14 +108,14 @@ class Context:
             raise watch.failure
         if watch.interrupted:
             watch.before(*watch.interrupted)
-            raise KeyboardInterrupt  # A handler returned; the run has ended all the same.
+            raise KeyboardInterrupt  # The user's handler raised nothing, but the run has ended.
         if error:
             raise error
 
 
 class Watch:
-    """The callback between launches. In the main thread it also sees Ctrl-C: Python's own handler
-    would raise in a place where nobody can catch it, so that one of ours only takes note."""
+    """The callback between launches. In the main thread it also sees Ctrl-C: Python's own handler would raise where nobody
+    can catch the exception, so a handler of ours only notes the signal."""
 
     def __init__(self, progress):
         self.progress, self.failure, self.interrupted, self.before = progress, None, None, None
@@ -153,7 +153,7 @@ _contexts_lock = threading.Lock()
 
 
 def default_context(device):
-    """Returns a context for this device, whose compiled programs the next call uses; it keeps nothing else."""
+    """Returns a context for this device. Between calls, it keeps only the compiled programs."""
     start()
     key = "" if device is None else str(device)
     with _contexts_lock:

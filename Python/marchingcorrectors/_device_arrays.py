@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arrays on a CUDA device, of CuPy, PyTorch, Warp, Numba, JAX and others, as arrays of NumPy. They come by __cuda_array_interface__, else by
-__dlpack__, and are copied by CUDA's driver itself into memory that the driver has locked, which is as fast as the bus."""
+"""Copies arrays on a CUDA device, of CuPy, PyTorch, Warp, Numba, JAX and others, to NumPy arrays. They come by __cuda_array_interface__, else by
+__dlpack__. CUDA's driver itself copies them into memory that it has locked, which is as fast as the bus."""
 import contextlib
 import ctypes
 import functools
@@ -20,7 +20,7 @@ REMEDY = "Copy it to the host first, as by array.get() or tensor.cpu()."
 
 
 class Tensor(ctypes.Structure):
-    """Is a DLTensor."""
+    """The struct DLTensor of DLPack."""
 
     _fields_ = [("data", ctypes.c_void_p), ("device_type", ctypes.c_int32), ("device", ctypes.c_int32), ("ndim", ctypes.c_int32),
                 ("code", ctypes.c_uint8), ("bits", ctypes.c_uint8), ("lanes", ctypes.c_uint16),
@@ -29,7 +29,7 @@ class Tensor(ctypes.Structure):
 
 
 def on_host(values, role):
-    """Returns an array of NumPy with what an array on a CUDA device holds, and anything else as it is."""
+    """Returns a NumPy copy of an array on a CUDA device, and anything else as it is."""
     interface = getattr(values, "__cuda_array_interface__", None)
     if interface is not None:
         if interface.get("mask") is not None:
@@ -53,7 +53,7 @@ def on_host(values, role):
 
 
 def _copy(address, shape, dtype, strides, stream, role):
-    """Copies the bytes from the lowest element to the highest one at once; the result has the strides of the original."""
+    """Copies all bytes from the lowest element to the highest one at once; the result has the original's strides."""
     if 0 in shape:
         return np.empty(shape, dtype)
     low, high = 0, int(np.prod(shape, dtype=np.int64)) * dtype.itemsize
@@ -65,8 +65,8 @@ def _copy(address, shape, dtype, strides, stream, role):
 
 
 class Driver:
-    """CUDA's driver, and memory that it has locked: blocks that no array uses any more serve the next ones, as locking takes far longer
-    than a copy."""
+    """CUDA's driver, and memory that it has locked. Blocks that arrays no longer use serve the next arrays, because locking takes far
+    longer than a copy."""
 
     def __init__(self, library):
         self.library, self.lock, self.idle, self.primary = library, threading.Lock(), [], {}
@@ -113,7 +113,7 @@ class Driver:
         return block
 
     def take(self, size):
-        """Takes the smallest idle block with enough room; where there is none, makes the largest one larger."""
+        """Takes the smallest idle block with enough room; if there is none, makes the largest idle block larger."""
         fitting = [block for block in self.idle if block[1] >= size]
         if fitting or self.idle:
             block = min(fitting, key=lambda each: each[1]) if fitting else max(self.idle, key=lambda each: each[1])

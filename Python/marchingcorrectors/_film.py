@@ -33,7 +33,7 @@ def add_options(parser):
 
 
 def refuse_options(given):
-    """Raises the sentence for a single surface whose output is no USD file."""
+    """Refuses options of films for a single surface, whose output is not a USD file."""
     for word in (*(option[0] for option in OPTIONS), "--spray", "--times"):
         if getattr(given, word[2:].replace("-", "_"), None) is not None:
             raise InvalidArgument(f"{word} is for films: give an output that ends in .usdc, .usda or .usd.")
@@ -51,7 +51,7 @@ def in_order(paths):
 
 
 def run(given, inputs, steps, make):
-    """Adds each step, a pair of (label, argument of make()). If one fails, says so and adds the others."""
+    """Adds each step, a pair of (label, argument of make()). If a step fails, reports it and adds the others."""
     failed = 0
     with open_film(given, inputs) as film:
         for i, (label, step) in enumerate(steps):
@@ -74,10 +74,10 @@ def tell(surface, time):
     return f"time {time:g}: {len(surface.points)} points, {len(surface.triangles)} triangles"
 
 
-# -- of particles --
+# -- films of particles --
 
 def run_particles(given, surface_of):
-    """surface_of(particles, more): the surface, with these arrays beside those that are wanted, and the words for it."""
+    """Makes a film of particles. surface_of(particles, more): returns the surface, with the arrays `more`, and its keywords."""
     if given.spray is not None and (given.scalar is not None or given.spray < 1):
         raise InvalidArgument("--spray needs a number of particles from 1 on." if given.scalar is None else
                               "--spray is for the free surface: leave --scalar out.")
@@ -111,7 +111,7 @@ def run_particles(given, surface_of):
 
 
 def between_steps(steps, times, rate, velocity):
-    """Yields the steps at these times or, without times, at each frame of this rate from the first step on. No more than two steps are in memory."""
+    """Yields the steps at these times or, without times, at each frame of this rate from the first step on. At most two steps are in memory."""
     before, number, label = None, 0, ""
     for label, load in steps:
         try:
@@ -154,7 +154,7 @@ def to_times(text):
 to_times.__name__ = to_times.__doc__  # argparse names this function where a value is wrong.
 
 
-# -- of surfaces --
+# -- films of surfaces --
 
 def run_convert(arguments):
     """python -m marchingcorrectors convert: particles to .vtp and .pvd, surfaces to USD."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Has what the core finds among named arrays, see mcor_find.h."""
+"""Asks the core to find quantities among named arrays, see mcor_find.h."""
 import ctypes
 
 import numpy as np
@@ -21,7 +21,7 @@ def as_bytes(text):
 
 
 def list_named(arrays):
-    """Makes the core's list of {name: array}, or of pairs. An array without numbers has only a shape."""
+    """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers has only a shape there."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
     named = (c.mcor_named * max(len(pairs), 1))()
     for each, (name, array) in zip(named, pairs):
@@ -94,7 +94,7 @@ class Found:
         return (getattr(self.found, member) or b"").decode(errors="replace")
 
     def which(self, role):
-        """Returns the index of the array. Arrays that the core made follow the last one, as numbers 0, 1. None: there is no array."""
+        """Returns the index of the array with this role, or None. Arrays that the core made are behind the given ones."""
         index = self.found.which[ROLES[role]]
         return None if index < 0 else index
 

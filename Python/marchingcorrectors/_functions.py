@@ -116,14 +116,14 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
 
 
 def find_iso_value(arguments, is_free):
-    """Returns a list with the iso value for those who gave none: 0.5 of the free surface, about the median of a scalar."""
+    """Returns a list with the default iso value: 0.5 for the free surface, about the median for a scalar."""
     ends, value = (ctypes.c_double * 2)(), ctypes.c_double(0.5)
     found = is_free or lib.mcor_find_iso_value(ctypes.byref(arguments.input), None, ends, ctypes.byref(value))
     return [value.value] if found else []
 
 
 def _describe_empty(arguments, found):
-    """Returns a sentence about an empty surface that the core does not explain, or "" if a box may just be elsewhere."""
+    """Returns a sentence about an empty surface that the core does not explain; "" if a box is given, which may just be elsewhere."""
     values, options, n = arguments.options.iso_values, arguments.options, found.statistics
     if len(found.points) or not arguments.input.count or any(options.box):
         return ""
@@ -143,7 +143,7 @@ def _describe_empty(arguments, found):
 
 
 def take_surface(surface, arguments):
-    """Makes a Surface of the core's."""
+    """Makes a Surface from the core's mcor_surface."""
     count = surface.point_count
     arrays = take_all("mcor_surface", surface,
                       {"point_count": count, "triangle_count": surface.triangle_count})
@@ -323,7 +323,7 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     {options}
     """
     units = Units(positions)
-    if isinstance(scalar, str) and scalar == SUMMED:  # Without that array, the sum of the particles' masses is used.
+    if isinstance(scalar, str) and scalar == SUMMED:  # If this array is missing, the sum of the particles' masses is used.
         scalar = None
     arguments = prepare(units, words, wants=["column"], nothing="nothing is seen", scalar=without_unit(scalar))
     view = c.mcor_view()

@@ -72,18 +72,18 @@ def take_text(pointer):
 
 
 class Sentence(str):
-    """Is a sentence of the core, with Python's words for options. code: its name in mcor_says.def; text: the sentence with slots."""
+    """A sentence of the core with Python's words for options. code: its name in mcor_says.def; text: the sentence with slots."""
 
     code: str
     text: bytes
 
     def say(self, word):
-        """Fills the slots with other words, of a mcor_word."""
+        """Returns the sentence with other words in its slots. word: a mcor_word."""
         return take_text(lib.mcor_fill_slots(self.text, word, None))
 
 
 def word_by(function):
-    """Makes a mcor_word of function(name, value), which returns "" if it has no word."""
+    """Makes a mcor_word from function(name, value), which returns "" if it has no word."""
     def write(_, name, value, word, size):
         found = function(name.decode(), value.decode(errors="replace")).encode()[:size - 1]
         ctypes.memmove(word, found + b"\0", len(found) + 1)
@@ -128,7 +128,7 @@ _ready_in = None  # OpenCL was started in this process.
 
 
 def start():
-    """Is called before anything is asked of OpenCL."""
+    """Prepares OpenCL. Must be called before anything else is asked of it."""
     global _ready_in
     with _state_lock:
         if _ready_in is None:

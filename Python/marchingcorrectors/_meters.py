@@ -47,7 +47,7 @@ class Gauges(Result):
 
 
 def _as_lines(lines, units):
-    """Returns names, and an array (lines, 2, 3)."""
+    """Returns the lines' names, and an array (lines, 2, 3)."""
     names = [str(name) for name in lines] if isinstance(lines, Mapping) else None
     values = list(lines.values()) if isinstance(lines, Mapping) else lines
     array = contiguous(units.lengths(values, "array of lines"), "array of lines").astype(np.float64)
@@ -121,7 +121,7 @@ def _numbers(values, shape, name, units=None):
 
 
 def _as_section(section, name, units):
-    """Returns shape, points (n, 3) and radius."""
+    """Returns a section's kind of shape, points (n, 3) and radius."""
     kinds = c.ENUMS["mcor_section_shape"]
     if isinstance(section, (tuple, list)) and len(section) and isinstance(section[0], str):
         if section[0] == "disc" and len(section) == 4:
@@ -140,7 +140,7 @@ def _as_section(section, name, units):
 
 
 def _as_sections(sections, units):
-    """Returns names and structures, with the arrays that must stay alive as long as these."""
+    """Returns names and structures, and the arrays that must stay alive as long as the structures."""
     is_one = isinstance(sections, np.ndarray) or (
         isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
     if not is_one and not isinstance(sections, (Mapping, tuple, list)):

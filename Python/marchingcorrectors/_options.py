@@ -37,8 +37,8 @@ for _name, _bit in OUTPUTS.items():
 
 
 class Options(c.CoreOptions, total=False):
-    """Keywords of isosurface(); the other functions take those of them that matter there. Those of
-    core/mcor_options.def are CoreOptions."""
+    """Keywords of isosurface(); other functions take the keywords that matter there. CoreOptions has the options of
+    core/mcor_options.def."""
 
     smoothing_length_is_support_radius: bool
     estimate_smoothing_length: Union[bool, str]
@@ -50,14 +50,14 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """Returns the panel's words on a property, without a default that is only a word."""
+    """Returns the panel's text on a property, without the default if that is only a word."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said
 
 
 PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))
-# These are meanings of options; the panel's words serve for the others.
+# These are texts on options; the panel's texts serve for other options.
 WORDS = {
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
@@ -106,7 +106,7 @@ DERIVATIVES, GAUGE, PROBE, PROJECT, WIDENING = (
     for kind, more in (("DERIVE", ()), ("GAUGE", WIDENS), ("PROBE", (*WIDENS, "gradients", "attributes_version")),
                        ("PROJECT", (*WIDENS, "scalar_component")),
                        ("WIDENING", ("widen", "cube_size", "cube_size_factor", "wall_share"))))
-# Most people need these keywords: the program's table marks their options. Signatures and helps begin with them.
+# Most people need these keywords: the program's table marks their options as "usual". Signatures and help texts begin with them.
 USUAL = [member for _, _, modes, member in c.PROGRAM.values() if "usual" in modes]
 
 
@@ -152,7 +152,7 @@ SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoo
 
 
 def check_names(function, given, options):
-    """Raises the TypeError that Python raises for an unknown keyword."""
+    """Raises Python's TypeError for an unknown keyword, with a suggestion."""
     parameters = inspect.signature(function).parameters
     for name in given:
         if name not in parameters:
@@ -174,8 +174,8 @@ def describe(names):
 
 
 def show(function, keywords, options):
-    """Puts keywords, {name: type}, and options, names, into the function's signature, and the options' meanings into its
-    text, in place of {options}."""
+    """Puts keywords, {name: type}, and options, a list of names, into the function's signature, and the texts on the
+    options into its own text, in place of {options}."""
     def parameter(name, default, kind):
         return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default,
                                  annotation=getattr(kind, "__forward_arg__", kind))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes a function of the values of progress=: a function of the caller, or True for a bar."""
+"""Makes a callback from the value of progress=: a function of the caller, or True for a bar."""
 import contextlib
 import sys
 
@@ -8,7 +8,7 @@ from ._library import InvalidArgument
 
 
 class TextBar:
-    """Is the bar without tqdm: one line on stderr that is overwritten, or a line per phase in a file."""
+    """The bar if there is no tqdm: one line on stderr, which is overwritten; in a file, a line per phase."""
 
     def __init__(self):
         self.state = None
@@ -27,7 +27,7 @@ class TextBar:
 
 @contextlib.contextmanager
 def callback_of(progress):
-    """Returns the function to call with a fraction and a phase, or None."""
+    """Yields the function to call with a fraction and a phase, or None."""
     if progress is not True and progress not in (None, False) and not callable(progress):
         raise InvalidArgument(f"progress is {progress!r}; it must be True, for a bar, or a function that takes a "
                               "fraction from 0 to 1 and the name of the phase.")

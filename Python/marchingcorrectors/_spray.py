@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Finds spray: particles in small drops, or alone. A film shows them as balls beside the surface of the others."""
+"""Finds spray: particles in small drops, or alone. A film shows them as balls beside the surface of the other particles."""
 import dataclasses
 
 import numpy as np
@@ -19,7 +19,7 @@ KEYWORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid", "
 
 
 def fluid_and_volume(words):
-    """Returns which particles are fluid, and their volumes, or None where they are computed; words: keywords of a function."""
+    """Returns which particles are fluid, and their volumes, or None if volumes are computed. words: keywords of a function."""
     words = dict(words)
     arguments = prepare(Units(words.pop("positions")), words)
     given, count = arguments.input, arguments.count
@@ -29,11 +29,11 @@ def fluid_and_volume(words):
 
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
-    """The surface without its closed pieces that enclose fewer than `least` fluid particles, and these particles, with those
-    that no piece encloses, as the sum of the weights is below `iso` there, and that are nearest to no point of the surface, as
-    the tips of pieces are.
+    """Returns the surface without the closed pieces that enclose fewer than `least` fluid particles, and the spray: the
+    particles in these pieces, and particles where the sum of the weights is below `iso`. Particles at the tips of the
+    other pieces, to which points of the surface are nearest, are no spray.
 
-    words: those of free_surface(), which made the surface of these particles, with nearest_particle. velocity: its array's name.
+    words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of its array.
     """
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
@@ -70,8 +70,8 @@ def label_pieces(triangles, count):
 
 
 def small_pieces(surface, label, positions, fluid, least):
-    """Returns (piece, its particles) of each closed piece with fewer than `least`: the particles that it encloses, or that are nearest to its points.
-    A cavity is not such a piece; it goes with the piece around it."""
+    """Returns (piece, its particles) for each closed piece with fewer than `least` particles: those that it encloses, or that are nearest to its
+    points. Cavities are not listed; a cavity is left out with the piece around it."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))
@@ -95,14 +95,14 @@ def small_pieces(surface, label, positions, fluid, least):
 
 
 def is_closed(triangles):
-    """Returns whether each edge has a triangle on either side."""
+    """Returns whether each edge has a triangle on both sides."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
     there, back = (np.sort(edges[:, i] << 32 | edges[:, 1 - i]) for i in range(2))
     return np.array_equal(there, back)
 
 
 def encloses(corners, points):
-    """Returns whether triangles surround each of the points: their solid angles add up to that of a sphere."""
+    """Returns, for each point, whether the triangles surround it: their solid angles add up to a full sphere."""
     a, b, c = np.moveaxis(corners[None] - points[:, None, None], 2, 0)
     la, lb, lc = (np.linalg.norm(each, axis=-1) for each in (a, b, c))
     dot = lambda one, other: np.einsum("...i,...i", one, other)  # noqa: E731
@@ -125,6 +125,6 @@ def without_points(surface, left_out):
 
 
 def find_widths(surface, volume, count):
-    """Returns diameters of balls with the particles' volumes; without volumes, of a spacing of h / 1.3."""
+    """Returns diameters of balls with the particles' volumes; volume: None: that of a spacing of h / 1.3."""
     volume = (surface.statistics["smoothing_length_max"] / 1.3) ** 3 if volume is None else volume
     return np.broadcast_to(np.cbrt(6 / np.pi * np.asarray(volume, float)), count)

@@ -34,7 +34,7 @@ def _same(one, other):
 
 
 class Result:
-    """Gives a short repr(), and a == that compares all but the statistics, which hold seconds."""
+    """Base of all results: has a short repr(), and a == that compares all but the statistics, which hold seconds."""
 
     __hash__ = None  # type: ignore[assignment]  # arrays can be changed
 
@@ -206,7 +206,7 @@ PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "c
 
 
 def _save_csv(path, surface):
-    """The columns that the program writes: a row for each point of each line."""
+    """Writes the same columns as the program: a row for each point of each line."""
     if surface.line_offsets is None and len(surface.triangles):
         raise InvalidArgument(f"{path.name} was not written: .csv holds the points of lines, which particles in a plane give, but this "
                               "is a surface. Formats that hold all arrays are .npz, .ply and .vtp.")
@@ -273,7 +273,7 @@ class Samples(Result):
                 f"arrays: {self._names(('valid',))}>")
 
     def _point_arrays(self):
-        """As VTK's filter names them."""
+        """Returns all arrays under the names that VTK's filter gives them."""
         return {**self.values, **{name + "_Gradient": values for name, values in self.gradients.items()},
                 "WeightSum": self.weight_sum, "vtkValidPointMask": self.valid.astype(np.uint8)}
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arrays with units, of pint, unyt or astropy: all lengths are converted to the unit of the positions. What has a unit
-beside what has none is refused, as nobody can know what was meant."""
+"""Arrays with units, of pint, unyt or astropy: all lengths are converted to the unit of the positions. If one argument
+has a unit and another has none, both are refused, because nobody can know what was meant."""
 from ._library import InvalidArgument
 
 
@@ -42,7 +42,7 @@ def convert(thing, unit, role, reference):
 
 
 class Units:
-    """Takes the arguments of one call as they are, and makes plain numbers of them."""
+    """Makes plain numbers of the arguments of one call."""
 
     def __init__(self, positions):
         self.length = unit_of(positions)
@@ -73,7 +73,7 @@ class Units:
 
 
 def scalar_and_iso(scalar, scalar_dot, iso):
-    """Returns plain numbers; the iso value is in the scalar's unit, or in the dot product's."""
+    """Returns plain numbers; the iso value is in the unit of the scalar, or of the dot product."""
     unit, other = unit_of(scalar), unit_of(scalar_dot)
     if scalar_dot is not None and (unit is None) != (other is None):
         convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # This call raises the refusal.

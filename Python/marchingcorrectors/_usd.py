@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Films in one USD file (.usdc, .usda, .usd): a mesh that changes from step to step, with velocities, by Pixar's package
-usd-core."""
+"""Writes films as one USD file (.usdc, .usda, .usd): a mesh that changes from step to step, with velocities. Uses Pixar's
+package usd-core."""
 from __future__ import annotations
 
 import os
@@ -17,7 +17,7 @@ from .io._outputs import Outputs
 from .io._particles import FileError, usual
 
 ENDINGS = (".usdc", ".usda", ".usd")
-UNSAVED = 2 ** 25  # So many bytes of steps may wait to be written.
+UNSAVED = 2 ** 25  # Steps that wait to be written have at most this many bytes.
 
 
 def is_usd(path: Any) -> bool:
@@ -25,7 +25,7 @@ def is_usd(path: Any) -> bool:
 
 
 def find_velocity(arrays: Any, name: Optional[str] = None) -> Optional[str]:
-    """Returns the name of the array that is the velocity, by its usual names, or None."""
+    """Returns the name of the velocity's array: `name`, or a usual one, or None."""
     if name is not None and name not in arrays:
         raise InvalidArgument(f"There is no array '{name}' to be the velocity.{did_you_mean(name, arrays)} Arrays: "
                               f"{', '.join(arrays) or 'none'}.")
@@ -105,7 +105,7 @@ class Film:
         """
         if self._stage is None:
             self._open()
-        code = round(float(time) * self.fps * self.slow, 6)  # Then a whole frame is off by less than a bit.
+        code = round(float(time) * self.fps * self.slow, 6)  # Without the rounding, a whole frame could be off by a bit.
         if not np.isfinite(code) or self._last is not None and code <= self._last:
             raise InvalidArgument(f"The time {time:g} does not come after that of the step before. Put the steps in order, or give the "
                                   "time between them (in a shell --time-step).")
@@ -231,8 +231,8 @@ def _extent(points, more=0.0):
 
 
 class _Part:
-    """Is a prim whose attributes all have a value at each time code. What a step lacks is blocked there; otherwise the value of the step before would
-    stay."""
+    """A prim whose attributes all have a value at each time code. Attributes that a step lacks are blocked there; otherwise the previous step's
+    values would stay."""
 
     def __init__(self, stage, kind, name):
         from pxr import UsdGeom
@@ -290,7 +290,7 @@ def _nothing(name, usd):
 
 
 def _to_usd(usd, array):
-    """Returns the array as one of USD's type."""
+    """Returns the array in USD's type `usd`."""
     from pxr import Vt
 
     width = next((int(letter) for letter in usd.replace("Int64", "") if letter.isdigit()), 1)

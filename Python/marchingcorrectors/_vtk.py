@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The VTK classes: those of C++ where they were built, else the filter in Python."""
+"""Loads the VTK classes: the C++ classes if they were built, else the filter in Python."""
 from importlib import import_module
 from pathlib import Path
 
@@ -31,6 +31,6 @@ def find_class(name):
     if module is None or not hasattr(module, name):
         raise ImportError(f"{name} is there in C++ only: build the sources with CMake for this VTK.")
     found = getattr(module, name)
-    # This replaces the module of this name, which importing has left there.
+    # This replaces the module of the same name, which the import has put into the package.
     setattr(package, name, found)
     return found

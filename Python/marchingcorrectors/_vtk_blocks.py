@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The particles among the points of a data set or of blocks, and all blocks as one set."""
+"""Finds the particles among the points of a data set or of blocks, and joins all blocks to one set."""
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -16,7 +16,7 @@ from .io._cells import VERTICES, find_vertices
 
 
 def walk(tree, empty=False):
-    """Yields (data, name, whether it is a leaf, flat index) of all nodes. Partitions have the name of the node that they belong to."""
+    """Yields (data, name, whether it is a leaf, flat index) of all nodes. Partitions have the name of their block."""
     iterator, whole, last = tree.NewTreeIterator(), "", 0
     iterator.VisitOnlyLeavesOff()
     iterator.SetSkipEmptyNodes(not empty)
@@ -32,12 +32,12 @@ def walk(tree, empty=False):
 
 
 def sets_of(data):
-    """Returns the data set itself, or the blocks, that are point sets with points."""
+    """Lists the data set itself, or its blocks; only point sets with points."""
     return [each for each in list_all(data) if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
 
 
 def cells_of(points):
-    """Returns the cells that come before all others and are vertices, and the types of all cells."""
+    """Returns the list of cells that has the vertices, and the types of all cells. The list's cells have the first numbers."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -60,8 +60,8 @@ def add_values(data, count, chosen, made):
 
 
 def take_vertices(data, have=None):
-    """As vtkSPHTakeVertices() in C++: the particles of a data set, or of each of its blocks; the data set itself where
-    all of its points are."""
+    """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++; the data set itself if
+    nothing changes."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):
@@ -108,13 +108,13 @@ def describe_mesh(data, taken):
 
 
 def list_all(data):
-    """Yields the data set, and all that it is made of."""
+    """Lists the data set itself and all its blocks, at any depth."""
     return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
 
 
 def join_array(sets, like, joined):
-    """Joins an array's values, one block after the other; None if a fluid block lacks it. An array that tells kinds of particles apart is not filled
-    for walls either."""
+    """Joins an array's values, one block after the other. Returns None if a fluid block lacks the array, or a block of walls lacks an array
+    that tells kinds of particles apart."""
     made, name = like.NewInstance(), name_of(like)
     made.SetName(name)
     made.SetNumberOfComponents(like.GetNumberOfComponents())
@@ -136,8 +136,8 @@ def join_array(sets, like, joined):
 
 
 def join_blocks(tree):
-    """The points of all blocks with the point arrays that all of them have; which are of blocks with names that tell
-    of walls, where some do."""
+    """Returns the points of all blocks, with the point arrays that all of them have. If the names of some blocks, but not
+    of all, tell of walls, an array marks their points."""
     leaves = [(data, tells_of_walls(name)) for data, name, leaf, _ in walk(tree, True) if leaf]
     some = len({wall for _, wall in leaves}) == 2
     sets = [(data, wall and some) for data, wall in leaves

@@ -18,7 +18,7 @@ WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether 
 
 
 class Unusable(Exception):
-    """Is raised with the sentence that says what is missing or wrong, and holds what was found nevertheless."""
+    """Says what is missing or wrong. particles: what was found nevertheless."""
 
     def __init__(self, sentence, particles=None):
         super().__init__(sentence)
@@ -26,7 +26,7 @@ class Unusable(Exception):
 
 
 class NoNumbers:
-    """Has the shape of an array that has no numbers, as of text."""
+    """The shape of an array that has no numbers, such as an array of text."""
 
     def __init__(self, array):
         self.shape = array.GetNumberOfTuples(), array.GetNumberOfComponents()
@@ -50,7 +50,7 @@ def is_single(array):
 
 
 def to_numpy(array):
-    """Returns the array's values where they are, or a copy if they do not lie in one piece."""
+    """Returns the array's values without a copy, or a copy if they do not lie in one piece."""
     if not array.HasStandardMemoryLayout() or array.GetDataTypeAsString() == "bit":
         copy = vtkDataArray.CreateDataArray(3 if array.GetDataTypeAsString() == "bit" else array.GetDataType())
         copy.DeepCopy(array)
@@ -76,7 +76,7 @@ def choose_array(arrays):
 
 
 def varies(array, on_surface):
-    """Whether the array varies more than the noise of the contoured one. Vectors have the colours of their magnitudes."""
+    """Whether the array varies on the surface by more than noise. Vectors count by their magnitudes."""
     if on_surface is None or on_surface.GetNumberOfTuples() == 0:
         return False
     kind = -1 if array.GetNumberOfComponents() > 1 else 0
@@ -99,7 +99,7 @@ def find_period(points):
 
 
 class Request:
-    """Returns the point array that SetInputArrayToProcess asks for: its name, or the index of the active one."""
+    """The point array that SetInputArrayToProcess asks for: its name, or the index of the active array."""
 
     def __init__(self, algorithm, index, points):
         self.name, self.on_points, self.active = "", True, -1
@@ -120,10 +120,10 @@ class Request:
 
 
 class Particles:
-    """What the core finds among the point arrays. Raises Unusable if something is missing.
+    """The quantities that the core finds among the point arrays. Raises Unusable if something is missing.
 
-    choice: the filter's properties, copied; wants: names of mcor_want; requests: scalar, and second vector; options: those
-    of the core by which sums over neighbours are made.
+    choice: a copy of the filter's properties; wants: names of mcor_want; requests: for the scalar and the second vector;
+    options: the core's options for sums over neighbours.
     """
 
     def __init__(self, choice, points, wants, requests=None, taken=(), options=None):
@@ -198,7 +198,7 @@ class Particles:
         return found
 
     def text(self, member):
-        """As no_fluid."""
+        """Returns a text of the core's result, such as no_fluid."""
         return self._holder.text(member)
 
     def describe_fluid(self):
@@ -225,7 +225,7 @@ class Particles:
         return result
 
     def has_free_surface(self):
-        """Whether it is what to see first. A density that is not used for volumes tells of a liquid, too."""
+        """Whether the free surface is the thing to see first. A density tells of a liquid even if volumes are not made of it."""
         given = c.mcor_input.from_buffer_copy(self.arguments().input)
         given.density = self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_DENSITY"]]
         return lib.mcor_has_free_surface(ctypes.byref(given), None)
@@ -236,8 +236,8 @@ class Particles:
         return lib.mcor_estimate_cells(given, ctypes.byref(options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """Tells one state of particles and scalar from another. The data set's own time is part
-        of it: users change arrays in place and tell the data set."""
+        """Returns marks that differ if the particles, or the scalar, differ. The data set's own time counts, too: users change
+        arrays in place, and call only its Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())
@@ -251,8 +251,7 @@ class Particles:
         return particles, [*map(sign, scalars), given.scalar_component]
 
     def find_iso_value(self):
-        """The range of the scalar at fluid particles, and an iso value for those who gave none; None where no
-        value is finite."""
+        """Returns the range of the scalar at fluid particles, and the default iso value; None if no value is finite."""
         ends, value = (ctypes.c_double * 2)(), ctypes.c_double()
         found = lib.mcor_find_iso_value(ctypes.byref(self.input), None, ends, ctypes.byref(value))
         return (tuple(ends), value.value) if found else None

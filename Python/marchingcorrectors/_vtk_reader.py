@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Solvers' own files and tables by ParaView's File > Open, a series, or what one file holds, as time steps: part of the
-plugin in MarchingCorrectorsFilter.py.
+"""Reads solvers' own files and tables for ParaView's File > Open; several files, or the steps of one file, are time
+steps. It is part of the plugin in MarchingCorrectorsFilter.py.
 
-HDF5 wants h5py in ParaView's Python."""
+HDF5 needs h5py in ParaView's Python."""
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
@@ -13,7 +13,7 @@ from . import io
 from .io.bodies import LISTS
 from .io.convert import to_vtk
 
-# VTK's own files have readers there; ParaView's of tables and molecules make no particles: it asks which one to take.
+# ParaView reads VTK's own files itself. Its readers of tables and molecules make no particles, so it asks which reader to use.
 ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *LISTS)] + ["gadget"]
 
 
@@ -67,8 +67,7 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
             return io.read(name, step=step)
 
     def _list_steps(self):
-        """Returns (time, file, number in it) of each step. Times come from the files if they ascend from one to the next; otherwise they are 0, 1,
-        ..."""
+        """Returns (time, file, number of the step in the file) of each step. If the times in the files do not ascend, times are 0, 1, ..."""
         if self._steps is None:
             found = []
             for name in self._names:

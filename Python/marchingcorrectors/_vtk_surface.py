@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A surface as vtkPolyData, and what a run found, used and cost as field data, as vtkMarchingCorrectorsOutput builds them."""
+"""Builds a surface as vtkPolyData, and a run's results, settings and costs as field data, as vtkMarchingCorrectorsOutput does."""
 import ctypes
 
 import numpy as np
@@ -16,7 +16,7 @@ NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 
 
 def add(data, name, values):
-    """Returns an array of these values; one text, number or tuple gives one tuple."""
+    """Adds an array of these values; one text, number or tuple gives one tuple."""
     values = np.asarray(values)
     if values.dtype.kind == "U":
         array = vtkStringArray()
@@ -30,7 +30,7 @@ def add(data, name, values):
 
 
 def build_cells(first, corners):
-    """Returns cells with ids of vtkContourFilter's type, because some filters take a mesh with others for non-manifold."""
+    """Returns cells with ids of vtkContourFilter's type; with other types, some filters think a mesh is not a manifold."""
     offsets, connectivity, cells = vtkTypeInt64Array(), vtkTypeInt64Array(), vtkCellArray()
     for array, values in ((offsets, first), (connectivity, corners)):
         array.SetNumberOfValues(len(values))
@@ -40,7 +40,7 @@ def build_cells(first, corners):
 
 
 def build_mesh(output, surface, arrays):
-    """Returns points, cells and arrays of a Surface; arrays: {name: array} for the points."""
+    """Puts points and cells of a Surface into the output. arrays: {name: array} for the points."""
     points, data = vtkPoints(), output.GetPointData()
     points.SetData(numpy_to_vtk(surface.points, deep=True))
     output.SetPoints(points)
@@ -60,7 +60,7 @@ def build_mesh(output, surface, arrays):
 
 
 def add_nearest(data, name, array, nearest):
-    """Adds the values, of any type, of the particles with these numbers."""
+    """Adds an array of any type: the values of the particles with the numbers `nearest`."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
     else:
@@ -78,7 +78,7 @@ def add_nearest(data, name, array, nearest):
 # -- field data --
 
 def add_run(run, found, particles, arguments):
-    """Adds what a run found, used and cost. Costs add up over blocks."""
+    """Adds a run's results, settings and costs. Costs add up over blocks."""
     s, o = found.statistics, arguments.options
     for name in ("Device", "Platform"):
         add(run, name, s[name.lower()])

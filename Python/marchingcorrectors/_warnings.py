@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's warnings as Python's."""
+"""Gives the core's warnings as Python's warnings."""
 import ctypes
 import sys
 import warnings
@@ -38,7 +38,7 @@ def describe_warnings(arguments, surface):
 
 
 def warn_of_particles(arguments, statistics):
-    """Warns of what concerns calls without a surface, too."""
+    """Gives the warnings that do not need a surface."""
     kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
     for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
         if kinds[kind] in found:

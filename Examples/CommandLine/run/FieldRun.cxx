@@ -302,7 +302,7 @@ private:
   }
 
   static constexpr const char* MaskName = "vtkValidPointMask";
-  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< empty on other processes
+  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< others have none
   std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
 };
 
@@ -319,7 +319,7 @@ void MakeField(Sharing& sharing)
   const bool isProbe = job.IsProbe();
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // empty on other processes
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
   sharing.OnFirst(
     [&]
     {

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles among the cells of a mesh: the points of its vertices."""
+"""Finds the particles among the cells of a mesh: the points of its vertices."""
 import numpy as np
 
 from .._library import say
@@ -10,7 +10,7 @@ VERTICES = (1, 2)  # VTK's types of cells that are points
 
 
 def offsets_of(cells, count):
-    """Returns where cells begin in a list that has each cell's number of points before its points, and the list without these numbers."""
+    """cells: each cell's number of points, then its points. Returns where cells begin, and the list without these numbers."""
     width = len(cells) // count if count else 0
     if count and width * count == len(cells) and (cells[::width] == width - 1).all():
         return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()

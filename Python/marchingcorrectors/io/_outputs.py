@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes output files by the program's rules: beside their places, then all are moved there together."""
+"""Writes output files by the program's rules: beside their targets; at the end, all replace their targets together."""
 import contextlib
 import os
 import secrets
@@ -27,9 +27,9 @@ def _identity(path):
 class Outputs:
     """Replaces all files at the end of the with block, or none if it raises.
 
-    Checks first that no output is an input or another output, by whatever link. A symbolic link is followed, and the
-    file behind it replaced, with its mode; other hard links of that file keep what was in it. steps: outputs whose
-    names nobody gave; they replace nothing but steps of an older film.
+    Checks first that no output is an input or another output, by whatever link. Of a symbolic link, the file behind it
+    is replaced, and keeps its mode; other hard links of that file keep the old contents. steps: outputs that the user
+    has not named; they replace only steps of an older film.
     """
 
     def __init__(self, inputs, outputs, steps=()):
@@ -51,7 +51,7 @@ class Outputs:
                 raise FileError(say("FILM_STEP_TAKEN", path))
 
     def write(self, path, data):
-        """Writes bytes; no more than one file of them is in memory."""
+        """Writes one file; its bytes need not stay in memory."""
         with _sentences(path), open(self.beside(path), "wb") as file:
             file.write(data)
             file.flush()
@@ -59,7 +59,7 @@ class Outputs:
                 os.fsync(file.fileno())
 
     def beside(self, path):
-        """Returns where that file is to be written: in a new folder beside its place, under its name; a device or a pipe is written where it is."""
+        """Returns the path to write to: in a new folder beside the target, with its name; for a device or a pipe, the target itself."""
         with _sentences(path):
             target = os.path.realpath(path)
             if os.path.exists(target):
@@ -97,7 +97,7 @@ class Outputs:
 
 
 def _copy_mode(old, new):
-    """Sets mode, and owner and group if that is allowed."""
+    """Copies the mode, and owner and group if that is allowed."""
     status = os.stat(old)
     mode = stat.S_IMODE(status.st_mode)
     if hasattr(os, "chown"):
@@ -110,7 +110,7 @@ def _copy_mode(old, new):
 
 @contextlib.contextmanager
 def _sentences(path):
-    """Raises what the system says of a file, with the file's name."""
+    """Turns the system's errors into sentences with the file's name."""
     try:
         yield
     except OSError as error:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that may be packed by gzip."""
+"""Reads files that may be packed by gzip."""
 import zlib
 from pathlib import Path
 
@@ -10,7 +10,7 @@ LIMIT = 1000  # Deflate cannot pack more densely.
 
 
 def ending_of(path):
-    """Returns the ending, in small letters, of the file that is packed: .csv for a.csv.gz."""
+    """Returns the ending in small letters, without .gz: .csv for a.csv.gz."""
     path = Path(path.stem) if path.suffix.lower() == ".gz" else path
     return path.suffix.lower()
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles of a file, whose arrays are read when they are asked for."""
+"""Particles of a file. Arrays are read when they are first used."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -13,8 +13,8 @@ from .._library import Error, InvalidArgument, lib, say
 from .._options import BOUNDS, did_you_mean, words_of
 from .._warnings import warn
 
-# Solvers' names for their kernels begin like this, in letters and digits alone; the first that fits counts. Wendland's names are also PySPH's:
-# WendlandQuintic is C2.
+# Solvers' names for their kernels begin with these, if only letters and digits count; the first that fits counts. PySPH calls Wendland C2
+# WendlandQuintic.
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
@@ -47,7 +47,7 @@ def support_factor(name):
 
 
 class Lazy(Mapping):
-    """Is {name: array}; an array is read when it is first used, and kept. read: {name: function}."""
+    """A mapping {name: array}. An array is read when it is first used, and then kept. read: {name: function}."""
 
     def __init__(self, read, file):
         self._read, self._kept, self._file = dict(read), {}, file
@@ -82,7 +82,7 @@ class Lazy(Mapping):
         return f"<arrays: {', '.join(self) or 'none'}>"
 
     def __reduce__(self):
-        """Pickle and copy take the arrays themselves, not the open file."""
+        """Lets pickle and copy take the arrays themselves, not the open file."""
         return _keep, (dict(self), self._file)
 
 
@@ -178,7 +178,7 @@ class Particles:
         return self.period
 
     def words(self, given):
-        """Returns keywords of the functions for NumPy; arguments that are given replace these. Of volume, mass and density the core chooses."""
+        """Returns keywords of the functions for NumPy arrays; given arguments take precedence. The core chooses among volume, mass and density."""
         words = dict(given)
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
             words["smoothing_length"] = self.quantity("smoothing_length")
@@ -210,7 +210,7 @@ class Particles:
 
 
 def usual(names, quantity):
-    """Returns the most usual of several names for a quantity, or None. The core knows them."""
+    """Returns the name that the core knows as most usual for a quantity, or None."""
     best = find_named([(name, NO_VALUE) for name in names], quantity, 1, 0)
     return None if best < 0 else names[best]
 
@@ -227,8 +227,8 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """The points of a file at one of its times. times: of all steps; None if it is no film. is_mesh: it has cells, but no vertex; None if it has no
-    cells."""
+    """The points of a file at one of its times. times: of all steps; None if the file is no film. is_mesh: whether it has cells but no vertex;
+    None if it has no cells."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None
@@ -238,8 +238,8 @@ class Body(NamedTuple):
 
 
 def join_bodies(bodies):
-    """Joins several to one, with the arrays that all non-empty ones have; without points that are another's (vtkGhostType), and without points of
-    meshes if there are vertices beside them."""
+    """Joins several bodies to one, with the arrays that all non-empty bodies have. Leaves out points that belong to another body (vtkGhostType),
+    and points of meshes if other bodies have vertices."""
     meshes = [body for body in bodies if body.is_mesh] if any(body.is_mesh is False for body in bodies) else []
     if meshes:
         warn(f"{sum(len(body.points) for body in meshes)} points of pieces without vertices are nodes of meshes and no "
@@ -258,7 +258,7 @@ def join_bodies(bodies):
 
 
 def choose_step(file, step, times):
-    """Returns the number of a step from the first one on; as in lists, -1 is the last one."""
+    """Returns the number of a step, from 0 on; -1 means the last step, as in lists."""
     if not -len(times) <= step < len(times):
         raise FileError(f"{file} has no step {step}: it has {len(times)} of them.")
     return step % len(times)
@@ -271,7 +271,7 @@ def period_of_field(field):
 
 
 def check_claim(file, thing, claimed, there):
-    """A declared size costs nothing in a file: one that the file cannot hold, packed by less than 1000 to 1, is refused."""
+    """Refuses a declared size that the file cannot hold even if it is packed 1000 to 1, because a damaged file may declare any size."""
     if claimed > 2 ** 24 + 1000 * there:
         raise FileError(f"{file}: {thing} claims {claimed} bytes, the file has {there}. It is damaged.")
 

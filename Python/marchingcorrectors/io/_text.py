@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads numbers that stand as text."""
+"""Reads numbers that are written as text."""
 import warnings
 
 import numpy as np
@@ -9,10 +9,10 @@ IS_BLANK = np.isin(np.arange(256), np.frombuffer(b" \t\n\v\f\r", np.uint8))
 
 
 def parse_numbers(text, kind, count):
-    """So many numbers with blanks between them, the first of bytes or of a memoryview, and where the last one ends.
-    Raises ValueError. Time and memory grow with what is read alone, not with what follows it."""
+    """Returns the first `count` numbers, with blanks between them, of bytes or a memoryview, and where the last one ends.
+    Raises ValueError. Time and memory depend only on the numbers that are read, not on the text behind them."""
     size = 16 * count + 64
-    while True:  # A longer piece is read until it has so many words.
+    while True:  # Longer pieces are tried until one has `count` words.
         piece = bytes(text[:size])
         is_blank = np.append(IS_BLANK[np.frombuffer(piece, np.uint8)], len(piece) == len(text))
         ends = np.flatnonzero(is_blank[1:] & ~is_blank[:-1]) + 1

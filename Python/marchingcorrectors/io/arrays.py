@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""NumPy's .npz and .npy of plain arrays. What holds objects holds pickles, which are not opened."""
+"""Reads NumPy's .npz and .npy of plain arrays. Arrays of objects hold pickles, which are not opened."""
 import io
 import zipfile
 

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Houdini's .bgeo of version 5, which SPlisHSPlasH writes by partio: points and their attributes, plain or gzipped. Big
-endian: "BgeoV", version, numbers of points, primitives, groups of points and of primitives, attributes of points, vertices,
-primitives, detail; attributes of points (name, size, type, defaults); points: x, y, z, w, attributes."""
+"""Reads Houdini's .bgeo of version 5, which SPlisHSPlasH writes by partio: points and their attributes, plain or gzipped.
+The file, big endian: "BgeoV", version, numbers of points, primitives, groups of points and of primitives, attributes of
+points, vertices, primitives, detail; attributes of points (name, size, type, defaults); points: x, y, z, w, attributes."""
 import struct
 
 import numpy as np

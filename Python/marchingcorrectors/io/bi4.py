@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""DualSPHysics' Part_0000.bi4. Head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64 bits
-(0, 1). Then an item: size of its definition, "\\nITEM\\n", name, hidden, values hidden, two formats, numbers of arrays and
+"""Reads DualSPHysics' Part_0000.bi4. Head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64
+bits (0, 1). Then an item: size of its definition, "\\nITEM\\n", name, hidden, values hidden, two formats, numbers of arrays and
 items, bytes of values; "\\nVALUES", number, (name, type, value); arrays, each: size of its definition, "\\nARRAY", name,
 hidden, type, count, bytes, data; items. Text: length, letters. Arrays stay in the file until they are used."""
 import os
@@ -18,7 +18,7 @@ TEXT, DEPTH = 1, 8
 
 
 class Reader:
-    """Compares all lengths with what is left of the file before they are believed."""
+    """Reads the file. Before it uses a length, it checks that the rest of the file is as long."""
 
     def __init__(self, file, path):
         self.file, self.path, self.name, self.state = file, path, path.name, state_of(file)
@@ -114,7 +114,7 @@ def read_bi4(path):
 
 
 def period_of(values):
-    """Reads PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) do not count."""
+    """Returns the period by PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) do not count."""
     axes = {1: "x", 2: "y", 3: "xy", 4: "z", 5: "xz", 6: "yz"}.get(values.get("PeriActive", values.get("PeriMode", 0)), "")
     low, high = values.get("MapPosMin"), values.get("MapPosMax")
     if not axes or not low or not high:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's files, of SPHinXsys, PartVTK, SPlisHSPlasH, and tables: several bodies as one set, walls marked."""
+"""Reads VTK's files, as of SPHinXsys, PartVTK and SPlisHSPlasH, and tables: several bodies become one set, with walls marked."""
 import re
 from importlib import import_module
 
@@ -18,7 +18,7 @@ PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # These endings may b
 
 
 def read_list(path, step):
-    """.pvd and .series: files of several times."""
+    """Reads one step of a .pvd or .series file, which lists files of several times."""
     from .vtk_xml import list_series, list_times
     times = (list_times if ending_of(path) == ".pvd" else list_series)(path)
     time = list(times)[choose_step(path.name, step, times)]
@@ -42,7 +42,7 @@ ENDINGS = (*READERS, ".gz")
 
 
 def reader_of(path):
-    """Finds the format by the name's ending, except for files that begin as a dump, and .xyz files without a count, which are tables."""
+    """Finds the format by the name's ending, except for files that begin like a dump, and .xyz files without a count, which are tables."""
     ending = ending_of(path)
     head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
     if head.startswith(b"ITEM:"):
@@ -73,8 +73,8 @@ def load(path, step):
 
 
 def column(name, bodies, fluids):
-    """One array of all bodies. Walls without it have the fluid's median there: they take part in no field, so only
-    smoothing lengths, and what volumes are made of, count."""
+    """Returns one array of all bodies. Walls that lack it get the fluid's median: they take part in no field, so only their
+    smoothing lengths, and the arrays that give volumes, matter."""
     shape = fluids[0].arrays[name].shape[1:]
     parts = [body.arrays.get(name) for body in bodies]
     parts = [part if part is not None and part.shape[1:] == shape else None for part in parts]
@@ -103,7 +103,7 @@ def read_bodies(paths, walls, step):
         arrays["Velocity"] = lambda: np.stack([arrays[name]() for name in ("vx", "vy", "vz")], axis=1)
     solid = np.repeat(marked, counts)
     if "Type" in common and ("Rhop" in common or "Idp" in common):
-        solid |= arrays["Type"]() != 3  # PartVTK's
+        solid |= arrays["Type"]() != 3  # PartVTK's number for fluid
     return Particles(paths[0].name, "VTK", lambda: join([body.points for body in bodies]), arrays,
                      **{name: usual(single, name) for name in ("smoothing_length", "volume", "mass", "density")},
                      solid=solid if solid.any() else None, time=bodies[0].time, **{"cell" if len(fluids[0].period or ()) == 9 else "period": fluids[0].period},

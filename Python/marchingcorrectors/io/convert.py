@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes particles as VTK's poly data, .vtp, and .pvd of several times."""
+"""Writes particles as VTK's poly data: .vtp, and .pvd for several times."""
 import base64
 import sys
 import zlib
@@ -20,7 +20,7 @@ BLOCK = 1 << 20  # bytes that are packed at a time
 
 
 def plain(values):
-    """Returns the array in a type that VTK has: half precision becomes single, long double double."""
+    """Returns the array in a type that VTK has: half precision becomes single, long double becomes double."""
     values = np.asarray(values)
     kind, size = values.dtype.kind, values.dtype.itemsize
     if kind == "f" and size not in (4, 8):
@@ -29,9 +29,8 @@ def plain(values):
 
 
 def describe(particles):
-    """Returns positions, arrays as in the file, and field data. Beside the file's arrays are SmoothingLength as this package means it (half of the
-    support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType (0 fluid, 1 wall) where the file tells them in another
-    way."""
+    """Returns positions, arrays as in the file, and field data. Adds arrays that the file tells in another way: SmoothingLength as this package
+    means it (half of the support radius; a third for the quintic spline, 2/5 for the quartic), Mass, and ParticleType (0 fluid, 1 wall)."""
     positions, arrays = particles.positions, {name: particles.arrays[name] for name in particles.arrays}
     h = particles.quantity("smoothing_length")
     if h is not None:
@@ -57,7 +56,7 @@ def describe(particles):
 
 
 def to_vtk(particles):
-    """Returns poly data with a vertex of each particle, as ParaView draws no bare points."""
+    """Returns poly data with a vertex for each particle, because ParaView draws no points without cells."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -76,7 +75,7 @@ def to_vtk(particles):
 
 
 def xml_array(name, values, more=""):
-    """Returns the text of an array: base64 of packed blocks, behind the sizes of these."""
+    """Returns the text of an array: the sizes of packed blocks, then the blocks, both in base64."""
     if values.dtype.kind == "U":
         kind, data = "String", "".join(value + "\0" for value in values.tolist()).encode()
     else:
@@ -90,7 +89,7 @@ def xml_array(name, values, more=""):
 
 
 def vtp_bytes(particles, mark=b""):
-    """Returns the file of to_vtk(), which is made without VTK."""
+    """Returns the bytes of a .vtp file with the data of to_vtk(), made without VTK."""
     positions, arrays, field = describe(particles)
     count, numbers = len(positions), np.arange(len(positions) + 1)
     order = "LittleEndian" if sys.byteorder == "little" else "BigEndian"
@@ -105,7 +104,7 @@ def vtp_bytes(particles, mark=b""):
 
 
 def convert(inputs, output):
-    """Files into one .vtp, or one .vtp for each of their steps beside a .pvd, whose times are the files' (else 0, 1, ...)."""
+    """Writes files as one .vtp, or as a .pvd with one .vtp for each of their steps, at the files' times (else 0, 1, ...)."""
     output = Path(output)
     if output.suffix.lower() not in (".vtp", ".pvd"):
         raise FileError(f"'{output}' must end in .vtp or .pvd.")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""GADGET-2/4, GIZMO, AREPO and SWIFT: PartType0, ... of HDF5, in one file or several."""
+"""Reads HDF5 of GADGET-2/4, GIZMO, AREPO and SWIFT: PartType0, ..., in one file or several."""
 import re
 
 import numpy as np
@@ -27,7 +27,7 @@ def text(value):
 
 
 def files_of(path, count):
-    """All files of a snapshot that is in several, NAME.0.hdf5, ..., or NAME.0, ..."""
+    """Lists all files of a snapshot that has several, NAME.0.hdf5, ..., or NAME.0, ..."""
     found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5|)", path.name)
     if count <= 1 or not found:  # Some whole files say 0.
         return [path]
@@ -72,8 +72,8 @@ def attributes(file, name):
 
 
 def period_of(file, box):
-    """Only where the file says that it is periodic: open runs have a BoxSize, too. AREPO is, along axes that its Config does
-    not make REFLECTIVE. The box has BoxSize times LONG_X (AREPO), or by 2^LONG_X_BITS (GADGET-4)."""
+    """Returns the period if the file says that the run is periodic: open runs have a BoxSize, too. AREPO is periodic along the
+    axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or over 2^LONG_X_BITS (GADGET-4)."""
     parameters, config = attributes(file, "Parameters"), attributes(file, "Config")
     periodic = number(parameters, "InitialConditions:periodic", 0) == 1 or "PERIODIC" in config \
         or len(config) and "PeriodicBoundariesOn" in parameters
@@ -148,7 +148,7 @@ def read_gadget(path, types):
 
 
 def find_parts(files, group):
-    """Returns where the particles are, and the names of arrays of numbers that all files have."""
+    """Returns where the particles are, and the names of the arrays of numbers that all files have."""
     import h5py
 
     parts, names = [], None

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""GADGET's binary formats 1 and 2, in one file or several: records of Fortran, each between two copies of its number of bytes.
-First a header of 256 bytes; then a record for each array, of all types of particles in order, of those without a mass in
-the header, or of gas. In format 2 a record with the array's name is before each; in format 1 their order tells."""
+"""Reads GADGET's binary formats 1 and 2, in one file or several: records of Fortran, each between two copies of its number of bytes.
+First a header of 256 bytes; then a record for each array: of all types of particles in order, of the types without a mass in
+the header, or of gas. In format 2, a record with the array's name comes before each; in format 1, the order tells the names."""
 import struct
 
 import numpy as np
@@ -25,7 +25,7 @@ def is_gadget_binary(head):
 
 
 def order_of(head):
-    """Byte order, by the first record: the header, or a name of four letters and a number."""
+    """Returns the byte order, from the first record: the header, or a name of four letters and a number."""
     for order in "<>":
         size = struct.unpack_from(order + "I", head)[0] if len(head) >= 8 else 0
         if size == 256 or (size == 8 and head[4:8] == b"HEAD"):
@@ -34,7 +34,7 @@ def order_of(head):
 
 
 class BinaryFile:
-    """Reads the header, and where arrays lie: {label: RawArray}."""
+    """Reads the header, and finds where arrays lie. arrays: {label: RawArray}."""
 
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -51,7 +51,7 @@ class BinaryFile:
             raise FileError(f"{path.name} has no positions.")
 
     def record(self):
-        """Returns begin and number of bytes of the next record, or None at the end."""
+        """Returns where the next record begins, and its number of bytes; None at the end."""
         before = self.file.read(4)
         if not before:
             return None
@@ -90,7 +90,7 @@ class BinaryFile:
             raise FileError(f"{self.path.name} claims {min(self.counts)} particles of a type.")
 
     def read_arrays(self):
-        """Yields (label, RawArray) of each array that is known, or fits."""
+        """Yields (label, RawArray) of each array that is known, or has a fitting size."""
         total, gas = sum(self.counts), self.counts[0]
         with_masses = sum(count for count, mass in zip(self.counts, self.masses) if not mass)
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), total), "MASS": with_masses}
@@ -112,7 +112,7 @@ class BinaryFile:
             yield label, RawArray(self.path, self.state, begin, kind, count, columns)
 
     def load(self, label, kind):
-        """Returns one array of the particles of a type."""
+        """Returns one array of the particles of type `kind`."""
         if label == "MASS" and self.masses[kind]:
             return np.full(self.counts[kind], self.masses[kind])
         if label not in self.arrays:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""H5Part, as SPH-EXA writes it: a group Step#N of each step, with x, y, z and arrays of one value each."""
+"""Reads H5Part, as SPH-EXA writes it: a group Step#N for each step, with x, y, z and arrays of one value per particle."""
 import re
 
 import numpy as np
@@ -15,7 +15,7 @@ def is_h5part(names):
 
 
 def period_of(attributes):
-    """SPH-EXA's box, x0, x1, y0, ..., and what its sides are: 0 open, 1 periodic, 2 fixed."""
+    """Returns the period from SPH-EXA's box, x0, x1, y0, ..., and boundaryType: 0 open, 1 periodic, 2 fixed."""
     box, kinds = np.ravel(attributes.get("box", ())), np.ravel(attributes.get("boundaryType", ()))
     if len(box) != 6 or len(kinds) != 3 or not np.isfinite(box.astype(float)).all():
         return None

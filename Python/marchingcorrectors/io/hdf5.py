@@ -48,8 +48,8 @@ def data_set(group, place):
 
 
 def check_storage(data):
-    """HDF5 makes room for the data set, and for a chunk of it, which may be larger. Packed twice, a chunk could grow to
-    any size."""
+    """Refuses sizes that the file cannot hold: HDF5 makes room for the data set, and for a chunk, which may be larger. A
+    chunk that is packed twice is refused, because it could grow to any size."""
     path, properties = data.file.filename, data.id.get_create_plist()
     name, there = os.path.basename(path), os.path.getsize(path)
     chunk = math.prod(data.chunks or ()) * data.dtype.itemsize
@@ -60,7 +60,7 @@ def check_storage(data):
 
 
 class Part(NamedTuple):
-    """Some of an array's particles: those of one group of one file for which `keep` is true (None: all)."""
+    """The particles of one group of one file for which `keep` is true (None: all)."""
     file: os.PathLike
     group: str
     count: int
@@ -74,7 +74,7 @@ class Part(NamedTuple):
 
 
 def load(parts, name):
-    """One array made of several parts, each read into its place; a part that is kept whole is not copied."""
+    """Returns one array of several parts, each read into its place; a part without `keep` is not copied."""
     import h5py
 
     result, begin = None, 0
@@ -103,7 +103,7 @@ def names_of(group, count):
 
 
 def check_claims(groups):
-    """Raises FileError where the file cannot hold all arrays of these groups together: many names may stand for one."""
+    """Raises FileError if the file cannot hold all arrays of these groups together: many names may mean the same data."""
     claimed = sum(get(group, name).nbytes for group in groups for name in group if is_numbers(get(group, name)))
     for group in groups:
         path = group.file.filename

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's legacy files (.vtk): points and their arrays. VTK's own reader gives what memory held where a file of text ends too
-early, and reads where damaged lists of cells point to; here all lengths are compared with what is left of the file."""
+"""Reads VTK's legacy files (.vtk): points and their arrays. VTK's own reader gives random values if a text file ends too
+early, and reads any memory that damaged lists of cells point to; here all lengths are checked against the rest of the file."""
 import re
 from urllib.parse import unquote_to_bytes
 
@@ -64,7 +64,7 @@ class Legacy:
         if code is None or count < 0 or not 0 < columns <= 1000:
             raise self.damaged()
         size = count * columns * (2 if self.text else np.dtype(code).itemsize)
-        if size > left + self.text:  # Each is a digit and a blank; the last has no blank.
+        if size > left + self.text:  # As text, each number has a digit and a blank; the last has no blank.
             raise self.damaged()
         if self.text:
             values, end = parse_numbers(memoryview(self.data)[self.at:], code, count * columns)
@@ -75,7 +75,7 @@ class Legacy:
         return values.reshape(count, columns) if columns > 1 else values
 
     def skip_strings(self, count, in_lines):
-        """Reads texts: in text files one on each line; in others behind its length, whose first two bits tell how many bytes it has: 8, 4, 2 or 1."""
+        """Skips texts: in text files, one on each line; in others, each behind its length, whose first two bits tell its own size: 8, 4, 2 or 1 bytes."""
         for _ in range(count):
             if in_lines:
                 self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1
@@ -87,14 +87,14 @@ class Legacy:
         return np.empty(0)
 
     def put(self, into, name, values):
-        """Decodes a name as VTK does: blanks and the like are written as %20. Of two arrays with one name the last stays."""
+        """Adds an array. Decodes its name as VTK does: files have %20 for a blank. Of two arrays with one name, the last stays."""
         name = unquote_to_bytes(name).decode(errors="replace")
         if name in self.arrays and into is self.arrays:
             self.twice = name
         into[name] = values
 
     def section(self, words, into):
-        """Reads the section that these words begin; into: where arrays go. Returns where later arrays go."""
+        """Reads the section that these words begin. into: where its arrays go. Returns where the next section's arrays go."""
         word, rest = words[0].upper(), words[1:]
         if word == "POINTS":
             self.points = self.values(rest[1], rest[0], 3)
@@ -145,7 +145,7 @@ class Legacy:
 
 
 def cells_of(legacy):
-    """Reads types, where each cell's points begin, and these points; lists are in the order of VTK's cells."""
+    """Returns the cells' types, where each cell's points begin, and these points. Lists are in the order of VTK's cells."""
     types, offsets, points = [], [np.zeros(1, int)], []
     for name in LISTS:
         if name in legacy.cells and len(legacy.cells[name][0]):

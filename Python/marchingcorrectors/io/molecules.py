@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of molecular dynamics: GROMACS' .gro, with many steps, and LAMMPS' .data."""
+"""Reads files of molecular dynamics: GROMACS' .gro, with many steps, and LAMMPS' .data."""
 import re
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from ._particles import Body, FileError, choose_step
 from .tables import columns_of, lines_of, numbers_of, period_of, rows_of, whole_number
 
-# The columns of an atom in .data by its style, before and behind the positions; images may follow.
+# The columns of an atom in .data, by its style, beside id, type and position; images may follow.
 STYLES = {"atomic": "", "bond": "molecule", "angle": "molecule", "molecular": "molecule", "charge": "q", "full": "molecule q",
           "dipole": "q", "sphere": "diameter density", "granular": "diameter density", "sph": "rho esph cv", "meso": "rho e cv",
           "dpd": "theta", "mdpd": "rho", "edpd": "temperature cv", "peri": "volume density", "rheo": "status rho",
@@ -18,7 +18,7 @@ BEFORE_TYPE = ("bond", "angle", "molecular", "full")  # The molecule stands befo
 
 
 def read_gro(path, step):
-    """Reads columns of characters: the distance of two decimal points is the width of a number."""
+    """Reads columns of fixed width: the distance between two decimal points is the width of a number."""
     lines, at, starts, times = lines_of(path), 0, [], []
     while at < len(lines):
         if not lines[at].strip() and all(not line.strip() for line in lines[at:]):

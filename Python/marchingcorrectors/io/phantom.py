@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Phantom: HDF5, and native dumps by sarracen. Accreted particles (h <= 0) are left out; gas that is
-inactive in a step (itype -1) is gas."""
+"""Reads files of Phantom: HDF5, and native dumps by sarracen. Accreted particles (h <= 0) are left out; gas that is
+inactive in a step (itype -1) counts as gas."""
 import numpy as np
 
 from ._particles import FileError, Particles
@@ -34,7 +34,7 @@ def make(path, array, positions, names, values):
             ratio = factor / array("h").astype(float)
             return mass * (ratio * ratio * ratio)
 
-    arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # All that is left is gas.
+    arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # The particles that are left are gas.
     arrays.setdefault("density", density)
     return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=mass,
                      density="density", time=float(values["time"][0]) if "time" in values else None,

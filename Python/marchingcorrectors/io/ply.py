@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-""".ply: the vertices and all of their properties, which VTK's own reader leaves out."""
+"""Reads .ply: the vertices with all of their properties, which VTK's own reader leaves out."""
 import re
 
 import numpy as np

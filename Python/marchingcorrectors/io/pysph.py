@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""PySPH's .hdf5: all arrays of particles as one set, walls marked by the names of arrays."""
+"""Reads PySPH's .hdf5: all particle arrays become one set, and the names of particle arrays tell walls."""
 
 import numpy as np
 
@@ -34,7 +34,7 @@ def read_pysph(path):
     solid = np.repeat(walls, counts)
 
     def array(name):
-        """Returns one array of all sets. Walls take no part in a field, so it is 0 where they lack it."""
+        """Returns one array of all sets; 0 for walls that lack it, because walls take no part in a field."""
         there = [name in each for _, each in sets.values()]
         found = load([part for part, has in zip(parts, there) if has], name)
         if all(there):

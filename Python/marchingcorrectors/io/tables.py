@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles as text, one in each line: .csv (commas, semicolons or tabs), columns between blanks with comments behind #,
-.xyz and extended XYZ, dumps of LAMMPS. Columns whose names end as :0, _x, .x, [0] or X, ... are one array."""
+"""Reads particles from text, one in each line: .csv (commas, semicolons or tabs), columns between blanks with comments
+behind #, .xyz and extended XYZ, dumps of LAMMPS. Columns whose names end in :0, _x, .x, [0], X, ... form one array."""
 import csv
 import re
 
@@ -28,7 +28,7 @@ def lines_of(path):
 
 
 def to_number(cell):
-    """Reads a number as tables have it: nothing, Fortran's D, a decimal comma; None if it is none."""
+    """Reads a number as tables have it, also with Fortran's D or a decimal comma; an empty cell is NaN. None: no number."""
     cell = cell.strip()
     if not NUMBER.fullmatch(cell):
         return None if cell else np.nan
@@ -49,7 +49,7 @@ def check_width(file, count):
 def columns_of(file, lines, names, separator=None):
     """Returns {name: array} of rows of values."""
     try:
-        if any("_" in line for line in lines):  # Python takes this for a part of a number.
+        if any("_" in line for line in lines):  # Python would accept "_" inside a number.
             raise ValueError
         values = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2).T if lines else np.empty((len(names), 0))
         if values.shape != (len(names), len(lines)):
@@ -84,7 +84,7 @@ def numbers_or_words(file, cells, separator):
 
 
 def as_integers(values, cells):
-    """Reads integers by their own digits, because doubles lose some from 2^53 on. If one is no integer, returns the numbers as they are."""
+    """Reads integers from their own digits, because doubles lose digits from 2^53 on. Returns `values` itself if a cell is no integer."""
     if (np.abs(values) < 2 ** 53).all():
         return values.astype(np.int64) if (values == np.floor(values)).all() else values
     words = cells()
@@ -114,17 +114,17 @@ def join_vectors(columns):
 
 
 class NoPositions(FileError):
-    """Raises the sentence for a table in which no name tells positions."""
+    """The error for a table in which no name tells positions."""
 
 
 def axes_of(columns, behind=""):
-    """Returns those of the columns x, y and z, with these letters behind the names, that exist."""
+    """Returns the names of the columns x, y and z, with these letters behind, as far as they exist."""
     found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
     return [name for name in found if name is not None]
 
 
 def body_of(file, columns, positions=(), **more):
-    """positions: names of the columns of positions, if names do not tell."""
+    """Makes a Body of a table. positions: the names of the columns of positions; if empty, usual names tell them."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         at = usual([name for name in arrays if arrays[name].ndim == 2 and arrays[name].shape[1] <= 3], "position")
@@ -164,7 +164,7 @@ def number_columns(count):
 
 
 def read_table(path):
-    """Reads rows of values behind a row of names, which may be a comment."""
+    """Reads rows of values below a row of names, which may be a comment."""
     comment, rows = "", []
     for line in lines_of(path):
         start = line.lstrip()[:1]
@@ -274,8 +274,8 @@ def period_of(cell, origin, is_periodic):
 
 
 def read_box(file, words, lines, at):
-    """Returns the cell's sides as vectors, where it begins, and which sides are periods. A dump gives sides along the axes; or tilted (xy xz yz),
-    where the first two numbers of a line are the bounds of the box around the cell; or vectors with their origin (abc origin)."""
+    """Returns the cell's sides as vectors, where the cell begins, and which sides are periods. A dump has a cell along the axes; or a tilted cell
+    (xy xz yz), where the first two numbers of a line are the bounds of the box around it; or vectors with their origin (abc origin)."""
     flags = words[-3:] if len(words) >= 3 and all(re.fullmatch("[pfsm]{2}", word) for word in words[-3:]) else []
     kind = " ".join(words[:len(words) - len(flags)])
     if kind not in ("", "xy xz yz", "abc origin"):
@@ -328,7 +328,7 @@ def read_lammps(path, step):
     names = name_columns(path.name, words)
     columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
     cell, origin, periodic = head.get("box", (np.empty((0, 3)), None, None))
-    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # Positions may be as they are, unwrapped, or shares of the cell's sides.
+    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # Positions may be plain, unwrapped, or shares of the cell's sides.
     positions = next((each for each in found if len(each) == 3), ())
     if positions in found[2:]:
         if origin is None:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's XML files (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd): points and their arrays, of all pieces. VTK's own reader believes what a damaged file
-claims, and ends Python; here all lengths are compared with what is there. Arrays: text, or
-base64 in the file, or base64 or bytes behind an underscore in <AppendedData>, at their offset. Of these bytes the first
-are their number; of packed ones: number of blocks, bytes of a block, bytes of the last one if it is shorter (else 0),
-packed bytes of each."""
+"""Reads VTK's XML files (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd): points and their arrays, of all pieces. VTK's own
+reader believes the lengths in a damaged file, and ends Python; here all lengths are checked. An array is text, or base64 in
+the file, or base64 or bytes at an offset behind an underscore in <AppendedData>. Bytes begin with their number; packed
+bytes begin with the number of blocks, the bytes of a block, the bytes of the last block if it is shorter (else 0), and the
+packed bytes of each block."""
 import binascii
 import bisect
 import json
@@ -40,7 +40,7 @@ def unpack_lz4(packed, size):
     from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
 
     compressor = vtkLZ4DataCompressor()
-    compressor.AddObserver("ErrorEvent", lambda *_: None)  # The result tells.
+    compressor.AddObserver("ErrorEvent", lambda *_: None)  # The result tells whether it failed.
     found = compressor.Uncompress(np.frombuffer(packed, np.uint8), len(packed), size)
     return b"" if found is None else vtk_to_numpy(found).tobytes()
 
@@ -163,7 +163,7 @@ class XmlFile:
                              {array.name: self.values(array) for array in piece["CellData"]})
 
     def bytes_of(self, array):
-        """Reads the header that stands before the numbers."""
+        """Returns the array's bytes, by the header before them."""
         if array.format == "binary":
             data = decode_base64("".join(array.text).encode())
         else:
@@ -255,7 +255,7 @@ def list_series(path):
 
 
 def list_times(path):
-    """Reads .pvd as {time: files} in their order. A run that was repeated into the same folder adds its steps again: the last ones count."""
+    """Reads .pvd as {time: files} in their order. A run that is repeated in a folder adds its steps again: the last entries count."""
     entries, again = {}, []
     for entry in elements(path, "DataSet"):
         try:

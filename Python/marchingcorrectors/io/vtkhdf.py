@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's .vtkhdf: points of poly data or an unstructured grid, and their arrays; of several steps, one. The steps of an array
-stand one behind the other; Steps has where each begins, in parts (PartOffsets, NumberOfParts) and points (PointOffsets),
-and where an array's own values begin, if elsewhere (PointDataOffsets)."""
+"""Reads one step of VTK's .vtkhdf: points of poly data or an unstructured grid, and their arrays. An array has its steps one
+after the other. Steps tells where each step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets),
+and, if this differs, an array's values (PointDataOffsets)."""
 import numpy as np
 
 from ._particles import Body, FileError, choose_step

@@ -26,8 +26,8 @@ static int is_fluid(const float position[3])
   return position[2] < 0.2f || dx * dx + dy * dy + dz * dz < 0.18f * 0.18f;
 }
 
-/* Particles on a lattice in the unit square, slightly shifted so that it does not look like one.
- * Returns their number; positions and temperatures are to be freed. */
+/* Makes particles on a lattice in the unit cube, slightly shifted so that the lattice does not
+ * show. Returns their number; the caller frees positions and temperatures. */
 static int64_t make_particles(float** positions, float** temperatures)
 {
   const int n = (int)(1.0 / SPACING);

@@ -25,7 +25,7 @@ import tables
 import vtk
 from measure import Program, Report, Sets, count_of, machine
 
-# Sizes are numbers of particles; --quick uses the second ones.
+# sizes: numbers of particles; quick: the numbers with --quick.
 Case = collections.namedtuple("Case", "make title sizes quick runs", defaults=["670k", "6k", 3])
 LARGE = "60k,670k,3M,10M"
 CASES = {

@@ -50,7 +50,8 @@ static int no(const char* what, int error)
   return 1;
 }
 
-/* Finds a function of a library, and calls it; returns its error, or -1 where it is missing. */
+/* Finds a function of a library, and calls it. Returns the function's error, or -1 if it is
+ * missing. */
 #define CALL(library, name, parameters, ...)                                                       \
   (dlsym(library, name) ? ((int(*) parameters)dlsym(library, name))(__VA_ARGS__) : -1)
 #define TRY(library, name, parameters, ...)                                                        \

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How smooth surfaces are, and what that costs.
 
-Two scenes with particles one apart, moved at random by a share of that: a tank at rest; and a crown, a splash with a sheet of one
-layer, threads at its rim and 40 lone drops.
+Two scenes have particles one apart, moved at random by less than that: a tank at rest; and a crown, a splash with a
+sheet of one layer, threads at its rim and 40 lone drops.
 """
 import statistics
 

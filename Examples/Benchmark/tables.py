@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables a and b, on the wavy tank: against what one would use otherwise, with the cubic spline, the same smoothing length
-and the same cube size, half of it."""
+"""Tables a and b compare with other software on the wavy tank, with the cubic spline, the same smoothing length, and cubes
+of half this length."""
 from measure import CUBE_FACTOR, THRESHOLD, compete, mebibytes, need_surface, ratio, seconds_of, text_of
 
 CUBE = ("--cube-factor", CUBE_FACTOR)

@@ -60,7 +60,7 @@ def dam_break(count, ratio=1.28):
         """Returns positions and spacings of the lattice points in the water. By Ritter (1892), a rarefaction runs back into the column and a tongue
         forth from it."""
         (x, dx), (y, dy), (z, dz) = (axis(extent, spacing) for extent in (length + 2 * time * wave, width, height))
-        z, dz = height - z[::-1], dz[::-1]  # It is finest at the bottom.
+        z, dz = height - z[::-1], dz[::-1]  # The lattice is finest at the bottom.
         depth = (2 * wave - np.clip((x - length) / time, -wave, 2 * wave)) ** 2 / (9 * GRAVITY)
         wet = np.nonzero(np.broadcast_to((z < depth[:, None])[:, None, :], (len(x), len(y), len(z))))
         return np.stack([x[wet[0]], y[wet[1]], z[wet[2]]], 1), np.stack([dx[wet[0]], dy[wet[1]], dz[wet[2]]], 1)

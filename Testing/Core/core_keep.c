@@ -36,7 +36,7 @@ typedef struct keep_cells
   unsigned char* bytes;
 } keep_cells;
 
-/* Adds a cell. Its corners begin with the least one and keep their cyclic order. */
+/* Adds a cell. Its corners begin with the least corner and keep their cyclic order. */
 static void add_cell(
   keep_cells* cells, const mcor_input* input, mcor_surface* s, const int32_t* points)
 {

@@ -73,7 +73,7 @@ double* fuzz_array(fuzz_call* call, int slot, size_t count)
 }
 
 /* Returns a context from a table of two for each device program, because creating one takes longer
- * than a call. forgetful: the one that keeps nothing from its last call. */
+ * than a call. forgetful: returns the context that keeps nothing from its last call. */
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
   static mcor_context* contexts[2][2][3][2];

@@ -110,7 +110,7 @@ typedef struct fuzz_rank
 
 static int fuzz_exchange(fuzz_rank* rank)
 {
-  FUZZ_CHECK(rank->calls <= rank->failing); /* none comes after the one that failed */
+  FUZZ_CHECK(rank->calls <= rank->failing); /* no call comes after the call that failed */
   return rank->calls++ == rank->failing;
 }
 

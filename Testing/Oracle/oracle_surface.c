@@ -159,8 +159,8 @@ typedef struct lattice_links
   int64_t edge[48], next[48];
 } lattice_links;
 
-/* Links the crossings around a square. A segment leads from where the walk enters "above" to where it leaves. If nodes
- * above are joined, each of the two below is cut off. */
+/* Links the crossings around a square. A segment leads from where the walk enters "above" to where it leaves. If the
+ * nodes above are joined, each of the two nodes below is cut off. */
 static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
   int count, int joined, lattice_links* links)
 {
@@ -214,7 +214,7 @@ static void lattice_add_pairs(oracle_lattice* lattice, oracle_map* pairs, const 
   }
 }
 
-/* Links the crossings on a face, or on a quarter of one that is split. */
+/* Links the crossings on a face, or on a quarter of a split face. */
 static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cell, int face,
   int split, const int64_t* ring, int count, lattice_links* links)
 {

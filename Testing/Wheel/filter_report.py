@@ -3,7 +3,7 @@
 """Reports what the VTK filter, whichever there is, says and makes of particle files, as JSON.
 
     filter_report.py CASES.json
-CASES: [[file, scalar, iso value, {property: value}]]; with null as iso value, neither it nor the scalar is chosen.
+CASES: [[file, scalar, iso value, {property: value}]]; if the iso value is null, neither scalar nor iso value is chosen.
 """
 import hashlib
 import json

@@ -158,8 +158,8 @@ static void check_box(const particles* p, const mcor_options* options, double is
   }
 }
 
-/* Returns box b. Boxes have several sizes and lie all over the lattice; the first ones hold a
- * particle, or the place where its kernel is lowest. */
+/* Returns box b. Boxes have several sizes and lie all over the lattice; the first boxes hold a
+ * particle, or the place where the particle's kernel is lowest. */
 static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, uint64_t* seed)
 {
   static const int sizes[] = { 3, 7, 3, 31 };
@@ -246,8 +246,8 @@ static void test_bound(void** state)
     { MCOR_SINC_6, MCOR_SHEPARD, 0 }, { MCOR_SINC_6, MCOR_WEIGHT_SUM, 0 } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
-    /* A set of few particles shows a fault in the bound of a single one; another has many particles
-     * of mixed sizes; the last has one. */
+    /* The first set has few particles, to show a fault in the bound of a single particle; the
+     * second has many particles of mixed sizes; the last has one particle. */
     static const int counts[] = { 6, 150, 1 };
     for (int s = 0; s < 3; ++s)
     {

@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/* Bytes before the first particle, and from one to the next. */
+/* Bytes before the first particle, and from each particle to the next. */
 enum
 {
   OFFSET = 64,

@@ -39,7 +39,7 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
 }
 
 /* Compares everything at one point with the oracle, and returns the largest component of the expected gradient. scale:
- * the size of the array's values. steep: errors of gradients are relative to the expected one. */
+ * the size of the array's values. steep: errors of gradients are relative to the expected gradient. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
   double scale, bool steep, double tolerance, const mcor_samples* samples, int64_t i)
 {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widened smoothing lengths are compared with plain sums in double precision, and the surface with that of an ordinary
- * call with these lengths. */
+/* Widened smoothing lengths are compared with plain sums in double precision, and the surface with the surface of an
+ * ordinary call with these lengths. */
 
 #include "core_fixture.h"
 
@@ -81,9 +81,9 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* Computes the factor: the widest step whose sum is high enough, and a part of the way to the next. The sum must exceed
- * the iso value by a margin where neighbours are on both sides, by more where there are few on one side, and may stay
- * below it where there are many on one side. */
+/* Computes the factor: the widest step whose sum is high enough, and a part of the way to the next step. The sum must
+ * exceed the iso value by a margin. With few neighbours, all on one side, the margin is larger; with many on one side,
+ * the sum may stay below the iso value. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -169,7 +169,8 @@ static void test_factors(void** state)
   }
 }
 
-/* Compares the surface with one of the widened lengths, in uniform cubes of the same size. */
+/* Compares the surface with the surface of an ordinary call with the widened lengths, in uniform cubes of the same
+ * size. */
 static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
 {
   mcor_input input = *asked;

@@ -165,7 +165,8 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
     surface->boundary_flag[v] == 2;
 }
 
-/* Judges a vertex without an unmatched crossed edge: it is a cut, a second one on its edge, or one too many. */
+/* Judges a vertex without an unmatched crossed edge: it is a cut, the second vertex on its edge, or one vertex too
+ * many. */
 static void compare_unmatched(compare_state* state, int64_t v, int axis)
 {
   const double* point = &state->surface->points[3 * v];

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A context over several calls: reuse, order of the input, devices, statistics. */
+/* Tests a context over several calls: reuse, order of the input, devices, statistics. */
 
 #include "core_parts.h"
 

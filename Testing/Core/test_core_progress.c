@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Progress, and runs that it cancels. */
+/* Tests progress reports, and runs that they cancel. */
 
 #include "core_fixture.h"
 

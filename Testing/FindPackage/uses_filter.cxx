@@ -1,6 +1,5 @@
-// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
-// SPDX-License-Identifier: BSD-3-Clause
-// The free surface of one particle, with the installed filter.
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers SPDX-License-Identifier: BSD-3-Clause
+// Extracts the free surface of one particle with the installed filter.
 #include <vtkMarchingCorrectors.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The library against the oracle on particles of real simulations. VTK reads the files, nothing
-// else: the core is called directly.
+// Compares the library with the oracle on particles of real simulations. VTK only reads the files,
+// because the core is called directly.
 //
 // --data DIR: where the shipped sets are. --large: the sets in the directory that the environment
 // variable MCOR_DATA_DIR names, instead; exit status 77 (skipped) if it is not set.

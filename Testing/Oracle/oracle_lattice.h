@@ -3,9 +3,9 @@
 #ifndef oracle_lattice_h
 #define oracle_lattice_h
 
-/* Marching Cubes by brute force, on cubes as fine as the particles are or on equal ones: levels from the particles one
- * by one, all nodes of all bricks that a particle reaches, all cells. It finds which edges are crossed and how they are
- * joined on faces, and makes no triangles. */
+/* Marching Cubes by brute force, on cubes as fine as the particles are or on cubes of one size. It takes the particles
+ * one by one, and all nodes and cells of all bricks that a particle reaches, finds which edges are crossed and how
+ * faces join them, and makes no triangles. */
 
 #include "oracle.h"
 

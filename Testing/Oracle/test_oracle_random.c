@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The library against the oracle on particles and options without any plan.
+/* Compares the library with the oracle on particles and options without any plan.
  *
  *   test_oracle_random --results FILE [--first SEED] [--count N] [--adaptive]     (the table is not
  *   used)

@@ -331,7 +331,7 @@ def check_gauge(reader):
     rows = over_time.GetDataInformation().GetRowDataInformation()
     names = [rows.GetArrayInformation(i).GetName() for i in range(rows.GetNumberOfArrays())]
     depth = next(rows.GetArrayInformation(name) for name in names if name.startswith("depth"))
-    height = (SIDE - 1) * SPACING  # The fluid is as high as the lattice and half a spacing on either side.
+    height = (SIDE - 1) * SPACING  # The fluid ends half a spacing beyond the lattice on either side.
     assert depth.GetNumberOfTuples() == 2 and abs(depth.GetComponentRange(0)[1] - height - SPACING) < 0.1 * SPACING, (
         depth.GetNumberOfTuples(), depth.GetComponentRange(0))
     Delete(over_time)

@@ -112,7 +112,7 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """The panel also tells that the first output is empty. The first output with something to draw gets the colours that a first output gets."""
+    """The panel also tells that the first output is empty. The first output that is not empty gets the usual colours of a first output."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),

@@ -112,7 +112,7 @@ class Keywords(unittest.TestCase):
 
     def judge(self, interface, function, keyword):
         """Returns what a keyword does, or None if it does nothing."""
-        value, context = OTHER_TRIALS.get((function, keyword), TRIALS.get(keyword, (True, {})))  # The others are outputs.
+        value, context = OTHER_TRIALS.get((function, keyword), TRIALS.get(keyword, (True, {})))  # All other keywords ask for outputs.
         parameters = inspect.signature(getattr(mc if interface != "accessor" else self.data.sph, function)).parameters
         context = {name: each for name, each in context.items() if name in parameters}
         key = interface, function, repr(context)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction: cells in any pattern, made node by node; outliers; surfaces of parts of the particles. */
+/* Tests extraction: cells in any pattern, made node by node; outliers; surfaces of parts of the particles. */
 
 #include "core_fixture.h"
 

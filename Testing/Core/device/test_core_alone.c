@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device on a machine without drivers; ctest hides them from this program. */
+/* Tests the built-in device on a machine without drivers; ctest hides drivers from this program. */
 
 #include "core_fixture.h"
 

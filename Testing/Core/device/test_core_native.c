@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device: its functions compared with PoCL's, its threads, its objects. */
+/* Tests the built-in device: its functions, compared with PoCL's; its threads; its objects. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* SPH gradients at the particles. */
+/* Tests SPH gradients at the particles. */
 
 #include "core_fixture.h"
 

@@ -344,7 +344,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Beyond a period's side lies the image of the fluid. */
+/* Beyond a period's side a section measures the fluid's image. */
 static void test_period(void** state)
 {
   shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };

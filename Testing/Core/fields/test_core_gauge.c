@@ -234,7 +234,7 @@ static void test_still_pool_of_computed_volumes(void** state)
   }
 }
 
-/* Beyond a period's side lies the image of the fluid, with the same bits where rounding allows. */
+/* Beyond a period's side a gauge reads the fluid's image, with the same bits where rounding allows. */
 static void test_period(void** state)
 {
   CORE_SET set = make_pool(1);

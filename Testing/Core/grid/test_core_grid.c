@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid: its order, and estimated smoothing lengths. The oracle checks that queries find all particles. */
+/* Tests the search grid's order, and estimated smoothing lengths. The oracle checks that queries find all particles. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Inputs at the ends of what is allowed: far apart, at one point, of any magnitude, exactly at a threshold. */
+/* Tests inputs at the limits: far apart, at one point, of any magnitude, exactly at a threshold. */
 
 #include "core_fixture.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How long a run may take, worked out by hand; and what a run used, in words. */
+/* Tests the estimate of a run's length, by hand, and the words for what a run used. */
 
 #include "core_fixture.h"
 

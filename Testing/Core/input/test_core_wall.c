@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces that end at solids (mcor_options.wall_share): which share is measured, and when it acts. The oracle checks
- * where such a surface ends. */
+/* Tests surfaces that end at solids (mcor_options.wall_share): which share is measured, and when the share acts. The
+ * oracle checks where such a surface ends. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"

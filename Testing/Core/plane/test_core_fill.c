@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Filled regions and bands of two dimensions. */
+/* Tests filled regions and bands of two dimensions. */
 
 #include "core_parts.h"
 #include "plane_reference.h"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: kernels, weights, what counts as a plane, derivatives and gauges, what is kept, bits.
+/* Tests two dimensions: kernels, weights, what counts as a plane, derivatives and gauges, kept data, bits.
  * test_core_plane_lines compares lines. */
 
 #include "mcor_plane.h"

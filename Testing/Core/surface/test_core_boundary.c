@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The boundary eigenvalue: the eigenvalue solver alone; then arrays and trimmed surfaces, compared with sums in double
- * precision on the host. */
+/* Tests the boundary eigenvalue: first the solver alone; then arrays and trimmed surfaces, by sums in double precision
+ * on the host. */
 
 #include "core_fixture.h"
 

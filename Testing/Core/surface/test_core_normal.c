@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Normals by triangles, attributes and nearest particles. The oracle compares normals by the field, and gradients. */
+/* Tests normals by triangles, attributes and nearest particles. The oracle compares normals by the field, and
+ * gradients. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming: thresholds, flags, limits. The oracle compares which vertices are cut away. */
+/* Tests trimming: thresholds, flags, limits. The oracle compares which vertices are cut away. */
 
 #include "core_fixture.h"
 

@@ -242,7 +242,7 @@ public:
    * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1,
    * unit L; sides may be infinite. The result is exactly that part of the whole surface, so boxes
    * side by side make up the whole. Only the particles that reach the box are evaluated. The
-   * lattice is that of all particles.
+   * lattice is the same as without a box.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
@@ -295,7 +295,7 @@ public:
    * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
    * default) keeps the higher values apart on ambiguous faces, and makes no tunnels through cells.
    * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are
-   * those of the field. The surface is a manifold with both.
+   * the field's own. The surface is a manifold with both.
    */
   vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
@@ -321,7 +321,7 @@ public:
   /**
    * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the
    * particle stays inside of the free surface: flat water becomes flat, drops, threads and sheets
-   * stay. Cubes and volumes are those of the original lengths; the array Widening is the factor.
+   * stay. Cubes and volumes follow from the original lengths; the array Widening is the factor.
    * From 1 (off, the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
@@ -337,7 +337,7 @@ public:
 
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
-   * default. Off keeps the triangles beyond, except for those that NodeThreshold discards. The free
+   * default. Off keeps the triangles beyond, except where NodeThreshold discards cells. The free
    * surface is not trimmed. A trimmed surface is a manifold with boundary, closed only where the
    * fluid closes it.
    */

@@ -183,7 +183,7 @@ public:
   ///@{
   /**
    * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles
-   * repeat along x with the period x1 - x0. A surface is that of one period, open at its sides,
+   * repeat along x with the period x1 - x0. A surface has one period, is open at its sides,
    * where it meets itself to the last bit. Periods are whole numbers of cubes; the cube size is
    * reduced to fit, see "CubeSize" in the statistics. The points of a probe may lie anywhere.
    */
@@ -378,7 +378,7 @@ public:
   /**
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
    * process, all update together, each with some of the particles (without those that vtkGhostType
-   * marks as duplicates) or none, and results are those of one process, to the last bit. Probes and
+   * marks as duplicates) or none, and results are as of one process, to the last bit. Probes and
    * derivatives return them to the process that has the points or particles. If one process fails,
    * all do. If blocks are taken apart, all processes must have the same number of them.
    */
@@ -400,8 +400,8 @@ public:
    * for building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the
    * box), "Bricks", "NodesEvaluated" (including those kept from earlier updates), "MarchRounds",
    * "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of fluid
-   * particles; for a surface also those of vtkMarchingCorrectors. If blocks are taken apart, costs
-   * are sums, and the rest is that of the last block. Empty if nothing ran. The next update makes a
+   * particles; for a surface also the arrays of vtkMarchingCorrectors. If blocks are taken apart,
+   * costs are sums, and the rest is of the last block. Empty if nothing ran. The next update makes a
    * new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
@@ -522,7 +522,7 @@ protected:
   {
     WARN_TYPE_ARRAY = 100, ///< an array that tells fluid from solids is not used
     WARN_WALL_BLOCK,       ///< walls in a block of their own, which is taken by itself
-    WARN_UNUSED,           ///< what is set has no effect
+    WARN_UNUSED,           ///< a setting has no effect
     WARN_SINGLE_POINTS     ///< single precision is too coarse for the output's points
   };
 

@@ -40,7 +40,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 }
 
 // A block that fails leaves its place empty, and does not touch the others. An observer of the
-// progress may take blocks out of the input, or change those that come later.
+// progress may take blocks out of the input, or change blocks that come later.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
   auto blocks = vtkSmartPointer<vtkDataObjectTree>::Take(input->NewInstance());

@@ -108,7 +108,7 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 
 vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
 {
-  // A file may have another array of that name: made with another kernel, or by the solver.
+  // A file may have another array with this name: made with another kernel, or by the solver.
   const auto name = [this, particles](std::string free)
   {
     while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))

@@ -6,7 +6,7 @@
  *
  * vtkSPHDerivatives adds the SPH gradient of a point array to the particles and, for a vector with three
  * components, the quantities below. The array is chosen with SetInputArrayToProcess(0, 0, 0,
- * FIELD_ASSOCIATION_POINTS, name); the default is that of vtkMarchingCorrectors. vtkSPHAlgorithm describes
+ * FIELD_ASSOCIATION_POINTS, name); the default is as for vtkMarchingCorrectors. vtkSPHAlgorithm describes
  * the particles.
  *
  *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
@@ -27,7 +27,7 @@
  *     StrainRate           S, nine values
  *
  * They are float if the input array is, else double. Sums are over fluid particles; solid particles get
- * zeros, as do those that vtkGhostType marks as duplicates. If the input has an array of such a name, the
+ * zeros, and so do particles that vtkGhostType marks as duplicates. If the input has an array of such a name, the
  * new one is called NAME_SPH, see SetReplaceArrays().
  *
  * @warning

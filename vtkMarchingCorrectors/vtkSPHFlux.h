@@ -9,7 +9,7 @@
  * that the velocities there allow; see mcor_flux in mcor.h. vtkSPHMeter says what is fluid, and how
  * processes share the work.
  *
- * Sections are those of the Add...() methods and the cells of the second input: polygons, with
+ * Sections come from the Add...() methods and from the cells of the second input: polygons, with
  * normals by the right-hand rule, or outwards if they are a closed surface; lines, if particles lie
  * in a plane. Cells with the same entry in the cell array "Name" are one section; without such an
  * array, all cells are one. Without any section, the disc of Origin, Normal and Radius is used.
@@ -25,7 +25,7 @@
  *     mass_flux    of rho v . n; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0
  *
- * Units are those of positions, velocities and densities. The density is its array, Density, or
+ * Units follow from the units of positions, velocities and densities. The density is its array, Density, or
  * mass / volume if both are given.
  *
  * @sa

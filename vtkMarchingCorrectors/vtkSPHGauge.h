@@ -8,7 +8,7 @@
  * tank does. Every crossing of the level at which fluid ends is found and solved for, see
  * mcor_gauge in mcor.h. vtkSPHMeter says what is fluid, and how processes share the work.
  *
- * The lines are those of AddGauge() and the line cells of the second input, each from its first
+ * The lines come from AddGauge() and from the line cells of the second input, each from its first
  * point to its last. If there are none, it is the line from Point1 to Point2. Gauges of the second
  * input have the names of its cell array "Name", if there is one.
  *

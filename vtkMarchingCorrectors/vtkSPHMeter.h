@@ -100,8 +100,8 @@ protected:
   ///@}
 
   /**
-   * Calls the core, whose status it returns, and adds the table's columns after those of time and
-   * name. outside: the places that no particle reaches.
+   * Calls the core, and returns its status. Adds the table's columns behind the columns of time and
+   * name. outside: marks the places that no particle reaches.
    */
   virtual int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,

@@ -223,7 +223,7 @@ public:
     return MCOR_OK;
   }
 
-  /** Adds the arrays to the output, without those that the core has left out. */
+  /** Adds the arrays to the output, except the ones that the core has left out. */
   void AddTo(vtkFieldData* data) const
   {
     for (size_t a = 0; a <= this->Arrays.size(); ++a)
@@ -284,7 +284,7 @@ private:
   }
 
   const double Null;        // the value at points that are not valid
-  std::vector<Pair> Arrays; // their order is that of the core's attributes
+  std::vector<Pair> Arrays; // in the order of the core's attributes
   Pair Weight;
   vtkNew<vtkCharArray> Mask; // chars, as in vtkProbeFilter
 };

@@ -190,8 +190,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
 }
 
 // Origin and spacing depend on the particles, and come with the data. Dimensions that follow the
-// shape of the fluid are those of the particles as they are now: cells are about cubes, in one layer
-// if the fluid is flat.
+// shape of the fluid follow the particles as they are now: cells are about cubes, in one layer if
+// the fluid is flat.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -11,8 +11,8 @@
  *     VOLUME            a vtkImageData around that box
  *
  * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the middle
- * along the longest side of its box, and the volume is that box, all with a margin of 3 % of that side. The box is that
- * of FindFluidBounds(). A slice of particles in a plane is always that plane.
+ * along the longest side of its box, and the volume is the box, all with a margin of 3 % of this side. FindFluidBounds()
+ * finds the box. A slice of particles in a plane always lies in their plane.
  *
  * Where there is no fluid (less than WeightThreshold) arrays are NaN, see SetNaNOutside(), and a slice has
  * no quads, see SetOnlyFluid(). Active scalars are velocities, else the first vector or scalar that varies.

@@ -579,7 +579,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._say(sentence, "Warning")
 
     def _fail(self, sentence):
-        """Adds the sentence to those of the other blocks, one on each line, and reports it."""
+        """Adds the sentence to the sentences of other blocks, one on each line, and reports it."""
         self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + in_panel(sentence)
         self._say(sentence, "Error")
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The options that all functions share: their types and what they mean. The names are those of mcor.h."""
+"""The options that all functions share: their types and what they mean. Names are as in mcor.h."""
 import ctypes
 import difflib
 import inspect

@@ -70,8 +70,8 @@ def label_pieces(triangles, count):
 
 
 def small_pieces(surface, label, positions, fluid, least):
-    """Returns (piece, its particles) for each closed piece with fewer than `least` particles: those that it encloses, or that are nearest to its
-    points. Cavities are not listed; a cavity is left out with the piece around it."""
+    """Returns (piece, its particles) for each closed piece with fewer than `least` particles. A piece's particles are enclosed by it, or nearest
+    to its points. Cavities are not listed; a cavity is left out with the piece around it."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))
@@ -125,6 +125,6 @@ def without_points(surface, left_out):
 
 
 def find_widths(surface, volume, count):
-    """Returns diameters of balls with the particles' volumes; volume: None: that of a spacing of h / 1.3."""
+    """Returns diameters of balls with the particles' volumes. volume: None means (h / 1.3)^3."""
     volume = (surface.statistics["smoothing_length_max"] / 1.3) ** 3 if volume is None else volume
     return np.broadcast_to(np.cbrt(6 / np.pi * np.asarray(volume, float)), count)

@@ -50,7 +50,7 @@ def cells_of(points):
 
 
 def add_values(data, count, chosen, made):
-    """Adds the arrays that have `count` values, unless one of that name exists."""
+    """Adds the arrays that have `count` values, unless an array of the same name exists."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
             add_nearest(made, name_of(array), array, chosen)

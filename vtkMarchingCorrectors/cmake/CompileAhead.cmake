@@ -1,5 +1,5 @@
 # Compiles one program of OpenCL kernels for the built-in device: an object file with a function that runs
-# work-items of each kernel, and the kernels' names and arguments; see mcor_native.h. Run with -P and
+# work-items of each kernel, and the kernels' names and arguments; see mcor_native.h. Run it with cmake -P and
 #
 #   COMPILER   clang
 #   FLAGS      its flags: target, instruction set, optimisation
@@ -7,7 +7,7 @@
 #   PREFIX     source of the built-in functions; SOURCES: of the program, in order
 #   DEFINES    of the program, as mcor_program_options writes them
 #   OUTPUT     the object file; beside it is what it was made of
-#   KEPT       folders of such object files: one that was made of the same is taken, and not compiled
+#   KEPT       folders of such object files: a file that was made of the same sources is copied, not compiled
 get_filename_component(folder "${OUTPUT}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
 separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
@@ -35,7 +35,7 @@ string(REPLACE "[" "@open@" text "${text}")
 string(REPLACE "]" "@close@" text "${text}")
 
 # A kernel becomes a function of its work-item's number, and a case that runs it for several. The arguments are
-# read once: what a work-item writes might be an argument, as far as clang knows.
+# read once before, because clang must assume that a work-item may write to them.
 string(REGEX MATCHALL "__kernel void [a-z0-9_]+\\([^{]*\\)[ \n]*{" kernels "${text}")
 set(names "")
 set(kinds "")
@@ -95,7 +95,7 @@ ${cases}  }
 ")
 list(APPEND opencl -ffp-contract=off -fno-math-errno -fPIC -fvisibility=hidden)
 
-# OUTPUT.key tells what the object is made of, in its folder as in KEPT.
+# OUTPUT.key, beside the object, tells what the object is made of; so do the keys in KEPT.
 run(${COMPILER} ${opencl} -E -P -o "${OUTPUT}.pre.cl" "${OUTPUT}.cl")
 file(SHA256 "${OUTPUT}.pre.cl" made_of)
 execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)

@@ -1,5 +1,5 @@
 # Writes OUTPUT, a C file that defines mcor_kernel_sources (mcor_program.h): the text of all OpenCL sources of
-# FOLDER/kernels/programs.cmake, and the programs that they are part of. Run with -P.
+# FOLDER/kernels/programs.cmake, and the programs that they are part of. Run it with cmake -P.
 include("${FOLDER}/kernels/programs.cmake")
 set(code "/* Made by EmbedFiles.cmake. */\n#include \"mcor_program.h\"\n")
 set(table "")

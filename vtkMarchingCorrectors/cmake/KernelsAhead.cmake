@@ -1,8 +1,8 @@
-# The kernels of the built-in device: mcor_ahead_objects are the object files, none where there is no clang, and
-# mcor_ahead_sources these and the C file that lists them (mcor_native_programs, see mcor_native.h).
+# Compiles the kernels of the built-in device. mcor_ahead_objects: the object files, none without clang;
+# mcor_ahead_sources: the same, and the C file that lists them (mcor_native_programs, see mcor_native.h).
 set(MCOR_AHEAD usual CACHE STRING
   "Kernels compiled for the built-in device: usual, all (all SPH kernels, double precision, too), or OFF")
-# All of them would take the build minutes more.
+# To compile all kernels would take minutes more.
 set(MCOR_AHEAD_USUAL "cubic;quadratic;mprime4;quintic;wendland" CACHE STRING "SPH kernels of MCOR_AHEAD=usual")
 set_property(CACHE MCOR_AHEAD PROPERTY STRINGS usual all OFF)
 find_program(MCOR_CLANG NAMES clang clang-19 clang-18 clang-17 clang-16 clang-15 clang-14 DOC "Compiles OpenCL kernels")
@@ -23,7 +23,7 @@ elseif (CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
 elseif (mcor_ahead)
   message(STATUS "No built-in device: none is known for the processor ${CMAKE_SYSTEM_PROCESSOR}. An OpenCL driver is needed.")
 endif ()
-# Vectors of 16 lanes are passed on the stack where a function is not inlined.
+# Vectors of 16 lanes are passed on the stack to a function that is not inlined.
 set(MCOR_AHEAD_FLAGS "-O3 -mllvm -inline-threshold=800" CACHE STRING
   "Flags of clang for the kernels of the built-in device")
 set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
@@ -31,7 +31,7 @@ set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
 set(MCOR_AHEAD_KEPT "" CACHE PATH "Folder of another build's compiled kernels, taken where they were made of the same")
 mark_as_advanced(MCOR_AHEAD_USUAL MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS MCOR_AHEAD_KEPT)
 set(mcor_ahead_kept "${MCOR_AHEAD_KEPT}")
-if (MCOR_BUILD_PYTHON_WHEEL AND NOT mcor_ahead_kept) # those of builds in the folder of the sources
+if (MCOR_BUILD_PYTHON_WHEEL AND NOT mcor_ahead_kept) # looks for kernels of builds in the sources' folder
   file(GLOB mcor_ahead_kept LIST_DIRECTORIES true "${PROJECT_SOURCE_DIR}/build*/vtkMarchingCorrectors/core/ahead")
   message(STATUS "Kernels are taken from ${mcor_ahead_kept} where they are made of the same")
 endif ()
@@ -40,7 +40,7 @@ if (CMAKE_CROSSCOMPILING)
   string(APPEND mcor_ahead_flags " --target=${MCOR_AHEAD_TRIPLE}")
 endif ()
 
-# Has sources compiled into an object file for the built-in device, whose function is `name`.
+# Compiles sources into an object file for the built-in device, with a function `name`.
 function (mcor_compile_ahead object name flags defines)
   set(prefix "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../kernels/device/mcor_native.cl")
   set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/CompileAhead.cmake")
@@ -57,7 +57,7 @@ endfunction ()
 
 set(mcor_ahead_table "")
 set(mcor_ahead_declared "")
-# One of the library's programs: its number; options as mcor_program_options writes them.
+# Compiles the library's program of this number, with options as mcor_program_options writes them.
 macro (mcor_compile_program program name instructions flags defines)
   set(sources "")
   foreach (row IN LISTS mcor_program_sources)
@@ -75,7 +75,7 @@ extern const char ${name}_kernels[], ${name}_arguments[];\n")
     ${name}_kernels, ${name}_arguments },\n")
 endmacro ()
 
-# All programs of an instruction set and a precision.
+# Compiles all programs for an instruction set and a precision.
 macro (mcor_compile_variants instructions flags lanes double)
   set(suffix "")
   if (NOT ${double})

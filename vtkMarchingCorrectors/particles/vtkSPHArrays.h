@@ -145,7 +145,7 @@ void vtkSPHAddColumn(vtkTable* table, const char* name, vtkIdType rows, const Va
   table->AddColumn(column);
 }
 
-/** Adds a column of doubles for each of these members of the rows. */
+/** Adds a column of doubles for each listed member of the rows. */
 template <typename RowT>
 void vtkSPHAddColumns(vtkTable* table, const RowT* rows, vtkIdType count,
   std::initializer_list<std::pair<const char*, double RowT::*>> members)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: what is found among particles' arrays, and in their field data, where the
- * user has chosen nothing.
+ * Private to the project: finds arrays of particles by their names, and the period in their field
+ * data, if the user has chosen none.
  */
 #ifndef vtkSPHFound_h
 #define vtkSPHFound_h

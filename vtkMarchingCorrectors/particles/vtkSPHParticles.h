@@ -83,7 +83,7 @@ public:
   vtkSPHParticles(const vtkSPHParticles&) = delete;
   void operator=(const vtkSPHParticles&) = delete;
 
-  /** Finds what is wanted. False if something is missing or not usable; Error then says what. */
+  /** Finds the wanted arrays. False if one is missing or not usable; Error then says which. */
   bool Collect(const mcor_ranks* ranks = nullptr);
 
   /**
@@ -106,7 +106,7 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /** mcor_has_free_surface() of these particles; after Collect(). */
+  /** Calls mcor_has_free_surface() for these particles; after Collect(). */
   bool HasFreeSurface(const mcor_ranks* ranks) const;
 
   /** Returns what tells the fluid, "ParticleType = 0"; empty if all particles are fluid. */

@@ -51,7 +51,7 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
-  // Takes what is global from the first rank that had work, because all such ranks have the same.
+  // Global numbers come from the first rank that had work: all such ranks have the same.
   const auto known = std::find_if(
     parts.begin(), parts.end(), [](const mcor_statistics& part) { return part.cube_size > 0.0; });
   mcor_statistics all = known == parts.end() ? mcor_statistics() : *known;
@@ -79,7 +79,7 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
       (one.correction_deviation * one.correction_deviation +
         one.correction_mean * one.correction_mean);
     vertices += corrected;
-    // the product is a whole number but for rounding
+    // Rounding makes the product the whole number that it stands for.
     evaluations += std::round(corrected * (one.iterations_mean + 1.0));
   }
   points = std::max(points, 1.0);

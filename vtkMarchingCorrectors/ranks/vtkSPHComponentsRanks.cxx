@@ -154,7 +154,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();
 }
 
-// Returns what is wrong, on all ranks alike. No rank may return here while another goes on.
+// Returns the error, the same on all ranks. No rank may return here while another goes on.
 std::string vtkSPHComponents::SplitDistributed(
   vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const
 {

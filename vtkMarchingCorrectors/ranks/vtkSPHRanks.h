@@ -4,9 +4,9 @@
  * Private to the module: the processes (ranks) that share one run, and what they tell each other.
  *
  * A shared run in ten sentences:
- *  1. Each rank comes with any particles, and drops those that are marked as copies of another
+ *  1. Each rank comes with any particles, and drops particles that are marked as copies of another
  *     rank's; all agree on one list of arrays (vtkSPHRanksParticles.h).
- *  2. The core measures what is global over the particles of all (mcor_measure_globals).
+ *  2. The core measures the globals, over the particles of all ranks (mcor_measure_globals).
  *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
  *     (vtkSPHRanksSpace.h).
  *  4. A particle is sent to each rank whose box its support, or an image of it, reaches, and a

@@ -282,7 +282,7 @@ Layout Describe(vtkPolyData* particles)
 
 /**
  * Lists the arrays that all ranks with points have, in the order of the first such rank. If there
- * are no points at all, lists those of the rank that has most arrays. Collective.
+ * are no points at all, lists the arrays of the rank that has most. Collective.
  */
 Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
 {

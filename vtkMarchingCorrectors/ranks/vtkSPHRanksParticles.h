@@ -30,7 +30,7 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
 /** Adds an array, which gets the role (scalars, vectors, ...) that array i has in `like`. */
 void vtkSPHAddLike(
   vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to);
-/** Makes points of the arrays that vtkSPHListArrays() lists, with the roles of those of `like`. */
+/** Makes points of arrays that vtkSPHListArrays() lists, with the same roles as in `like`. */
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 
 /**

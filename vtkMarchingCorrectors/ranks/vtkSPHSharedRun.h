@@ -82,7 +82,7 @@ protected:
   std::vector<double> FindPeriod(std::string& problem) override;
 
 private:
-  /** Whether this rank's box holds point i of those that were sent to the rank. */
+  /** Whether point i of `sent`, which came to this rank, lies in the rank's box. */
   bool Owns(vtkDataSet* sent, vtkIdType i) const
   {
     return this->Space.FindOwner(sent->GetPoint(i)) == this->Ranks.GetRank();

@@ -72,7 +72,7 @@ void AddOfFile(Text option, Text file, Text nouns, Text form,
   }
 }
 
-/// Returns the places, followed by those of a file, if there is one.
+/// Returns the places, followed by a file's places, if there is a file.
 std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
   Text form, Place (*parse)(Text option, Text text))
 {

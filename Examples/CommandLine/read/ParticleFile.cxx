@@ -131,7 +131,7 @@ const Formats DataFormats = {
 /// The format of files that are recognized by their first bytes, not by their names.
 const Kind Gadget = { ReadGadget, ListTimesOfGadget, ListGadget };
 
-/// Finds how a file is read; null if it has none of these formats.
+/// Finds the functions that read a file; null if no format fits.
 const Kind* KindOf(const Formats& formats, const std::string& file)
 {
   if (&formats == &ParticleFormats && IsGadget(file))

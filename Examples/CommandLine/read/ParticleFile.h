@@ -19,7 +19,7 @@ struct vtkSPHPeriod;
 std::string ParticleFileEndings();
 
 /// The words that --only NAME=WORD chooses, by the names of their arrays. An array of texts with such a
-/// name is read as the numbers of these words, from 1 on, and 0 for all others.
+/// name is read as the numbers of these words, from 1 on, and 0 for other words.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
 /// Reads particles and their arrays from files that each hold a part of them. Leaves out arrays

@@ -34,7 +34,7 @@ public:
 
   const std::vector<double>& Get() const { return this->Times; }
 
-  /// Returns the step of that time; null if the time is between two.
+  /// Returns the step at this time; null if the time is between two steps.
   const Step* GetStored(double time) const;
 
   /// Lists the files from which the particles at a time are made, without walls.

@@ -262,7 +262,7 @@ static void test_region(void** state)
     check_same(*state, &block, &set, core_input, &options);
   }
   options.box[0] =
-    3; /* volumes and sums of particles that reach the region include particles that do not reach it */
+    3; /* volumes and sums of particles that reach the region include particles beyond it */
   for (int widest = 0; widest <= 4; ++widest)
   {
     const mcor_input one = widest == 0 ? input_of_masses(&block) : near,

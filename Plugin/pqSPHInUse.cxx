@@ -206,7 +206,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
         domain, vtkCommand::DomainModifiedEvent, this, SLOT(offerMore()), Qt::QueuedConnection);
     }
   }
-  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel exists
+  QTimer::singleShot(0, this, SLOT(beginNew())); // ParaView calls it new only later
   if (!proxy->GetProperty(NEXT[0]))
   {
     this->showValues();
@@ -246,7 +246,7 @@ void pqSPHInUse::beginNew()
     return;
   }
   SCOPED_UNDO_EXCLUDE();
-  this->WasEmpty = false; // because it has not been updated
+  this->WasEmpty = false; // it has not been updated yet
   const QString label = filter->GetXMLLabel();
   const QString brief = label.section('(', 0, 0).remove(QRegularExpression("[^A-Za-z0-9]"));
   if (label.contains('('))
@@ -462,7 +462,7 @@ void pqSPHInUse::colourLate()
   const QString before = std::exchange(this->Colour, active ? active->GetName() : "");
   if (isFirst)
   {
-    this->WasEmpty = isEmpty; // this is a panel of an older object
+    this->WasEmpty = isEmpty; // the filter is older than the panel
     for (pqDataRepresentation* shown : port->getRepresentations(nullptr))
     {
       this->watchColour(shown);

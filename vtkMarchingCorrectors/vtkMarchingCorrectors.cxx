@@ -318,7 +318,7 @@ std::vector<double> ListFactorOptions(const mcor_options& o)
 }
 }
 
-// Gives the input the factors of its smoothing lengths. Those of the last run serve if they hold.
+// Gives the input the factors of its smoothing lengths: the last run's if they still hold.
 bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkSPHParticles& input)
 {
   vtkInternals& kept = *this->Internals;

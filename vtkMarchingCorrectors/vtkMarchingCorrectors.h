@@ -121,7 +121,7 @@ public:
   enum BoundaryDetectionType
   {
     WEIGHT_SUM = 0, ///< sum_j V_j W(x - x_j, s h_j)
-    EIGENVALUE = 1  ///< smallest one of sum_j V_j (x_j - x) (outer product) grad W(x - x_j, s h_j)
+    EIGENVALUE = 1  ///< smallest eigenvalue of sum_j V_j (x_j - x) grad W(x - x_j, s h_j)^T
   };
 
   /** Value of FreeSurface that lets the particles decide. */

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Blocks of composite data, and detection of the fluid among particles.
+// Processes blocks of composite data, and detects the fluid among particles.
 #include "vtkSPHAlgorithm.h"
 
 #include "vtkDataObjectTree.h"

@@ -67,7 +67,7 @@ protected:
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
 
-  /** A place of measurement: points, or a centre, a normal and a radius. */
+  /** A place to measure at: points, or a centre, a normal and a radius. */
   struct Place
   {
     std::string Name;

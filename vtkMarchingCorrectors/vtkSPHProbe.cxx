@@ -37,7 +37,7 @@ public:
     this->Stored = stored ? vtkSPHAsReal(stored) : nullptr;
   }
 
-  /** The result is valid until the next call. */
+  /** Returns `count` points from `first` on; the result is valid until the next call. */
   mcor_array View(vtkIdType first, vtkIdType count)
   {
     mcor_array view = {};
@@ -124,9 +124,9 @@ struct ChunkProgress
 };
 
 /**
- * Version of the particles in a run of several chunks. No kept run has it; without it, each
- * chunk would make the search grid anew. A single chunk gets none, so only particles near its
- * points go to the device.
+ * Version of the particles in a run of several chunks, which no kept run has. Without a version,
+ * each chunk would make the search grid anew. A run of a single chunk has none, so that only
+ * particles near its points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 
@@ -252,7 +252,7 @@ private:
     vtkSmartPointer<vtkDataArray> Values, Gradient;
   };
 
-  /** Takes over what the core has found at the points from `first` on. */
+  /** Copies the core's results to the points from `first` on. */
   void Put(vtkIdType first, const mcor_samples& samples)
   {
     const auto copy = [&](const double* from, const std::uint8_t* valid, vtkDataArray* to)
@@ -310,7 +310,7 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-// Each piece of the points needs all particles. Ranks find them by themselves.
+// Each piece of the points needs all particles. Ranks that share a run send them to each other.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {

@@ -74,16 +74,16 @@ public:
   /** The bounds of a volume: x0, x1, y0, y1, z0, z1, unit L. */
   vtkSPHVector6Macro(Bounds, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
 
-  /** How many points a slice has along its longer side, or a line; 2 and more, 500 by default. */
+  /** How many points a line has, or a slice along its longer side; at least 2, 500 by default. */
   vtkSPHClampMacro(Resolution, int, 500, 2, 100000);
 
   /**
-   * How many points a volume has along x, y and z. 0, the default: as many as its shape wants,
+   * How many points a volume has along x, y and z. 0, the default: the shape of the fluid decides;
    * about a million in all, one along the axis of particles in a plane.
    */
   vtkSPHVector3Macro(Dimensions, int, 0, 0, 0);
 
-  /** Leave quads of a slice out that have a corner without fluid. On by default. */
+  /** Leave out the quads of a slice that have a corner without fluid. On by default. */
   vtkSPHFlagMacro(OnlyFluid, 1);
 
 protected:

@@ -38,7 +38,7 @@
 namespace
 {
 
-/// Makes the outputs. Returns false if a step failed; its error was printed.
+/// Makes the outputs. Returns false if a step failed, after its error was printed.
 bool Make(Sharing& sharing)
 {
   const Job& job = sharing.Options;
@@ -69,14 +69,14 @@ std::size_t WidthOfTerminal()
   return static_cast<std::size_t>(std::max(asked > 0 ? asked : isTerminal ? size.ws_col : 80, 60));
 }
 
-/// Whether nobody reads standard output any more, which is no fault: --help | head.
+/// Whether the reader of standard output has gone, which is no fault: --help | head.
 bool IsReaderGone()
 {
   pollfd output = { STDOUT_FILENO, POLLOUT, 0 };
   return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
 }
 
-/// Does what the command line asks for. Returns false if something failed; its error was printed.
+/// Runs the command line. Returns false if something failed, after the error was printed.
 bool Execute(int argc, char* argv[])
 {
   Job job;
@@ -99,7 +99,7 @@ bool Execute(int argc, char* argv[])
     return true;
   }
   const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
-  Messages(); // these signals are handled from here on
+  Messages(); // keeps VTK's messages from here on
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (job.ListArrays)
   {

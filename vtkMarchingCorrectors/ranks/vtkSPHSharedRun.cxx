@@ -200,7 +200,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   const bool good = this->Measure(particles, true);
   core.estimate_smoothing_length = core.smoothing_length_is_support_radius = 0;
   core.smoothing_length = {};
-  // as if the user had given it
+  // The estimate then counts as if the user had given it.
   core.smoothing_length.constant = this->Globals.measured.h_estimate;
   return good;
 }
@@ -411,7 +411,7 @@ void vtkSPHAlgorithm::vtkSharedRun::WarnOfParticles(
   if (this->IsFirst() && some != all.end())
   {
     mcor_input input = core;
-    this->OfAll(input, this->Options); // the last thing that the run does with them
+    this->OfAll(input, this->Options); // the run needs the old options no more
     this->vtkRun::WarnOfParticles(input, *some);
   }
 }

@@ -25,8 +25,8 @@ public:
   static std::unique_ptr<Picture> New(const PictureOptions& options);
   virtual ~Picture() = default;
 
-  /// Returns the bytes of a .png file; `file` is the name for sentences of a std::runtime_error. A
-  /// slice is seen along this axis.
+  /// Returns the bytes of a .png file. file: its name in the sentence of a std::runtime_error;
+  /// sliceAxis: the axis along which a slice is seen; below 0: there is no slice.
   virtual std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
     const ColorScale& colors, int sliceAxis = -1) = 0;
 };

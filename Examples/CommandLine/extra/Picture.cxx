@@ -65,7 +65,7 @@ std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)
   FailToWrite(file, "rendering needs a display; try xvfb-run -a -s -noreset");
 }
 
-const double WidthOfBar = 0.13; ///< extent of the picture, if there is one
+const double WidthOfBar = 0.13; ///< the colour bar's share of the picture's width
 
 using Vector = vtkVector3d;
 
@@ -84,7 +84,7 @@ struct View
   Vector ToEye;
 };
 
-/// Looks from `toEye`; if that is along `up`, the next axis points upwards.
+/// Returns the view from the direction `toEye`; if this is along `up`, the next axis points upwards.
 View MakeView(Vector up, Vector toEye)
 {
   vtkMath::Normalize(toEye.GetData());
@@ -97,7 +97,7 @@ View MakeView(Vector up, Vector toEye)
   return { right, toEye.Cross(right), toEye };
 }
 
-/// Looks from the front, a little from above and from the left.
+/// Returns a view from the front, a little from above and from the left.
 View ObliqueView(const Vector& up)
 {
   const Vector right(std::abs(up[1]) + std::abs(up[2]), std::abs(up[0]), 0.0);
@@ -109,7 +109,7 @@ View ObliqueView(const Vector& up)
       std::sin(elevation) * up);
 }
 
-/// Looks straight at a slice.
+/// Returns the view straight onto a slice.
 View ViewOfSlice(const Vector& up, int axis)
 {
   Vector toEye(0.0);
@@ -256,7 +256,7 @@ private:
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.45, 0.72, 0.95);
     actor->GetProperty()->SetLighting(!isFlat);
-    actor->GetProperty()->SetAmbient(isColored ? 0.3 : 0.0); // colours in shade are still told apart
+    actor->GetProperty()->SetAmbient(isColored ? 0.3 : 0.0); // colours in shade still differ
     actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.4);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);

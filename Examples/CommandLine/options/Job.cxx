@@ -15,11 +15,11 @@
 namespace
 {
 
-/// What sentences and the help say about a mode.
+/// The words for a mode in sentences and in the help.
 struct ModeWords
 {
   Modes Mode;
-  const char* Word;   ///< may stand in front of the files
+  const char* Word;   ///< the word that may stand before the files
   const char* Plural; ///< its name in sentences
   const char* Needs;
 };
@@ -248,7 +248,7 @@ void CheckOption(const Job& job, const Option& option)
   }
 }
 
-/// Refuses what can be refused without looking at the input.
+/// Refuses a command line that is wrong whatever the input is.
 void Check(const Job& job)
 {
   if (job.Inputs.empty())
@@ -542,7 +542,7 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   }
   if (!(job.Mode() & CONTOUR))
   {
-    job.Surface->FreeSurfaceOn(); // the rule that --widen needs
+    job.Surface->FreeSurfaceOn(); // --widen uses the free surface's rule
   }
   if ((job.Word == "surface" || job.Word == "film") && !job.Has("--scalar"))
   {

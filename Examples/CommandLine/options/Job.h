@@ -48,7 +48,7 @@ struct PictureOptions
   std::vector<double> View;       ///< direction from the shown data to the eye; empty: chosen
 };
 
-/// Points to probe that come from options, not from a file.
+/// Points to probe, from options, not from a file.
 struct SliceOptions
 {
   int Axis = -1;            ///< axis that the slice is normal to; below 0: there is no slice
@@ -169,7 +169,7 @@ struct Job
   int Repeat = 1;
   bool Quiet = false;
   bool Verbose = false;
-  bool ListArrays = false; ///< arrays of the only input are listed
+  bool ListArrays = false; ///< whether to list the arrays of the only input
 };
 
 struct Option

@@ -20,7 +20,7 @@ public:
 void Need(
   bool isGood, const std::string& option, const std::string& words, const std::string& text);
 
-/// Returns the texts between these signs.
+/// Returns the texts between the signs `sign`.
 std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
 
 /// Returns true, and sets the value, if the whole text is one finite number.

@@ -94,12 +94,12 @@ public:
     }
   }
 
-  /// Reads the gas, with the arrays that are known here.
+  /// Reads the gas, with the arrays that are listed above.
   vtkSmartPointer<vtkPolyData> ReadGas()
   {
     auto gas = vtkSmartPointer<vtkPolyData>::New();
     const vtkIdType count = this->Counts[0];
-    std::size_t next = 0; // the order in format 1
+    std::size_t next = 0; // place in the order of format 1
     std::uint64_t size = 0;
     for (const Known* known = nullptr; this->Begin(size);)
     {
@@ -165,7 +165,7 @@ private:
     return size;
   }
 
-  /// Goes to the bytes of the next record, and returns how many there are; false at the end.
+  /// Goes to the bytes of the next record. size: becomes their number. Returns false at the end.
   bool Begin(std::uint64_t& size)
   {
     const std::uint64_t at = this->Next;

@@ -62,10 +62,10 @@ struct ParticleSets
 /// in order. The first process reads any other file.
 ParticleSets ReadParticlesPart(const std::string& file, int rank, int count);
 
-/// Returns the particles, which may be none.
+/// Joins the sets to one; there may be no particles.
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
-/// Reads a data set of any class with the same care; only names are changed.
+/// Reads a data set of any class with the same care. Changes only its names, to make them fit to print.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 
 /// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles

@@ -255,8 +255,8 @@ bool StartsWith(View text, View start)
   return text.substr(0, start.size()) == start;
 }
 
-/// Reads the box of a dump: sides along the axes; or tilted (xy xz yz), where the first two numbers
-/// of each line are the bounds of the box around the cell; or vectors with their origin (abc
+/// Reads the box of a dump: a cell along the axes; or a tilted cell (xy xz yz), where the first two
+/// numbers of each line are the bounds of the box around the cell; or vectors with their origin (abc
 /// origin).
 void ReadBox(Lines& lines, std::vector<View> words, Step& step)
 {
@@ -435,7 +435,7 @@ std::vector<double> PeriodOf(const Step& step)
   return period;
 }
 
-/// Returns how the steps of a file are found; null for a table, which is one step.
+/// Returns the function that finds a file's steps; null for a table, which is one step.
 StepFinder FinderOf(const std::string& file)
 {
   Lines lines(file);

@@ -57,7 +57,7 @@ bool ToNumber(View text, double& value)
   }
   if (end.ec == std::errc::result_out_of_range)
   {
-    value = std::strtod(std::string(text).c_str(), nullptr); // an infinite number, or 0
+    value = std::strtod(std::string(text).c_str(), nullptr); // infinity, or 0
   }
   return end.ec != std::errc::invalid_argument && end.ptr == text.data() + text.size();
 }
@@ -178,8 +178,8 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 namespace
 {
 
-/// Returns a name without its component (v:0, v_x, v.x, v[0], v(0), VelX), and sets which component
-/// it is; below 0: none.
+/// Finds the component in a name (v:0, v_x, v.x, v[0], v(0), VelX). base: becomes the name without
+/// it. Returns the component's number; below 0: none.
 int ComponentOf(const std::string& name, std::string& base)
 {
   const std::size_t n = name.size();

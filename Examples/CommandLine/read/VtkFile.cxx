@@ -47,7 +47,7 @@ using View = std::string_view;
 
 // ---- The counts that a file declares ----
 
-/// Gives a check the file's bytes as they are.
+/// Calls check(file, bytes of the file).
 void Inspect(const std::string& file, void (*check)(const std::string& file, View text))
 {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
@@ -216,8 +216,8 @@ void CheckLegacy(const std::string& file, View text)
   static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
     "color_scalars", "texture_coordinates" };
   const double most = 8.0 * static_cast<double>(text.size());
-  std::string section = "point_data"; // elements that have the attributes
-  double elements = 0.0;              // values of each element
+  std::string section = "point_data"; // the kind of elements, points or cells
+  double elements = 0.0;              // how many elements there are
   const bool isText = text.substr(0, 600).find("\nASCII") != View::npos;
   const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // a title of any words
   for (std::size_t begin = text.find('\n', title), end = 0; begin < text.size(); begin = end + 1)
@@ -236,7 +236,7 @@ void CheckLegacy(const std::string& file, View text)
     {
       CheckSize(file, room, first, numbers[1]);
       const std::size_t next = text.find_first_not_of(" \t\r\n", end);
-      const bool isList = isText && next != View::npos && text[next] != 'O'; // of OFFSETS
+      const bool isList = isText && next != View::npos && text[next] != 'O'; // 'O': OFFSETS
       if (isList && !BeginsWithNumbers(text.substr(end), numbers[1]))
       {
         FailToRead(file, "its " + first + " are no whole numbers; it may be damaged");

@@ -56,7 +56,7 @@ const bool FoundAwaited = (FindAwaited(), true);
 /// Plain memory, for a handler that must not allocate any.
 char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
-char StackOfHandler[1 << 16]; // after a recursion without end, the usual stack is full
+char StackOfHandler[1 << 16]; // after an endless recursion, the usual stack is full
 volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< the true one, also during Silence
 

@@ -304,10 +304,10 @@ private:
 
   const std::vector<std::string> Surfaces;
   std::string Entries;                ///< entries of the .pvd file
-  std::vector<std::string> Reports;   ///< rows of all steps, if a table is wanted
+  std::vector<std::string> Reports;   ///< JSON of all steps, for the statistics
   vtkSmartPointer<vtkFieldData> Last; ///< the last step that went well
   ColorScale Colors, FrameColors;
-  std::string Pieces, Numbers; ///< tables
+  std::string Pieces, Numbers; ///< texts of the tables
   GrowingFile ListFile, PieceFile, NumberFile;
   std::unique_ptr<Picture> Drawn; ///< used if pictures are wanted
   vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid; null: no place known

@@ -208,7 +208,7 @@ Members ListSetting(const Job& job, vtkFieldData* run)
   if (*filter->GetFluidArrayName())
   {
     static const char* const solids[] = { "weight", "ignore", "wall",
-      "auto" }; // numbers of the filter's enumeration
+      "auto" }; // in the order of the filter's numbers
     Members fluid = { { "array", QuotedForJson(filter->GetFluidArrayName()) },
       { "value", Json(filter->GetFluidValue()) },
       { "solids", QuotedForJson(solids[filter->GetSolids()]) } };

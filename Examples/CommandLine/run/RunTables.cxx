@@ -107,7 +107,7 @@ private:
       [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, this->Progress(i)); });
     for (std::size_t flux = 0; this->IsFlux && flux < 2; ++flux)
     {
-      // Integrals in time, by trapezia between steps.
+      // Integrates over time, by trapezia between steps.
       const std::string name = flux == 0 ? "volume" : "mass";
       auto* rates = vtkDoubleArray::SafeDownCast(table->GetColumnByName((name + "_flux").c_str()));
       std::vector<double>&before = this->Rates[flux], &sums = this->Sums[flux];
@@ -133,7 +133,7 @@ private:
   const bool IsFlux, IsImage;
   vtkSPHMeter* const Meter;
   double LastTime = 0.0;
-  std::vector<double> Rates[2], Sums[2]; ///< integrals of volume and mass, for each section
+  std::vector<double> Rates[2], Sums[2]; ///< last fluxes, and integrals: volume, mass; by section
 };
 
 /// Returns the iso values of a run, ascending; if it had no particles, the requested ones.
@@ -177,7 +177,7 @@ void MeasureLines(Run& run, const std::string& isoName)
     const vtkIdType first = line->GetId(0), last = line->GetNumberOfIds() - 1;
     const std::size_t own = LevelOf(run.Levels, isoValues->GetComponent(first, 0));
     areClosed[own] = areClosed[own] && first == line->GetId(last);
-    const auto at = [&](vtkIdType i) // near 0
+    const auto at = [&](vtkIdType i) // relative to the first point
     { return vtkVector3d(run.Surface->GetPoint(line->GetId(i))) - vtkVector3d(run.Surface->GetPoint(first)); };
     for (vtkIdType i = 0; i < last; ++i)
     {

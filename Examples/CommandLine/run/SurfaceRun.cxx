@@ -318,7 +318,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
     vtkSPHDerivatives* derivatives = job.Derivatives;
     SetParticles(derivatives, job, input);
     derivatives->ComputeStrainRateOn();
-    derivatives->ReplaceArraysOn(); // the next step must find them under their names
+    derivatives->ReplaceArraysOn(); // the next step needs the same names
     derivatives->SetInputData(input);
     derivatives->Update();
     const std::string error = derivatives->GetErrorMessage();
@@ -327,7 +327,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
       throw std::runtime_error(error);
     }
     particles.TakeReference(input->NewInstance());
-    particles->ShallowCopy(derivatives->GetOutput()); // the next step has the output itself
+    particles->ShallowCopy(derivatives->GetOutput()); // the next step changes the output
   }
   vtkDataArray* scalar = particles->GetPointData()->GetArray(job.Scalar.c_str());
   if (job.Has("--component") && scalar && scalar->GetNumberOfComponents() == 1)
@@ -396,7 +396,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
   // Warnings are in the statistics, too.
   const std::vector<std::string>& told = Messages().Warnings;
   run.Warnings.insert(run.Warnings.end(), told.begin(), told.end());
-  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // for all processes
+  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
   if (run.Surface->GetNumberOfCells() == 0 && !(triangles && triangles->GetComponent(0, 0) > 0))
   {
     const std::string reason =

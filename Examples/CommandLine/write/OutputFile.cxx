@@ -242,7 +242,7 @@ void OutputFiles::Write(const std::string& file, const std::string& bytes)
     const int descriptor = output.File->GetDescriptor();
     Require(descriptor >= 0 && WriteAll(descriptor, bytes), file);
     SetAttributes(descriptor, output.Place);
-    // Some file systems have no fsync, and some tell only then that the disk is full.
+    // Some file systems have no fsync, and some report a full disk only here.
     Require(fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP, file);
     Require(output.File->Close(), file);
   }

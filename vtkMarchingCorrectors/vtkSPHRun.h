@@ -68,7 +68,7 @@ public:
   Made Taken;  // particles among the cells of a mesh; how: whether any rank has vertices
   Made Joined; // blocks as one set of particles; how: the fluid array, which may be a block
 
-  /** A value of the last run, and how often it has changed: equal versions are equal data. */
+  /** A value of the last run, and how often it has changed: equal versions mean equal data. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;

@@ -43,7 +43,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 /** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
-/** Asks mcor_tells_apart, or mcor_name_priority of positions, about the name of a table's column. */
+/** Calls mcor_tells_apart, or mcor_name_priority for positions, with the name of a table's column. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
 VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
 
@@ -59,7 +59,7 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
-/** Does so around the particles of all processes; a process may have none. Collective. */
+/** Returns a period as six bounds, placed by the particles of all processes. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END

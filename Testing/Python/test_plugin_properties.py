@@ -77,6 +77,7 @@ def choose_all(make):
 
 
 def check(name, make):
+    known = set(GetSources())
     proxy, trace, wanted = choose_all(make)
     lines = trace.splitlines()
     first = next(i for i, line in enumerate(lines) if f"= {name}(" in line)
@@ -95,6 +96,9 @@ def check(name, make):
     LoadState(path)
     os.remove(path)
     compare(name + ", state", values_of(FindSource("stored " + name)), wanted)
+    for key, source in list(GetSources().items()):
+        if key not in known:  # Each state would otherwise hold all earlier sources twice.
+            Delete(source)
     print(f"{name}: {len(wanted)} properties come back", flush=True)
 
 

@@ -306,9 +306,8 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
                 "smoothing length {SmoothingLengthRange:0}") +
       (areMany ? " .. {SmoothingLengthRange:1}" : "") +
       "[ (array {SmoothingLengthArray})]; volume: " + volume + "\n" +
-      (leavesSpray ? "volumes     {LoneParticles} of {FluidParticles} particles would have no surface "
-                     "if they were alone, as volume x W(0) is below the iso value; --volume computed "
-                     "keeps drops and spray\n"
+      (leavesSpray ? "spray       a lone particle has no surface where volume x W(0) is below the iso "
+                     "value ({LoneParticles} of {FluidParticles}); --volume computed keeps drops\n"
                    : "") +
       "contour     [{Scalar}|weight sum][ = {IsoValues}]"
       "[; range {ScalarRange:0} .. {ScalarRange:1}]" +

@@ -13,11 +13,14 @@ from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
+# In a build the package is a folder of links to files of several folders; a plugin may be a link to this file.
+FOLDER = Path(__file__).absolute().parent
+if not (FOLDER / "MarchingCorrectors.xml").exists():
+    FOLDER = Path(__file__).resolve().parent
+
 if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
     # ParaView loads this file alone, not its package. The other modules in the folder must not become importable.
-    _folder = Path(__file__).resolve().parent
-    _spec = spec_from_file_location("marchingcorrectors", _folder / "__init__.py",
-                                    submodule_search_locations=[str(_folder)])
+    _spec = spec_from_file_location("marchingcorrectors", FOLDER / "__init__.py", submodule_search_locations=[str(FOLDER)])
     sys.modules["marchingcorrectors"] = module_from_spec(_spec)
     _spec.loader.exec_module(sys.modules["marchingcorrectors"])
 
@@ -51,7 +54,7 @@ OTHERS = "PanelComponent", "FreeSurfaceValue"
 
 
 def read_panel():
-    return ElementTree.parse(Path(__file__).resolve().with_name("MarchingCorrectors.xml")).getroot()
+    return ElementTree.parse(FOLDER / "MarchingCorrectors.xml").getroot()
 
 
 def read_properties():

@@ -121,7 +121,7 @@ class SphAccessor:
         return f"<SPH particles: {self._particles.n_points}>"
 
     @_method(ISOSURFACE)
-    def isosurface(self, scalar: Union[str, np.ndarray], iso: Union[float, Sequence[float]], *,
+    def isosurface(self, scalar: Union[str, np.ndarray], iso: Union[None, float, Sequence[float]] = None, *,
                    scalar_dot: Union[None, str, np.ndarray] = None,
                    **words: Unpack[Particles]) -> pyvista.PolyData:
         """Where a point array (its magnitude, or scalar_component=0, 1, ...) has the value `iso`.
@@ -131,7 +131,7 @@ class SphAccessor:
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
 
         scalar: the name of a point array, or an array. "Density", where there is no such array, is summed from masses.
-        iso: the value of the scalar on the surface, or a list of values.
+        iso: the value of the scalar on the surface, or a list of values; without it one about the median.
         scalar_dot: a second vector; the scalar is then the dot product.
         """
         particles, words = self._prepare(words)

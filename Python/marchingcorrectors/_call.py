@@ -83,6 +83,8 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
         @functools.wraps(function)
         def call(positions: Any, *arguments: Any, **words: Any) -> Any:
             check_names(call, words, options)
+            if "outputs" in words:
+                words["outputs"] = _list_outputs(words, options)
             if hasattr(positions, "words"):
                 given = signature.bind(positions, *arguments, **words).arguments
                 more = given.pop("words", {})
@@ -113,7 +115,7 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     options, attributes = dict(words), attributes or {}
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
-    _set_outputs(options, given.pop("outputs"))
+    options.update((name, True) for name in given.pop("outputs") or ())
     _warn_of_unused(options, given["context"])
     arguments = Arguments(units.positions)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
@@ -143,7 +145,7 @@ class Finder:
         self.arguments, self.source = arguments, source
         self.others = source.arrays if source else attributes
         self.array_of = source.array if source else functools.partial(_attribute, attributes)
-        self.named, self.names, self.values, self.ranges, self.looks = {}, {}, {}, [], False
+        self.named, self.names, self.values, self.ranges, self.marks, self.looks = {}, {}, {}, [], [], False
         self.request = {"find": source is not None}
 
     def add(self, name, array):
@@ -163,7 +165,7 @@ class Finder:
     def add_sizes(self, given, estimate):
         """Adds quantities. given: {role: array, value or None}; the scalar may also be a name. estimate: estimate_smoothing_length."""
         self.ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
-        self.request.update(lengths_by_neighbours=bool(self.ratio), estimate_smoothing_length=bool(self.ratio) or number(
+        self.request.update(lengths_by_neighbours=self.ratio is not None, estimate_smoothing_length=self.ratio is not None or number(
             "estimate_smoothing_length", "int", estimate), compute_volumes=isinstance(given["volume"], str) and given["volume"] == "computed")
         for role, array in given.items():
             words = role.replace("_", " ")
@@ -199,7 +201,8 @@ class Finder:
         self.looks = "fluid" not in self.names and (self.source is not None or is_auto)
         for name in self.others if self.looks else ():
             if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
-                self.add(name, np.ascontiguousarray(self.array_of(name)))
+                array = np.ascontiguousarray(self.array_of(name))
+                self.add(name, array.astype(array.dtype.newbyteorder("="), copy=False))
 
     def add_choice(self, within, only):
         if within is not None:
@@ -208,7 +211,7 @@ class Finder:
             for name, wanted in only.items() if isinstance(only, Mapping) else only:
                 array = self.take("only", name, "fiubUSO" if isinstance(wanted, str) else "fiub")
                 if array.dtype.kind in "USO":
-                    self.ranges.append((self.add(f"{name}={wanted}", array.astype(str) == wanted), 1, 1))
+                    self.add_marks(f"{name}={wanted}", array.astype(str) == wanted)
                 else:
                     self.ranges.append((self.add(name, array), *parse_range(name, wanted)))
         elif only is not None:
@@ -216,7 +219,11 @@ class Finder:
             if only.dtype != bool or only.shape != (self.arguments.count,):
                 raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.arguments.count} particles, not an "
                                       f"array of {only.dtype} of the shape {only.shape}.")
-            self.ranges.append((self.add("only", only), 1, 1))
+            self.add_marks("only", only)
+
+    def add_marks(self, name, marks):
+        self.marks.append(self.add(name, marks))
+        self.ranges.append((self.marks[-1], 1, 1))
 
     def find(self, wants, options, nothing):
         """Sets the input and the options. nothing: the warning's words for no fluid; None: no fluid is an error."""
@@ -231,6 +238,8 @@ class Finder:
         arguments.input, why = found.found.input, found.text("no_fluid")
         if arguments.input.solid and arguments.count:
             arguments.present = np.ctypeslib.as_array(arguments.input.solid, (arguments.count,)) != ABSENT
+        for name in self.marks:  # The core's sentence has name=value.
+            why = why.replace(f"{name}=1", name)
         arguments.set_options(options)
         if why and arguments.count:
             if nothing is None:
@@ -273,14 +282,16 @@ def parse_within(within):
     return sides if any(sides) else [-5e-324, *sides[1:]]  # For the core zeros mean no choice.
 
 
-def _set_outputs(options, outputs):
-    """Sets the options that outputs names."""
-    for name in [outputs] if isinstance(outputs, str) else outputs or ():
-        if name not in OUTPUTS:
-            raise InvalidArgument(f"outputs names {name!r}.{did_you_mean(name, OUTPUTS)} Outputs are {', '.join(OUTPUTS)}.")
-        if options.get(name) is False:
+def _list_outputs(words, options):
+    """Returns the names in outputs, which must be among the function's options."""
+    outputs, known = words["outputs"], [name for name in OUTPUTS if name in options]
+    outputs = [] if outputs is None else list(outputs) if np.iterable(outputs) and not isinstance(outputs, str) else [outputs]
+    for name in outputs:
+        if name not in known:
+            raise InvalidArgument(f"outputs names {name!r}.{did_you_mean(name, known)} Outputs are {', '.join(known)}.")
+        if words.get(name) is False:
             raise InvalidArgument(f"outputs names '{name}', but {name} is False. Leave one of them out.")
-        options[name] = True
+    return outputs
 
 
 def _attribute(attributes, name):

@@ -174,6 +174,9 @@ class Results(unittest.TestCase):
         self.assertEqual(sphere(outputs="residual", normals=False), sphere(residual=True, normals=False))
         self.assertEqual(mc.probe(POSITIONS, POSITIONS[:5], outputs=["gradients"], smoothing_length=H, attributes={"d": DISTANCE}),
                          mc.probe(POSITIONS, POSITIONS[:5], gradients=True, smoothing_length=H, attributes={"d": DISTANCE}))
+        for outputs, words in (("residual", "outputs names 'residual'. Outputs are gradients"), (3, "outputs names 3")):
+            with self.assertRaisesRegex(mc.InvalidArgument, words):
+                mc.probe(POSITIONS, POSITIONS[:5], outputs=outputs, smoothing_length=H, attributes={"d": DISTANCE})
 
     def test_free_surface(self):
         surface = mc.free_surface(POSITIONS, smoothing_length=H)
@@ -357,6 +360,14 @@ class Refused(unittest.TestCase):
             with self.assertWarnsRegex(mc.InputWarning, "so there is no fluid and all gauges are dry"):
                 found = mc.gauge(POSITIONS, ((0, 0, 0), (1, 1, 1)), smoothing_length=H, **{"only": wall < 0})
             self.assertEqual(found.state.tolist(), ["dry"])
+        for only, words in (({"kind": "c"}, "left by kind=c, so"), (wall < 0, "left by only, so")):
+            with self.assertWarnsRegex(mc.InputWarning, words):
+                sphere(attributes={"kind": np.where(wall, "a", "b")}, only=only)
+        with mc.Context() as context, self.assertWarnsRegex(mc.InputWarning, "so there is no fluid"):
+            sphere(only=wall < 0, widen=2, context=context)
+        for kind in (">i4", "i4"):
+            marks = {"ParticleType": (wall > 1).astype(kind)}
+            self.assertEqual(sphere(fluid="auto", attributes=marks), sphere(fluid="ParticleType=0", attributes=marks))
         self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
             "solid": wall, "fluid": ("wall", 1)}), *((r'it must be \("NAME", VALUE\)', {"fluid": fluid}) for fluid in ("wall", 3, ("wall",), {})),
                    ("value of fluid is 'x'", {"fluid": "wall=x"}), call=mc.gauge, positions=POSITIONS,
@@ -389,7 +400,7 @@ class Neighbours(unittest.TestCase):
         with self.assertRaisesRegex(mc.InvalidArgument, "The scalar is 'Speed'"):
             mc.isosurface(POSITIONS, "Speed", 1)
         for word, sentence in (("nearest", "it must be True, \"neighbours\""), ("neighbours=x", "not a number"),
-                               ("neighbours=0.5", says("ETA_ILLEGAL", "0.5"))):
+                               ("neighbours=0.5", says("ETA_ILLEGAL", "0.5")), ("neighbours=0", says("ETA_ILLEGAL", "0"))):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
                 mc.free_surface(POSITIONS, estimate_smoothing_length=word)
 

@@ -265,6 +265,12 @@ class Warned(unittest.TestCase):
 
 
 class Inputs(unittest.TestCase):
+    def test_iso_value_about_the_median(self):
+        particles = pyvista.PolyData(POSITIONS)
+        particles["a"] = DISTANCE
+        words = {"smoothing_length": H, "volume": V}
+        self.assertEqual(len(particles.sph.isosurface("a", **words).points), len(mc.isosurface(POSITIONS, DISTANCE, **words).points))
+
     def test_data_frames(self):
         frame = pandas.DataFrame(POSITIONS, columns=list("xyz"))
         frame["distance"], frame["id"] = DISTANCE, np.arange(COUNT)

@@ -311,6 +311,21 @@ static void test_levels_and_reuse(void** state)
   }
 }
 
+/* Nothing is known of the device's code if the first call of a context has no particle. */
+static void test_no_particle(void** state)
+{
+  (void)state;
+  CORE_CONTEXT context = NULL;
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  const double iso = 0.5;
+  mcor_options options = core_options(&iso);
+  options.widen = WIDEST;
+  const mcor_input input = { 0 };
+  CORE_WIDENING widening;
+  CORE_OK(context, mcor_widen(context, &input, &options, &widening));
+  assert_int_equal(widening.count, 0);
+}
+
 static void test_refused(void** state)
 {
   mcor_context* context = *state;
@@ -350,4 +365,4 @@ static void test_refused(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_factors, test_surface, test_parts,
-  test_levels_and_reuse, test_refused)
+  test_levels_and_reuse, test_no_particle, test_refused)

@@ -335,6 +335,30 @@ static void test_errors(void** state)
   assert_int_equal(find(&request, arrays, 6, &found), MCOR_OK);
   assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
   mcor_free_found(&found);
+  request.wants = MCOR_WANT_SIZES | MCOR_WANT_COLUMN;
+  request.values[MCOR_ROLE_MASS] = 1;
+  assert_int_equal(find(&request, arrays, 6, &found), MCOR_OK);
+  assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
+  mcor_free_found(&found);
+}
+
+/* The sum "Density" uses masses even if volumes are given. */
+static void test_unused_beside_the_sum(void** state)
+{
+  const mcor_named arrays[] = { real("h", h), real("V2", volume), real("M2", mass) };
+  for (int sums = 0; sums < 2; ++sums)
+  {
+    mcor_request request = request_of(MCOR_WANT_SIZES | MCOR_WANT_SCALAR);
+    request.names[MCOR_ROLE_SCALAR] = sums ? "Density" : "h";
+    request.names[MCOR_ROLE_VOLUME] = "V2";
+    request.names[MCOR_ROLE_MASS] = "M2";
+    request.values[MCOR_ROLE_DENSITY] = 8;
+    mcor_found found;
+    assert_int_equal(find(&request, arrays, 3, &found), MCOR_OK);
+    assert_true(core_tells(&found.unused,
+      sums ? "SIZE_BESIDE_VOLUME|given density is" : "SIZE_BESIDE_VOLUME|mass and density are"));
+    mcor_free_found(&found);
+  }
 }
 
 static void test_walls(void** state)
@@ -346,4 +370,4 @@ static void test_walls(void** state)
 }
 
 CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_fluid, test_scalar_and_attributes,
-  test_errors, test_walls)
+  test_errors, test_unused_beside_the_sum, test_walls)

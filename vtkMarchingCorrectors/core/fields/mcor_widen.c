@@ -228,8 +228,11 @@ static mcor_status mcor_run_widen(
     MCOR_THEN(status, mcor_deliver_factors(context, input, run));
     mcor_release_run(context, run);
   }
-  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  MCOR_THEN(status, mcor_finish_statistics(context));
+  if (input->count > 0) /* else no device code was chosen that could count for the statistics */
+  {
+    MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
+    MCOR_THEN(status, mcor_finish_statistics(context));
+  }
   context->run.options = options;
   return status;
 }

@@ -375,6 +375,15 @@ mcor_message mcor_describe_unused(
                                    : mcor_say(MCOR_SAY(DENSITY_WITHOUT_MASS), words);
 }
 
+/* A scalar of this name is summed from masses if there is no such array. */
+#define MCOR_SUMMED "Density"
+
+static bool mcor_is_summed(const mcor_finder* f)
+{
+  const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
+  return name && strcmp(name, MCOR_SUMMED) == 0 && mcor_find_by_name(f, name) < 0;
+}
+
 static void mcor_find_sizes(mcor_finder* f)
 {
   const mcor_request* r = f->request;
@@ -400,15 +409,18 @@ static void mcor_find_sizes(mcor_finder* f)
   {
     found->input.volume.constant = r->particle_volume;
   }
-  const bool is_density = (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
-  if (!(r->wants & (MCOR_WANT_FLOW | MCOR_WANT_LIST)) && !is_density)
+  const bool is_density =
+    (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
+  /* Flow and columns use masses and densities beside volumes; the sum Density uses masses. */
+  const bool uses_all = (r->wants & MCOR_WANT_FLOW) != 0 || is_density;
+  const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
+  if (!(r->wants & MCOR_WANT_LIST))
   {
-    found->unused = mcor_describe_unused(r, given, used, found->views[MCOR_ROLE_VOLUME].name);
+    found->unused =
+      mcor_describe_unused(r, uses_all ? given & 1u << MCOR_ROLE_SMOOTHING_LENGTH : given,
+        used | (is_sum ? 1u << MCOR_ROLE_MASS : 0), found->views[MCOR_ROLE_VOLUME].name);
   }
 }
-
-/* A scalar of this name is summed from masses if there is no such array. */
-#define MCOR_SUMMED "Density"
 
 /* Chooses the array to contour if none is given. All ranks call it. */
 static int mcor_choose_scalar(mcor_finder* f)
@@ -434,7 +446,7 @@ static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
   mcor_found* found = f->found;
   const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
   int index = -1;
-  if (name && sums && strcmp(name, MCOR_SUMMED) == 0 && mcor_find_by_name(f, name) < 0)
+  if (sums && mcor_is_summed(f))
   {
     found->needs_densities = 1;
     return -1;

@@ -173,7 +173,9 @@ WRAP(cl_context, mcor_clCreateContext,
     void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user, cl_int* error))
 {
   device_now = devices[0];
-  return __real_mcor_clCreateContext(properties, count, devices, notify, user, error);
+  return fails_to_make("clCreateContext", error)
+    ? NULL
+    : __real_mcor_clCreateContext(properties, count, devices, notify, user, error);
 }
 
 static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char byte)

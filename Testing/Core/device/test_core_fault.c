@@ -538,6 +538,37 @@ static void test_no_context(void** state)
   }
 }
 
-CORE_MAIN(core_set_up, core_tear_down, test_no_context, test_every_call_fails_once,
-  test_probe_and_derive, test_regions, test_filled, test_adaptive_cubes, test_ranks, test_extend,
-  test_build_fails, test_error_names)
+/* Where a call needs another device, which does not start, a profile does no harm. */
+static void test_profile_without_device(void** state)
+{
+  const char* path = "core_fault_profile.csv";
+  static const double iso = 2;
+  (void)state;
+  CORE_SET set = core_make_block(4, 0, 1, core_slope);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.precision = MCOR_FLOAT64;
+  options.sph_kernel = MCOR_QUARTIC_SPLINE;
+  const char* device = getenv("MCOR_DEVICE");
+  char* named = core_copy(device ? device : "", device ? strlen(device) + 1 : 1);
+  unsetenv("MCOR_DEVICE");
+  setenv("MCOR_PROFILE", path, 1);
+  CORE_CONTEXT context = NULL;
+  CORE_SURFACE surface;
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  core_fail_command(0, CL_DEVICE_NOT_AVAILABLE);
+  const mcor_status status = mcor_extract(context, &input, &options, &surface);
+  core_fail_nothing();
+  /* Without this call, the built-in device has all kernels. */
+  const bool is_replaced = strcmp(core_failed_call(), "clCreateContext") == 0;
+  CORE_CHECK(!is_replaced || (status == MCOR_DEVICE_ERROR && core_told(context, "clCreateContext")),
+    mcor_status_name(status), mcor_last_error(context));
+  unsetenv("MCOR_PROFILE");
+  setenv("MCOR_DEVICE", named, 1);
+  free(named);
+  remove(path);
+}
+
+CORE_MAIN(core_set_up, core_tear_down, test_no_context, test_profile_without_device,
+  test_every_call_fails_once, test_probe_and_derive, test_regions, test_filled, test_adaptive_cubes,
+  test_ranks, test_extend, test_build_fails, test_error_names)

@@ -56,22 +56,6 @@ mcor_status mcor_open_profile(mcor_context* context)
   return MCOR_OK;
 }
 
-void mcor_close_profile(mcor_context* context)
-{
-  struct mcor_profile* profile = context->cl.profile;
-  if (profile)
-  {
-    if (profile->file)
-    {
-      fclose(profile->file);
-    }
-    free(profile->rows.of);
-    free(profile->pending.of);
-    free(profile);
-    context->cl.profile = NULL;
-  }
-}
-
 cl_event* mcor_begin_profiled(struct mcor_profile* profile)
 {
   profile->event = NULL;
@@ -125,6 +109,23 @@ static void mcor_take_events(struct mcor_profile* profile)
   profile->pending.count = 0;
 }
 
+void mcor_close_profile(mcor_context* context)
+{
+  struct mcor_profile* profile = context->cl.profile;
+  if (profile)
+  {
+    mcor_take_events(profile);
+    if (profile->file)
+    {
+      fclose(profile->file);
+    }
+    free(profile->rows.of);
+    free(profile->pending.of);
+    free(profile);
+    context->cl.profile = NULL;
+  }
+}
+
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
   int64_t bytes, double host, double device)
 {
@@ -168,7 +169,10 @@ void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics
   {
     return;
   }
-  clFinish(context->cl.queue);
+  if (context->cl.queue) /* NULL: no device could be started */
+  {
+    clFinish(context->cl.queue);
+  }
   mcor_take_events(profile);
   for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
   {

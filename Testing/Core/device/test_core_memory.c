@@ -107,6 +107,7 @@ static void test_input(void** state)
     {
       move_array(&own, arrays[i], i == 0 ? 3 : 1, input.count, in_rows);
     }
+    other.positions.components = in_rows ? 0 : 3; /* positions always have 3 */
     other.attributes = &attribute;
     other.attribute_count = 1;
     CORE_SURFACE surface = core_extract(context, &other, &options);

@@ -6,6 +6,7 @@
 
 #include "mcor_cl_memory.h"
 #include "mcor_cl_call.h"
+#include "mcor_input.h"
 
 #include <stdint.h>
 
@@ -104,7 +105,9 @@ static bool mcor_is_unseen(const mcor_array* array)
 mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_sight* sight)
 {
   *sight = (mcor_sight){ .input = *input };
-  const int attributes = input->count > 0 && input->attributes ? input->attribute_count : 0;
+  sight->input.positions = mcor_positions_of(input);
+  const bool has_attributes = input->count > 0 && input->attributes && input->attribute_count > 0;
+  const int attributes = has_attributes ? input->attribute_count : 0;
   mcor_array* arrays[MCOR_INPUT_ARRAYS];
   mcor_list_arrays(&sight->input, arrays);
   bool some = false;

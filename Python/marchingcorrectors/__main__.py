@@ -19,7 +19,7 @@ def main(arguments):
     if arguments[:1] in (["-h"], ["--help"]):
         print(__doc__.strip())
         return 0
-    is_convert = len(arguments) >= 3 and arguments[0] == "convert"
+    is_convert = arguments[:1] == ["convert"]
     if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
         print(__doc__.strip(), file=sys.stderr)
         return 2
@@ -43,13 +43,13 @@ def main(arguments):
         return 1
     except KeyboardInterrupt:
         return 130
-    except MemoryError:
-        print("marchingcorrectors: memory ran out", file=sys.stderr)
-        return 1
     except (Error, FileError, OSError) as error:
         from ._command import in_shell
 
         print(f"marchingcorrectors: {in_shell(error)}", file=sys.stderr)
+        return 1
+    except MemoryError:
+        print("marchingcorrectors: memory ran out", file=sys.stderr)
         return 1
     return 0
 

@@ -59,13 +59,22 @@ def chosen(text):
 
 def plane(text):
     axis, _, place = text.partition("=")
+    if not np.isfinite(float(place)):
+        raise ValueError(text)
     return "xyz".index(axis), float(place)
+
+
+def whole_from(least, text):
+    if not re.fullmatch(r"[0-9]+", text) or int(text) < least:
+        raise argparse.ArgumentTypeError(f"it must be a whole number from {least}, not '{text}'")
+    return int(text)
 
 
 # These options have their own readers; for others, the value's name in the program's help tells how to read it.
 READERS = {"--smoothing-length": quantity, "--volume": quantity, "--mass": quantity, "--density": quantity, "--fluid": str, "--only": chosen,
            "--wall-share": quantity, "--component": lambda text: -1 if text == "magnitude" else int(text), "--periodic": period, "--gauge": named_line, "--slice": plane,
-           "--times": _film.to_times, "--attributes": lambda text: text.split(","), "--device": str}
+           "--times": _film.to_times, "--attributes": lambda text: text.split(","), "--device": str,
+           "--threads": partial(whole_from, 1), "--memory-limit": partial(whole_from, 1), "--resolution": partial(whole_from, 2)}
 WORDS = {"--kernel": words_of("sph_kernel"), "--dimension": {"auto": 0, "2": 2, "3": 3}, "--boundary": {
     "weight_sum": "weight_sum", "weight": "weight_sum", "eigenvalue": "eigenvalue"}}
 COMMANDS = {
@@ -163,6 +172,10 @@ def find_words(given, names, particles, command):
     if isinstance(length, str) and length.partition("=")[0] in ("estimate", "neighbours", "neighbors"):
         words["estimate_smoothing_length"] = True if length == "estimate" else words["smoothing_length"]
         del words["smoothing_length"]
+    if given.coefh is not None and given.dp is None:
+        raise InvalidArgument("--coefh needs --dp; add it, or leave out --coefh.")
+    if given.solids in ("weight", "ignore") and "wall_share" in words:
+        raise InvalidArgument("--wall-share is for surfaces that end at walls; add --solids wall, or leave out --wall-share.")
     if given.dp is not None:
         if length is not None:
             raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
@@ -236,7 +249,7 @@ def run_gauge(given, particles):
 def write_table(output, head, rows):
     """Writes a .csv file; NaN becomes an empty cell."""
     if not output.lower().endswith(".csv"):
-        raise InvalidArgument(f"The output is a .csv file, not '{output}'.")
+        raise InvalidArgument(f"The output is a .csv file, not '{os.path.basename(output)}'.")
     with open(output, "w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(
             [head, *([cell if cell == cell else "" for cell in row] for row in rows)])

@@ -149,14 +149,23 @@ class Command(unittest.TestCase):
         for words, sentence in ((["--field", "sum"], "--field is not for the free surface"),
                                 (["--mass", "Msas"], "Did you mean 'Mass'"),
                                 (["--periodic", "auto"], "give no period: .* Give --periodic in numbers"),
-                                (["--dp", "1", "--smoothing-length", "1"], "leave one of them out")):
+                                (["--dp", "1", "--smoothing-length", "1"], "leave one of them out"), (["--coefh", "1"], "--coefh needs --dp"),
+                                (["--wall-share", "0.5", "--solids", "weight"], "--wall-share is for surfaces that end at walls"),
+                                ([*FLUID, "--memory-limit", "1"], "Choose a larger --cube-size")):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
         for words, sentence in ((["--screenshot", "a.png"], "--screenshot is for the program marching-correctors, not for surface; leave it out"),
                                 (["--slice", "z=0"], "--slice is for slice, not for surface"),
+                                (["--threads", "0"], "a whole number from 1, not '0'"), (["--memory-limit", "x"], "a whole number from 1, not 'x'"),
                                 (["--smoth"], "there is no option --smoth. Did you mean '--smooth'?")):
             self.run_it("surface", "a.ply", *words, status=2)
             self.assertIn(sentence, self.said)
+        self.run_it("gauge", "a.vtp", "--gauge", "a=0,0,0:0,0,1", *FLUID, status=1)
+        self.assertIn("a .csv file, not 'a.vtp'", self.said)
+        self.run_it("slice", "a.npz", "--slice", "z=nan", status=2)
+        self.assertIn("invalid plane value: 'z=nan'", self.said)
+        done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", "--help"], stdout=subprocess.PIPE, text=True)
+        self.assertEqual((done.returncode, "--time-step" in done.stdout), (0, True))
         self.run_it("surface", "a.ply", "--preview", program=["--free-surface"])
         self.assertIn("--fluid ParticleType=VALUE", self.said)
 

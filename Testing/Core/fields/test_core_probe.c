@@ -235,7 +235,7 @@ static int probe_near(
   CORE_OK(context, mcor_probe(context, &near, &options, &at, count, &one));
   const int staged = context->grid.count;
   CORE_OK(context, mcor_probe(context, &all, &options, &at, count, &other));
-  assert_true(staged < set->count / 2);
+  assert_true(staged <= set->count / 2); /* The other half is 40 away. */
   assert_int_equal(context->grid.count, set->count);
   assert_memory_equal(one.weight_sum, other.weight_sum, (size_t)count * sizeof(double));
   assert_memory_equal(one.values[0], other.values[0], (size_t)count * sizeof(double));

@@ -5,6 +5,7 @@
 This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
 import ctypes
+import inspect
 import re
 import sys
 from contextlib import contextmanager, suppress
@@ -163,7 +164,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
         for name, value in properties.items():
-            if not hasattr(type(self), name):
+            if not inspect.isdatadescriptor(getattr(type(self), name, None)):  # as VTK's own properties are
                 raise AttributeError(f"vtkMarchingCorrectors has no property '{name}'")
             setattr(self, name, value)
 

@@ -70,6 +70,8 @@ WORDS = {
     "periodic": f"{BOUNDS}: the particles repeat along each axis with x0 < x1; or three lengths, 0 along axes that are not "
                 "periodic; or \"auto\", where a file or a data set tells it.",
     "capping": of_panel("Capping"),
+    "smooth": "True: for pictures: smooth water, and fewer and better triangles. Stands for compact (not with filled), and for "
+              "widen=2 unless another factor is given.",
     "dimension": of_panel("Dimension").replace("Auto:", "0:"),
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
     "iso_value": "True: the iso value of each point.",

@@ -77,6 +77,7 @@ class Signatures(unittest.TestCase):
         self.assertEqual(inspect.signature(mc.isosurface).parameters["sph_kernel"].default, "cubic")
         self.assertEqual(inspect.signature(mc.isosurface).parameters["precision"].default, "single")
         self.assertNotIn("capping", inspect.signature(mc.probe).parameters)
+        self.assertNotRegex(inspect.getdoc(mc.probe), "Compact|Widening")  # the panel's words
 
     def test_shown_defaults_are_the_defaults(self):
         """Passing the signature's defaults changes nothing."""

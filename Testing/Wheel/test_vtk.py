@@ -64,6 +64,8 @@ class Test(unittest.TestCase):
             surface.used_cube_size = 1.0
         with self.assertRaisesRegex(AttributeError, "'cube'"):
             vtkMarchingCorrectors(cube=1.0)
+        with self.assertRaisesRegex(AttributeError, "'Update'"):  # a method, which must not be replaced
+            vtkMarchingCorrectors(Update=1)
 
     def test_properties_are_those_of_cxx(self):
         folder = Path(os.environ["MCOR_TEST_SOURCES"]) / "vtkMarchingCorrectors"

@@ -87,7 +87,7 @@ class Test(unittest.TestCase):
         constants = {name: int(value) for name, value in re.findall(r"^    ([A-Z]\w+) = (-?\d+)\b", public, re.M)}
         self.assertGreater(len(constants), 25)
         self.assertEqual({name: getattr(vtkMarchingCorrectors, name, None) for name in constants}, constants)
-        defaults = re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", "".join(headers), re.M)
+        defaults = re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", "".join([*headers, (folder / "vtkSPHParticlesChoice.h").read_text()]), re.M)
         defaults += re.findall(r"^  vtkSPH(?:Value|Clamp|Flag)Macro\((\w+),(?: \w+,)? ([-\w.]+)[,)]", text, re.M)
         self.assertGreater(len(defaults), 50)
         for name, value in defaults:

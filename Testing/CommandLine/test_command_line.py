@@ -580,6 +580,9 @@ class Options(CommandLineTest):
         self.assertEqual(found["statistics"]["triangles"], sum(
             self.succeed(*ISO[:2], "--iso", value)["statistics"]["triangles"] for value in ("0.3", "0.2")))
         self.assertIn("volume: 1 / 1000\n", self.extract(*ISO, "--mass=1", "--density=1000").stdout)
+        source = self.directory / "signs.vtp"
+        files.write_vtp(source, self.points, {**self.arrays, "V{x}|[m3]": [1e-3] * len(self.points)})
+        self.assertIn("volume: array V{x}|[m3]\n", self.extract(*ISO, "--volume", "V{x}|[m3]", source=source).stdout)
         for arguments, words in ((["--box", "50,51,0,1,0,1"], "in the box"), (["--box=-1,0.1,-1,1,-1,1", "--vertex-threshold", "9"], r"\d+ triangles in the box")):
             self.extract_good(*ISO, *arguments, says="surface is empty: .*" + words)
         self.output.unlink()
@@ -702,6 +705,7 @@ class Picture(CommandLineTest):
         steps = list(dict.fromkeys(row[1168] for row in rows if max(row[1168]) - min(row[1168]) > 40))
         self.assertEqual(len(steps), 4)
         self.assertEqual(sorted(steps, key=lambda color: color[1]), steps)
+        self.assertGreaterEqual(len(set(steps) & {pixel for row in rows for pixel in row[:1100]}), 2)  # The bands have these colours.
         files.write_vtp(self.input, self.points, {**self.arrays, "Idp": list(range(len(self.points)))})
         self.assertEqual(self.picture("s.vtp", "--free-surface"), self.picture("s.vtp", "--free-surface", "--up", "z"))
 

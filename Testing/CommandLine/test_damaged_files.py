@@ -99,6 +99,9 @@ class DamagedFiles(CommandLineTest):
         data = (b"# vtk DataFile Version 3.0\ntitle 1 2 words\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTIME 1 1 double\n0.5\n"
                 b"POINTS 2 float\n0 0 0 1 0 0\nVERTICES 2 4\n1 0 1 1\n")
         self.run_with("small.vtk", data, lambda *_, source: self.run_good("--list-arrays", source))
+        for name in (b"Field", b"Lines", b"Normals", b"points"):  # The arrays of a field may have any names.
+            self.run_with("small.vtk", data.replace(b"TIME 1 1 double", name + b" 1 1 double"),
+                          lambda *_, source: self.run_good("--list-arrays", source))
         for good, bad, why in ((b"1 double", b"1 dble", "its array 'time' has .* '1 1 dble'"), (b"1 double", b"1{ double", "'1 1{ double'"),
                                (b"1 0 1 1", b"1 0.5 1 1", "its vertices are no whole numbers"), (b"FieldData 1", b"FieldData 1x", "its FIELD"),
                                (b"VERTICES 2 4", b"VERTICES 20 40", "vertices is 40, more"), (b"POINTS 2", b"POINTS 20", "points is 20, more")):

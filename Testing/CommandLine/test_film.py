@@ -218,6 +218,8 @@ class Film(CommandLineTest):
         self.write_steps(2)
         self.run_good("steps.pvd", self.film, *FREE, "--quiet", "--screenshot", "frame_%d.png", "--color-by", "Velocity", "--up",
                       "z", display=True)
+        self.run_good("steps.pvd", self.directory / "other.pvd", *FREE, "--quiet", "--screenshot", "normals_%d.png", "--color-by", "Normals",
+                      "--numbers", "n.csv", "--gauge", "g=0,0,-1:0,0,1", display=True)  # A gauge has no such array.
         pictures = [(self.directory / f"frame_{i}.png").read_bytes() for i in range(2)]
         self.assertNotEqual(*pictures)
         for picture in pictures:

@@ -256,7 +256,10 @@ private:
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.45, 0.72, 0.95);
     actor->GetProperty()->SetLighting(!isFlat);
-    actor->GetProperty()->SetAmbient(isColored ? 0.3 : 0.0); // colours in shade still differ
+    if (isColored && !isFlat) // colours in shade still differ
+    {
+      actor->GetProperty()->SetAmbient(0.3);
+    }
     actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.4);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);
@@ -319,9 +322,8 @@ private:
     for (auto at = begins.begin(); at != begins.end(); ++at)
     {
       const auto next = std::next(at);
-      const std::string label = next == begins.end() ? "above " + text(*at)
-        : at == begins.begin()                       ? "below " + text(*next)
-                                                     : text(*at) + " to " + text(*next);
+      const std::string label =
+        next == begins.end() ? "above " + text(*at) : text(*at) + " to " + text(*next);
       double color[3];
       colors.GetTable()->GetColor(*at, color);
       steps->SetTableValue(steps->SetAnnotation(*at, label), color[0], color[1], color[2]);

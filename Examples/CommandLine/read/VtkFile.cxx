@@ -219,6 +219,7 @@ void CheckLegacy(const std::string& file, View text)
   std::string section = "point_data"; // the kind of elements, points or cells
   double elements = 0.0;              // how many elements there are
   const bool isText = text.substr(0, 600).find("\nASCII") != View::npos;
+  double fields = 0.0; // how many arrays of a FIELD are still to come, which may have any names
   const std::size_t title = std::min(text.find('\n'), text.size() - 1) + 1; // a title of any words
   for (std::size_t begin = text.find('\n', title), end = 0; begin < text.size(); begin = end + 1)
   {
@@ -230,6 +231,14 @@ void CheckLegacy(const std::string& file, View text)
     {
       const std::vector<double> number = Numbers(words[i]);
       numbers.insert(numbers.end(), number.begin(), number.end());
+    }
+    if (fields > 0.0 && words.size() == 4 && AreDigits(words[1]) && AreDigits(words[2]) &&
+      types.count(words[3]))
+    {
+      --fields;
+      CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
+      CheckSize(file, most, first, numbers[1]);
+      continue;
     }
     const double room = 0.5 * static_cast<double>(text.size() - end); // two bytes each, or more
     if (numbers.size() == 2 && cells.count(first))
@@ -246,10 +255,13 @@ void CheckLegacy(const std::string& file, View text)
     {
       CheckSize(file, room, first, numbers[0], 3.0);
     }
-    else if (first == "field" &&
-      (words.size() != 3 || !AreDigits(words[2])))
+    else if (first == "field")
     {
-      FailToRead(file, "the line of its FIELD has no number of arrays; it may be damaged");
+      if (words.size() != 3 || !AreDigits(words[2]))
+      {
+        FailToRead(file, "the line of its FIELD has no number of arrays; it may be damaged");
+      }
+      fields = numbers.back();
     }
     const bool isSection = first == "point_data" || first == "cell_data";
     const bool hasAttribute = attributes.count(first) > 0;

@@ -296,10 +296,10 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
       (hasLines ? "parts of them in caps" : "of them in caps");
   }
   trimming = trimming.empty() ? "" : " (" + trimming + ")";
-  const std::string volume = Fill(run,
-    "[array {VolumeArray}|{ParticleVolume}|{Mass} / {Density}|computed from {Mass}|computed]");
+  const std::string volume =
+    "[array {VolumeArray}|{ParticleVolume}|{Mass} / {Density}|computed from {Mass}|computed]";
   const bool leavesSpray =
-    Number(run, "LoneParticles") > 0.0 && volume.compare(0, 8, "computed") != 0;
+    Number(run, "LoneParticles") > 0.0 && Fill(run, volume).compare(0, 8, "computed") != 0;
   const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
   return Fill(run,
     std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "

@@ -337,7 +337,10 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   }
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
-  CheckColorName(filter, job, particles);
+  if (filter != job.Gauge && filter != job.Flux) // pictures show no tables
+  {
+    CheckColorName(filter, job, particles);
+  }
   const bool isWidened = job.Surface->GetWidening() > 1.0 || job.Surface->GetSmooth();
   return isWidened && filter != job.Surface ? WidenFor(filter, job, particles) : particles;
 }

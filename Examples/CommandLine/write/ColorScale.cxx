@@ -14,6 +14,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 namespace
@@ -27,6 +28,22 @@ const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.
   { 0.510, 0.790, 0.690 }, { 0.670, 0.860, 0.630 }, { 0.830, 0.920, 0.600 },
   { 0.980, 0.970, 0.660 } };
 
+/// Whether an array has no other values than these iso values. A small surface is to have a colour
+/// of its own.
+bool AreAmong(vtkDataArray* array, vtkDataArray* isoValues)
+{
+  std::set<float> known;
+  for (vtkIdType i = 0; isoValues && i < isoValues->GetNumberOfValues(); ++i)
+  {
+    known.insert(static_cast<float>(isoValues->GetComponent(i, 0)));
+  }
+  bool areAmong = array->GetNumberOfComponents() == 1 && !known.empty();
+  for (vtkIdType i = 0; areAmong && i < array->GetNumberOfTuples(); ++i)
+  {
+    areAmong = known.count(static_cast<float>(array->GetComponent(i, 0))) > 0;
+  }
+  return areAmong;
+}
 }
 
 ColorScale::ColorScale(const PictureOptions& options)
@@ -100,7 +117,7 @@ void ColorScale::Include(vtkDataSet* data)
   {
     return;
   }
-  if (array == this->ArrayOf(data))
+  if (array == this->ArrayOf(data) && !AreAmong(array, begins))
   {
     vtkSPHColorRange(data).Find(array, range);
   }

@@ -257,7 +257,7 @@ class Layouts(Case):
         write_gadget(self.at("snap.hdf5"))
         for missing, name, packages in (("sarracen", "dump", "sarracen scikit-learn"), ("h5py", "snap.hdf5", "h5py")):
             with unittest.mock.patch.dict(sys.modules, {missing: None}):
-                self.assert_refused(f"pip install {packages}.", self.at(name))
+                self.assert_refused(f"pip install {packages}", self.at(name))
 
     def test_phantom_native(self):
         if not all(importlib.util.find_spec(name) for name in ("sarracen", "sklearn")):

@@ -198,10 +198,11 @@ void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* partic
     const char* each = particles->GetPointData()->GetArrayName(i);
     names.emplace_back(each ? each : "");
   }
-  static const std::vector<std::string> ofPoints = { "WeightSum", "Gradients", "vtkValidPointMask" };
+  static const std::vector<std::string> ofPoints = { "WeightSum", "Gradients",
+    "vtkValidPointMask" };
   static const std::vector<std::string> ofSurface = { "Normals", "IsoValue", "Gradients",
     "WeightSum", "BoundaryEigenvalue", "MeanCurvature", "GaussCurvature", "CorrectionLength",
-    "Residual", "BoundaryFlag", "Widening", "BandValue", "ComponentId" };
+    "Residual", "BoundaryFlag", "Widening", "BandValue", "ComponentId", "ComponentVolume" };
   const bool isProjection = filter == job.Projection, isOfFile = !job.ProbeFile.empty();
   const std::vector<std::string>& made = filter == job.Surface ? ofSurface : ofPoints;
   const bool isMade = !job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0;
@@ -387,7 +388,8 @@ Run Extract(const Sharing& sharing, const std::string& before)
   if (!sharing.Options.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
     run.Statistics->HasArray("ScalarRange") && values && values->GetNumberOfValues() > 0)
   {
-    filter->SetValue(0, values->GetComponent(0, 0)); // it was chosen here, and stays for the next steps
+    filter->SetValue(
+      0, values->GetComponent(0, 0)); // it was chosen here, and stays for the next steps
     if (!sharing.Options.Quiet && sharing.IsFirst())
     {
       std::cout << Fill(run.Statistics,

@@ -140,6 +140,7 @@ class DamagedFiles(CommandLineTest):
         result = self.extract("--free-surface", "--quiet", "--device", "mad", env=environment)
         self.refuse(result, 1, r"the run failed: the program crashed there \(Aborted\); the OpenCL driver may be at fault, "
                                rf"files that PoCL keeps may be damaged \(remove the folder {kept}\), or memory ran out$")
+        environment.pop("MCOR_DEVICE", None)
         self.extract_good("--free-surface", env=environment)  # A run on the built-in device loads no driver.
 
     def test_damaged_kernels(self):

@@ -362,8 +362,8 @@ static void test_build(void** state)
     told = 0;
     CORE_SURFACE surface = core_extract(context, &input, &options);
     const bool tells = run != 1 && strcmp(context->cl.platform_name, "built in") != 0;
-    CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == tells,
-      run, surface.statistics.build_seconds, told);
+    CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == tells, run,
+      surface.statistics.build_seconds, told);
   }
 }
 
@@ -449,6 +449,17 @@ static void test_profile(void** state)
     CORE_CHECK(found.corrections > 0 && found.correction_seconds > 0, "%lld corrections, %g s",
       (long long)found.corrections, found.correction_seconds);
   }
+  CORE_CONTEXT again = NULL;
+  setenv("MCOR_PROFILE", path, 1);
+  CORE_OK(again, mcor_create_context(NULL, &again)); /* appends to the table */
+  remove(path);
+  FILE* other = fopen(path, "w");
+  assert_non_null(other);
+  fputs("x,y,z\n1,2,3\n", other);
+  fclose(other);
+  CORE_CONTEXT refused = NULL;
+  assert_int_equal(mcor_create_context(NULL, &refused), MCOR_INVALID_ARGUMENT);
+  assert_true(core_told(refused, "PROFILE_FILE|core_context_profile.csv|it holds something else"));
   remove(path);
   setenv("MCOR_PROFILE", "/nonexistent/profile.csv", 1);
   CORE_CONTEXT none = NULL;

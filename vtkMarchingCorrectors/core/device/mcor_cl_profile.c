@@ -37,6 +37,9 @@ struct mcor_profile
   double begin;
 };
 
+static const char mcor_profile_head[] =
+  "call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n";
+
 mcor_status mcor_open_profile(mcor_context* context)
 {
   const char* path = getenv("MCOR_PROFILE");
@@ -46,12 +49,18 @@ mcor_status mcor_open_profile(mcor_context* context)
   }
   struct mcor_profile* profile = context->cl.profile = calloc(1, sizeof *profile);
   MCOR_TRY(mcor_allocated(context, profile != NULL));
-  profile->file = fopen(path, "a");
+  profile->file = fopen(path, "a+");
   MCOR_FAIL_IF(
     !profile->file, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), path, strerror(errno));
-  if (fseek(profile->file, 0, SEEK_END) == 0 && ftell(profile->file) == 0)
+  char begin[sizeof mcor_profile_head] = "";
+  rewind(profile->file);
+  const bool is_new = !fgets(begin, sizeof begin, profile->file);
+  MCOR_FAIL_IF(!is_new && strcmp(begin, mcor_profile_head) != 0, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(PROFILE_FILE), path, "it holds something else");
+  fseek(profile->file, 0, SEEK_END);
+  if (is_new)
   {
-    fputs("call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n", profile->file);
+    fputs(mcor_profile_head, profile->file);
   }
   return MCOR_OK;
 }

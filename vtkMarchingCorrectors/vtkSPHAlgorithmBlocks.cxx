@@ -247,6 +247,10 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
       {
         mine.push_back(e % 2 ? -x[e / 2] : x[e / 2]);
       }
+      if (static_cast<std::int64_t>(mine.size()) > 8 * (far + 1))
+      {
+        keepLowest(mine); // so that memory does not grow with the particles
+      }
     }
     keepLowest(mine);
     for (const std::vector<double>& theirs : run->Gather(mine))
@@ -306,17 +310,22 @@ double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =
     this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
-  if (!particles || !this->FindFluidBounds(particles, this->NextBounds, this->NextDensest))
+  if (!particles || !this->FindFluidBounds(particles, this->NextBounds))
   {
     std::fill_n(this->NextBounds, 6, 0.0);
-    std::fill_n(this->NextDensest, 9, 0.0);
   }
   return this->NextBounds;
 }
 
 double* vtkSPHAlgorithm::GetNextDensest()
 {
-  this->GetNextBounds();
+  const vtkSmartPointer<vtkPointSet> particles =
+    this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
+  double bounds[6];
+  if (!particles || !this->FindFluidBounds(particles, bounds, this->NextDensest))
+  {
+    std::fill_n(this->NextDensest, 9, 0.0);
+  }
   return this->NextDensest;
 }
 

@@ -19,11 +19,26 @@ typedef struct mcor_seen
   char* packed; /* values without what lies between them; NULL: they have nothing between them */
 } mcor_seen;
 
+static size_t mcor_size_of(mcor_type type)
+{
+  return type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
+}
+
+static size_t mcor_components_of(const mcor_array* array)
+{
+  return array->components > 1 ? (size_t)array->components : 1;
+}
+
 /* Returns the bytes of one particle's values. */
 static size_t mcor_width_of(const mcor_array* array)
 {
-  const size_t one = array->type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
-  return one * (size_t)(array->components > 1 ? array->components : 1);
+  return mcor_size_of(array->type) * mcor_components_of(array);
+}
+
+/* Returns the bytes from one particle's values to the next one's. */
+static size_t mcor_stride_of(const mcor_array* array)
+{
+  return array->stride ? array->stride : mcor_width_of(array);
 }
 
 /* Makes a queue in a buffer's own context, and finds the bytes that the array takes there. */
@@ -31,7 +46,7 @@ static mcor_status mcor_reach_memory(mcor_context* context, const mcor_array* ar
   cl_command_queue* queue, size_t* bytes)
 {
   const cl_mem memory = array->memory;
-  const size_t width = mcor_width_of(array), stride = array->stride ? array->stride : width;
+  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
   const size_t rest = (size_t)(count - 1);
   const char* name = array->name ? array->name : "array";
   cl_context own = NULL;
@@ -53,20 +68,19 @@ static mcor_status mcor_reach_memory(mcor_context* context, const mcor_array* ar
   return MCOR_OK;
 }
 
-/* Copies rows of `width` bytes; the strides are in bytes, too. */
-static void mcor_copy_rows(
-  char* to, size_t to_stride, const char* from, size_t from_stride, size_t width, int64_t count)
+/* Copies rows of `width` bytes that begin every `stride` bytes. */
+static void mcor_pack_rows(char* to, const char* from, size_t stride, size_t width, int64_t count)
 {
   for (int64_t i = 0; i < count; ++i)
   {
-    memcpy(to + (size_t)i * to_stride, from + (size_t)i * from_stride, width);
+    memcpy(to + (size_t)i * width, from + (size_t)i * stride, width);
   }
 }
 
 static mcor_status mcor_see(
   mcor_context* context, mcor_array* array, int64_t count, mcor_seen* seen)
 {
-  const size_t width = mcor_width_of(array);
+  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
   size_t bytes;
   MCOR_TRY(mcor_reach_memory(context, array, count, &seen->queue, &bytes));
   cl_int error;
@@ -75,13 +89,11 @@ static mcor_status mcor_see(
     seen->queue, seen->memory, CL_TRUE, CL_MAP_READ, array->offset, bytes, 0, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
   array->data = seen->mapped;
-  const size_t one = array->type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
-  if ((array->stride != 0 && array->stride != width) || (uintptr_t)seen->mapped % one != 0)
+  if (stride != width || (uintptr_t)seen->mapped % mcor_size_of(array->type) != 0)
   {
     seen->packed = malloc((size_t)count * width);
     MCOR_TRY(mcor_allocated(context, seen->packed != NULL));
-    mcor_copy_rows(
-      seen->packed, width, seen->mapped, array->stride ? array->stride : width, width, count);
+    mcor_pack_rows(seen->packed, seen->mapped, stride, width, count);
     array->data = seen->packed;
   }
   return MCOR_OK;
@@ -173,7 +185,7 @@ static const void* mcor_convert(const mcor_array* from, mcor_type type, int64_t 
   {
     return from->data;
   }
-  *made = malloc((size_t)values * (type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float)));
+  *made = malloc((size_t)values * mcor_size_of(type));
   for (int64_t i = 0; *made && i < values; ++i)
   {
     if (type == MCOR_FLOAT64)
@@ -197,9 +209,9 @@ mcor_status mcor_store(
   }
   MCOR_FAIL_IF(!from || !to || count < 0 || (count > 0 && (!from->data || !to->memory)), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER), "from->data and to->memory");
-  const int64_t components = from->components > 1 ? from->components : 1;
-  MCOR_FAIL_IF(components != (to->components > 1 ? to->components : 1), context,
-    MCOR_INVALID_ARGUMENT, MCOR_SAY(MEMORY_COMPONENTS), (int)components, to->components);
+  const size_t components = mcor_components_of(from);
+  MCOR_FAIL_IF(components != mcor_components_of(to), context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(MEMORY_COMPONENTS), (int)components, to->components);
   if (count == 0)
   {
     return MCOR_OK;
@@ -208,8 +220,8 @@ mcor_status mcor_store(
   size_t bytes;
   MCOR_TRY(mcor_reach_memory(context, to, count, &queue, &bytes));
   void* made;
-  const void* values = mcor_convert(from, to->type, count * components, &made);
-  const size_t width = mcor_width_of(to), stride = to->stride ? to->stride : width;
+  const void* values = mcor_convert(from, to->type, count * (int64_t)components, &made);
+  const size_t width = mcor_width_of(to), stride = mcor_stride_of(to);
   const size_t at[3] = { to->offset, 0, 0 }, none[3] = { 0 },
                region[3] = { width, (size_t)count, 1 };
   mcor_status status = mcor_allocated(context, values != NULL);

@@ -41,7 +41,7 @@ from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS
 from marchingcorrectors._find import tells_of_walls
-from marchingcorrectors._vtk_blocks import describe_mesh, join_blocks, list_all, sets_of, take_vertices, walk
+from marchingcorrectors._vtk_blocks import copy_of, describe_mesh, join_blocks, leaves_of, list_all, sets_of, take_vertices
 from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of,
                                                varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
@@ -75,9 +75,17 @@ def read_properties():
 
 
 PROPERTIES = read_properties()
+SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) * 6}
+# The words of properties, in the order of their numbers. They are methods, SetSeedModeToPairs(), and constants.
+WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
+         "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
 # These are findings of a run, which the panel shows.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
+
+
+# What a run's data on the device depend on: marks of the particles and of the scalar, options; and its factors of smoothing lengths.
+NO_RUN = None, None, None, None
 
 
 def snake(name):
@@ -90,18 +98,14 @@ def with_properties(kind):
     for name, (_, convert, is_flag, limits) in PROPERTIES.items():
         def set_it(self, value, name=name, convert=convert, limits=limits):
             value = convert(value)
-            if limits:
-                value = min(max(value, min(limits)), max(limits))
-            if getattr(self, name) != value:
-                setattr(self, name, value)
-                self.Modified()
+            self._put(name, min(max(value, min(limits)), max(limits)) if limits else value)
 
         setattr(kind, "Set" + name, set_it)
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
         if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
-    for name in (*NOTHING, "Box", "PeriodicBounds", "Within", "ErrorMessage", "MessageCount", "RunStatistics"):
+    for name in (*NOTHING, *SIDES, "ErrorMessage", "MessageCount", "RunStatistics"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array", "Warning"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
@@ -109,13 +113,12 @@ def with_properties(kind):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
     for number, name in enumerate(KERNELS):
         setattr(kind, name, number)
-    words = {"Kernel": map(camel, KERNELS), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
-             "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"),
-             "BoundaryDetection": ("WeightSum", "Eigenvalue")}
-    words = [(name, word, value) for name in words for value, word in enumerate(words[name])]
+    words = [(name, word, value) for name in WORDS for value, word in enumerate(WORDS[name])]
     for name, word, value in [*words, ("ScalarComponent", "Magnitude", -1)]:
         setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
-    for name in ("Box", "PeriodicBounds", "Within"):
+        if name != "Kernel":
+            setattr(kind, ("TOPOLOGY_" if name == "Topology" else "") + snake(word).upper(), value)
+    for name in SIDES:
         setattr(kind, "Set" + name, lambda self, *sides, name=name: self._set_sides(name, sides))
     for values, called_here in (("ContourValues", "NumberOfContours"), ("FreeSurfaceValues", "NumberOfFreeSurfaceValues")):
         setattr(kind, "Get" + called_here, lambda self, values=values: getattr(self, values).GetNumberOfContours())
@@ -123,7 +126,7 @@ def with_properties(kind):
     for method in ("SetValue", "GenerateValues"):
         setattr(kind, method, lambda self, *a, method=method: self._change("ContourValues", method, *a))
     kind.SetInputData, kind.GetOutput = kind.SetInputDataObject, lambda self, port=0: self.GetOutputDataObject(port)
-    for name in (*PROPERTIES, *NOTHING, "FreeSurfaceValue", "Box", "PeriodicBounds", "Within"):
+    for name in (*PROPERTIES, *NOTHING, *SIDES, "FreeSurfaceValue"):
         setter = getattr(kind, "Set" + name, None)
         setattr(kind, snake(name), property(getattr(kind, "Get" + name), setter))
     return kind
@@ -133,23 +136,14 @@ def with_properties(kind):
 class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     """An isosurface directly from SPH particles; see vtkMarchingCorrectors.h of the sources."""
 
-    COMPLETE, PAIRS = range(2)
-    UNIFORM, ADAPTIVE = range(2)
-    TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)
-    WEIGHT_SUM, EIGENVALUE = range(2)
     FREE_SURFACE_AUTO = -1
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
-    TOGETHER, APART = range(2)
     ESTIMATE_SPACING, ESTIMATE_NEIGHBORS = range(2)
     DIMENSION_AUTO, DIMENSION_2, DIMENSION_3 = 0, 2, 3
-    MAGNITUDE = -1
-    Box, PeriodicBounds, Within = (0.0, 1.0) * 3, (0.0,) * 6, (0.0,) * 6
 
     def __init__(self, **properties):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
-        vars(self).update(NOTHING)
-        for name, (default, *_) in PROPERTIES.items():
-            setattr(self, name, default)
+        vars(self).update({**NOTHING, **SIDES, **{name: default for name, (default, *_) in PROPERTIES.items()}})
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
@@ -158,8 +152,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._in_run = self._release = False
-        self._signatures, self._versions = (None, None), [0, 0]
-        self._factors = None, None  # These are factors of smoothing lengths, and what they depend on.
+        self._versions, self._last = [0, 0], NO_RUN
         self._ahead, self._look_time = None, vtkTimeStamp()
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
@@ -190,6 +183,11 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     # -- properties that are more than a value --
 
+    def _put(self, name, value):
+        if getattr(self, name) != value:
+            setattr(self, name, value)
+            self.Modified()
+
     def _change(self, name, method, *arguments):
         values = getattr(self, name)
         before = values.GetMTime()
@@ -218,9 +216,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         sides = tuple(float(side) for side in (sides[0] if len(sides) == 1 else sides))
         if len(sides) != 6:
             raise TypeError(f"{name} is {BOUNDS}")
-        if sides != getattr(self, name):
-            setattr(self, name, sides)
-            self.Modified()
+        self._put(name, sides)
 
     def SetPanelBoxPosition(self, *corner):
         b = self.Box
@@ -243,22 +239,17 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     def GetKernelName(self):
         return lib.mcor_sph_kernel_name(self.Kernel).decode()
 
-    def _set_list(self, name, *entries):
-        """Adds entries to the list; without entries, empties it."""
-        setattr(self, name, [*getattr(self, name), *entries] if entries else [])
-        self.Modified()
-
     def AddExcludedArray(self, name):
-        self._set_list("ExcludedArrays", name)
+        self._put("ExcludedArrays", [*self.ExcludedArrays, name])
 
     def ClearExcludedArrays(self):
-        self._set_list("ExcludedArrays")
+        self._put("ExcludedArrays", [])
 
     def AddOnly(self, name, low, high):
-        self._set_list("Only", (name, low, high))
+        self._put("Only", [*self.Only, (name, low, high)])
 
     def ClearOnly(self):
-        self._set_list("Only")
+        self._put("Only", [])
 
     def GetNumberOfExcludedArrays(self):
         return len(self.ExcludedArrays)
@@ -373,31 +364,20 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _process_blocks(self, given, output):
         """Extracts the surface of each block. A block that fails leaves its place empty, and the others go on."""
-        data = given.NewInstance()  # An observer of the progress may remove blocks from the input, or change them.
-        getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # This gives the same blocks before VTK 9.3, too.
+        data = copy_of(given)  # An observer of the progress may remove blocks from the input, or change them.
         output.CopyStructure(data)
-        names, blocks, iterator = [], [], data.NewTreeIterator()
-        for _, name, leaf, index in walk(data):
-            names += ["Block " + (f"'{name}', " if name else "") + f"index {index}"] if leaf else []
-        iterator.InitTraversal()
-        while not iterator.IsDoneWithTraversal():
-            block = iterator.GetCurrentDataObject()
-            blocks.append(block.NewInstance() if blocks else block)  # Kept data belong to the first block.
-            if len(blocks) > 1:
-                blocks[-1].ShallowCopy(block)
-            iterator.GoToNextItem()
-        iterator.InitTraversal()
+        names = ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, index, _ in leaves_of(data)]
+        blocks = [copy_of(block) if i else block for i, (block, *_) in enumerate(leaves_of(data))]  # Kept data belong to the first one.
         walls = [name for name in names if tells_of_walls(name)]
         if walls and len(walls) < len(names):
             self._warn_once("walls", say("WALLS_IN_BLOCK", walls[0], len(names)))
-        for i, (name, block) in enumerate(zip(names, blocks)):
+        for i, ((*_, at), name, block) in enumerate(zip(leaves_of(data), names, blocks)):
             self.SetProgressShiftScale(i / len(names), 1 / len(names))
             self.BlockName = name + ": "
             made = vtkPolyData()
             made.GetFieldData().PassData(block.GetFieldData())
             self._process(block, made)
-            output.SetDataSetFrom(iterator, made)
-            iterator.GoToNextItem()
+            output.SetDataSetFrom(at, made)
         self.SetProgressShiftScale(0.0, 1.0)
         if self._is_aborted():
             output.CopyStructure(data)  # A surface with only some of the blocks is not returned.
@@ -520,22 +500,21 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._in_run, self._release = True, not choice.KeepDeviceData
         try:
             if self._context is None or self._context_device != choice.Device:
-                self._signatures = (None, None)
+                self._last = NO_RUN
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
+            signatures = *particles.signatures(), factor_options(arguments.options)
             if choice.KeepDeviceData:  # The kept scalar is in the order of the particles, so new particles need a new scalar.
-                before, self._signatures = self._signatures, particles.signatures()
-                self._versions[0] += before[0] != self._signatures[0]
-                self._versions[1] += before != self._signatures
+                self._versions[0] += self._last[0] != signatures[0]
+                self._versions[1] += self._last[:2] != signatures[:2]
                 arguments.input.particles_version, arguments.input.scalar_version = self._versions
-            factors = factor_options(arguments.options), particles.signatures()[0]
-            if choice.KeepDeviceData and self._factors[0] == factors:
-                arguments.widening = self._factors[1]
+                if (self._last[0], self._last[2]) == (signatures[0], signatures[2]):
+                    arguments.widening = self._last[3]
             arguments.context, arguments.progress = self._context, self._report
             with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
-                self._factors = factors, keep_factors(arguments.widening)
+                self._last = (*signatures, keep_factors(arguments.widening)) if choice.KeepDeviceData else NO_RUN
                 yield surface
         except BaseException as failure:
-            self._signatures, self._factors = (None, None), (None, None)
+            self._last = NO_RUN
             if isinstance(failure, DeviceError):
                 self._context = None
             raise

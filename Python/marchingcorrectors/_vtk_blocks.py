@@ -16,19 +16,33 @@ from .io._cells import VERTICES, find_vertices
 
 
 def walk(tree, empty=False):
-    """Yields (data, name, whether it is a leaf, flat index) of all nodes. Partitions have the name of their block."""
-    iterator, whole, last = tree.NewTreeIterator(), "", 0
-    iterator.VisitOnlyLeavesOff()
-    iterator.SetSkipEmptyNodes(not empty)
-    iterator.InitTraversal()
-    while not iterator.IsDoneWithTraversal():
-        index, data = iterator.GetCurrentFlatIndex(), iterator.GetCurrentDataObject()
-        about = iterator.GetCurrentMetaData() if iterator.HasCurrentMetaData() else None
-        own = about.Get(vtkDataObjectTree.NAME()) if about else None
+    """Yields the iterator at each node. empty: also at leaves without data."""
+    at = tree.NewTreeIterator()
+    at.VisitOnlyLeavesOff()
+    at.SetSkipEmptyNodes(not empty)
+    at.InitTraversal()
+    while not at.IsDoneWithTraversal():
+        yield at
+        at.GoToNextItem()
+
+
+def leaves_of(tree, empty=False):
+    """Yields (data, name, flat index, iterator) of each leaf. Partitions have the name of their block."""
+    whole, last = "", 0
+    for at in walk(tree, empty):
+        data, index = at.GetCurrentDataObject(), at.GetCurrentFlatIndex()
+        own = at.GetCurrentMetaData().Get(vtkDataObjectTree.NAME()) if at.HasCurrentMetaData() else None
         if isinstance(data, vtkPartitionedDataSet):
             whole, last = own or "", index + data.GetNumberOfPartitions()
-        yield data, own or (whole if index <= last else ""), data is None or not data.IsA("vtkCompositeDataSet"), index
-        iterator.GoToNextItem()
+        if data is None or not data.IsA("vtkCompositeDataSet"):
+            yield data, own or (whole if index <= last else ""), index, at
+
+
+def copy_of(data):
+    """Returns another set with the same arrays, or another tree with the same blocks, also before VTK 9.3."""
+    made = data.NewInstance()
+    getattr(made, "CompositeShallowCopy", made.ShallowCopy)(data)
+    return made
 
 
 def sets_of(data):
@@ -65,18 +79,13 @@ def take_vertices(data, have=None):
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):
-        made, iterator = None, data.NewTreeIterator()
-        iterator.InitTraversal()
-        while not iterator.IsDoneWithTraversal():
-            block = iterator.GetCurrentDataObject()
+        made = data
+        for block, _, _, at in leaves_of(data):
             taken = take_vertices(block, have)
             if taken is not block:
-                if made is None:
-                    made = data.NewInstance()
-                    made.ShallowCopy(data)
-                made.SetDataSet(iterator, taken)
-            iterator.GoToNextItem()
-        return data if made is None else made
+                made = copy_of(data) if made is data else made
+                made.SetDataSet(at, taken)
+        return made
     count = data.GetNumberOfPoints() if isinstance(data, vtkPointSet) else 0
     if count == 0 or data.GetNumberOfCells() == 0:
         return data
@@ -109,7 +118,7 @@ def describe_mesh(data, taken):
 
 def list_all(data):
     """Lists the data set itself and all its blocks, at any depth."""
-    return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
+    return [data, *(at.GetCurrentDataObject() for at in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
 
 
 def join_array(sets, like, joined):
@@ -138,7 +147,7 @@ def join_array(sets, like, joined):
 def join_blocks(tree):
     """Returns the points of all blocks, with the point arrays that all of them have. If the names of some blocks, but not
     of all, tell of walls, an array marks their points."""
-    leaves = [(data, tells_of_walls(name)) for data, name, leaf, _ in walk(tree, True) if leaf]
+    leaves = [(data, tells_of_walls(name)) for data, name, *_ in leaves_of(tree, True)]
     some = len({wall for _, wall in leaves}) == 2
     sets = [(data, wall and some) for data, wall in leaves
             if isinstance(data, vtkPointSet) and data.GetNumberOfPoints() > 0]

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Iterator, Sequence, Union
 
 from . import bodies
-from ._packed import read_head
-from ._particles import FileError, Particles
+from ._bytes import read_head
+from ._particles import FileError, Particles, choose_step
 from .gadget_binary import is_gadget_binary
 
 HDF5 = (".hdf5", ".h5", ".h5part")
@@ -89,9 +89,9 @@ def _read(paths, types, walls, step):
     if len(paths) > 1 or walls:
         raise FileError("Several files are one set only where they are bodies: VTK's, or tables.")
     if is_hdf5:
-        return _read_hdf5(path, types, step)
-    if step not in (0, -1):
-        raise FileError(f"{path.name} has one step, number 0, not {step}.")
+        from .hdf5 import read_hdf5
+        return read_hdf5(path, types, step)
+    choose_step(path.name, step, [0.0])
     if ending in (".pkl", ".pickle"):
         raise FileError(f"{path.name} is not opened: pickles can run code. Let the solver write HDF5 (PySPH: install h5py).")
     if is_gadget:
@@ -108,27 +108,3 @@ def _read(paths, types, walls, step):
         return read_native(path)
     raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, .ply, "
                     ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")
-
-
-def _read_hdf5(path, types, step):
-    import h5py
-
-    from . import gadget, h5part, phantom, pysph
-
-    with h5py.File(path, "r") as file:
-        names = set(file)
-    if h5part.is_h5part(names) and types is None:
-        return h5part.read_h5part(path, step)
-    if step not in (0, -1):
-        raise FileError(f"{path.name} has one step, number 0, not {step}.")
-    if any(name.startswith("PartType") for name in names):
-        return gadget.read_gadget(path, types)
-    if types is not None:
-        raise FileError(f"{path.name} is no snapshot of GADGET's layout: it has no types to choose.")
-    if {"header", "particles"} <= names:
-        return phantom.read_hdf5_dump(path)
-    if {"solver_data", "particles"} <= names:
-        return pysph.read_pysph(path)
-    raise FileError(f"{path.name} is HDF5, but no layout that is known here: GADGET, GIZMO, AREPO and SWIFT have "
-                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles, "
-                    "H5Part Step#0.")

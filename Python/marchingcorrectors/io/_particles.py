@@ -215,6 +215,16 @@ def usual(names, quantity):
     return None if best < 0 else names[best]
 
 
+def usual_quantities(names):
+    return {quantity: usual(names, quantity) for quantity in ("smoothing_length", "volume", "mass", "density")}
+
+
+def add_velocity(read, names):
+    """Adds the vector of vx, vy and vz to {name: function}, if they are among the names."""
+    if {"vx", "vy", "vz"} <= set(names) and "Velocity" not in read:
+        read["Velocity"] = lambda: np.stack([read[name]() for name in ("vx", "vy", "vz")], axis=1)
+
+
 def by_name(file, pairs):
     """Returns {name: thing}. If several have one name, the last counts, as in VTK, with a warning."""
     found, twice = {}, None

@@ -7,7 +7,7 @@ import struct
 
 import numpy as np
 
-from ._packed import read_bytes
+from ._bytes import read_bytes
 from ._particles import FileError, Particles, by_name
 
 TYPES = {0: ">f4", 1: ">i4", 5: ">f4"}  # float, int, vector

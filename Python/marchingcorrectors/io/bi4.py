@@ -10,7 +10,7 @@ import numpy as np
 
 from .._library import say
 from ._particles import FileError, Particles, by_name
-from ._raw import RawArray, state_of
+from ._bytes import RawArray, state_of
 
 PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
          20: "i4", 21: "u4", 22: "f4", 23: "f8"}

@@ -7,8 +7,8 @@ from importlib import import_module
 import numpy as np
 
 from .._find import tells_of_walls
-from ._packed import ending_of, read_head
-from ._particles import FileError, Particles, choose_step, join, join_bodies, usual
+from ._bytes import ending_of, read_head
+from ._particles import FileError, Particles, add_velocity, choose_step, join, join_bodies, usual_quantities
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
 XYZ = (".xyz", ".extxyz", ".exyz")
@@ -36,7 +36,7 @@ READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{
            **{ending: ("tables", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
            ".data": ("molecules", "read_data", False), ".ply": ("ply", "read_ply", False), ".npz": ("arrays", "read_arrays", False),
            ".npy": ("arrays", "read_arrays", False), ".vtp": ("vtk_xml", "read_xml", False), ".vtu": ("vtk_xml", "read_xml", False),
-           ".vtk": ("legacy", "read_legacy", False), ".vtkhdf": ("vtkhdf", "read_vtkhdf", True), ".pvtp": ("bodies", "read_pieces", False),
+           ".vtk": ("legacy", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("bodies", "read_pieces", False),
            ".pvtu": ("bodies", "read_pieces", False), ".pvd": ("bodies", "read_list", True), ".series": ("bodies", "read_list", True)}
 ENDINGS = (*READERS, ".gz")
 
@@ -99,12 +99,10 @@ def read_bodies(paths, walls, step):
         name in body.arrays and body.arrays[name].shape[1:] == fluids[0].arrays[name].shape[1:] for body in fluids)]
     arrays = {name: lambda n=name: column(n, bodies, fluids) for name in common}
     single = [name for name in common if fluids[0].arrays[name].ndim == 1 and fluids[0].arrays[name].dtype.kind in "fiub"]
-    if {"vx", "vy", "vz"} <= set(single) and "Velocity" not in common:
-        arrays["Velocity"] = lambda: np.stack([arrays[name]() for name in ("vx", "vy", "vz")], axis=1)
+    add_velocity(arrays, single)
     solid = np.repeat(marked, counts)
     if "Type" in common and ("Rhop" in common or "Idp" in common):
         solid |= arrays["Type"]() != 3  # PartVTK's number for fluid
     return Particles(paths[0].name, "VTK", lambda: join([body.points for body in bodies]), arrays,
-                     **{name: usual(single, name) for name in ("smoothing_length", "volume", "mass", "density")},
-                     solid=solid if solid.any() else None, time=bodies[0].time, **{"cell" if len(fluids[0].period or ()) == 9 else "period": fluids[0].period},
+                     **usual_quantities(single), solid=solid if solid.any() else None, time=bodies[0].time, **{"cell" if len(fluids[0].period or ()) == 9 else "period": fluids[0].period},
                      times=bodies[0].times, parameters={"bodies": dict(zip([path.name for path in every], counts))})

@@ -3,14 +3,14 @@
 """Reads GADGET's binary formats 1 and 2, in one file or several: records of Fortran, each between two copies of its number of bytes.
 First a header of 256 bytes; then a record for each array: of all types of particles in order, of the types without a mass in
 the header, or of gas. In format 2, a record with the array's name comes before each; in format 1, the order tells the names."""
+import re
 import struct
 
 import numpy as np
 
 from .._library import say
 from ._particles import FileError, Particles, by_name
-from ._raw import RawArray, state_of
-from .gadget import files_of, numbers_of
+from ._bytes import RawArray, state_of
 
 HEADER = "6i6d2d2i6I2i4d"
 LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS": "Masses", "U": "InternalEnergy",
@@ -18,6 +18,38 @@ LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS"
           "NH": "NeutralHydrogenAbundance", "HSML": "SmoothingLength", "POT": "Potential",
           "ACCE": "Acceleration"}
 VECTORS = ("POS", "VEL", "ACCE")
+TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_holes": 5, "boundary": 5, "sinks": 3,
+         "neutrinos": 6}
+
+
+def files_of(path, count):
+    """Lists all files of a snapshot that has several, NAME.0.hdf5, ..., or NAME.0, ..."""
+    found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5|)", path.name)
+    if count <= 1 or not found:  # Some whole files say 0.
+        return [path]
+    if count > 65536:
+        raise FileError(f"{path.name} claims to be one of {count} files.")
+    files = [path.with_name(f"{found[1]}.{i}{found[3]}") for i in range(count)]
+    missing = [file.name for file in files if not file.is_file()]
+    if missing:
+        raise FileError(f"{path.name} is one of {count} files of a snapshot; {missing[0]} is missing.")
+    return files
+
+
+def numbers_of(types):
+    """Returns the numbers of types of particles; None means gas."""
+    types = 0 if types is None else types
+    chosen = [types] if isinstance(types, (str, int)) else list(types)
+    numbers = []
+    for kind in chosen:
+        if isinstance(kind, str) and kind not in TYPES:
+            raise FileError(f"There is no type '{kind}': {', '.join(TYPES)}, or a number.")
+        numbers.append(TYPES[kind] if isinstance(kind, str) else int(kind))
+    return numbers
+
+
+def no_particles(path, types):
+    return FileError(f"{path.name} has no particles of type {', '.join(map(str, types))}.")
 
 
 def is_gadget_binary(head):
@@ -132,12 +164,12 @@ class BinaryFile:
 
 
 def read_gadget_binary(path, types):
-    wanted = numbers_of(0 if types is None else types)
+    wanted = numbers_of(types)
     first = BinaryFile(path)
     files = [first if each == path else BinaryFile(each) for each in files_of(path, first.files)]
     parts = [(file, kind) for kind in wanted if 0 <= kind < 6 for file in files if file.counts[kind]]
     if not parts:
-        raise FileError(f"{path.name} has no particles of type {', '.join(map(str, wanted))}.")
+        raise no_particles(path, wanted)
     labels = [label for label in parts[0][0].labels_of(parts[0][1])
               if all(label in file.labels_of(kind) for file, kind in parts)]
     labels += [] if "MASS" in labels else ["MASS"]

@@ -1,14 +1,19 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads HDF5 by h5py: only data sets in this file."""
+"""Reads HDF5 by h5py: GADGET-2/4, GIZMO, AREPO and SWIFT (PartType0, ..., in one file or several), Phantom, PySPH, H5Part (as SPH-EXA
+writes it) and VTK's .vtkhdf. Only data sets in the file itself are read."""
 import math
 import os
+import re
 from typing import NamedTuple, Optional
 
+import h5py
 import numpy as np
 
-from ._particles import FileError, check_claim
-
+from .._find import tells_of_walls
+from ._particles import Body, FileError, Particles, check_claim, add_velocity, choose_step, find_kernel, usual_quantities
+from .gadget_binary import files_of, no_particles, numbers_of
+from .phantom import make_phantom
 
 KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or add a checksum.
 
@@ -16,8 +21,6 @@ KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or 
 def get(group, place):
     """Returns a member of a group by its path, or None. No link is followed and no other file is opened, because a file
     could name any file that its reader may open."""
-    import h5py
-
     file = os.path.basename(group.file.filename)
     for name in place.strip("/").split("/"):
         link = group.get(name, getlink=True) if isinstance(group, h5py.Group) else None
@@ -32,8 +35,6 @@ def get(group, place):
 
 
 def is_numbers(thing):
-    import h5py
-
     return isinstance(thing, h5py.Dataset) and thing.shape is not None and thing.dtype.kind in "fiub" and \
         thing.dtype.subdtype is None
 
@@ -75,8 +76,6 @@ class Part(NamedTuple):
 
 def load(parts, name):
     """Returns one array of several parts, each read into its place; a part without `keep` is not copied."""
-    import h5py
-
     result, begin = None, 0
     for part in parts:
         with h5py.File(part.file, "r") as file:
@@ -96,10 +95,11 @@ def load(parts, name):
     return result
 
 
-def names_of(group, count):
-    """Lists arrays of numbers with `count` rows."""
+def names_of(group, count, most=9):
+    """Lists arrays of numbers with `count` rows and at most this many dimensions."""
     check_claims([group])
-    return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
+    arrays = {name: get(group, name) for name in group if is_numbers(get(group, name))}
+    return [name for name, array in arrays.items() if array.shape[:1] == (count,) and array.ndim <= most]
 
 
 def check_claims(groups):
@@ -108,3 +108,279 @@ def check_claims(groups):
     for group in groups:
         path = group.file.filename
         check_claim(os.path.basename(path), f"'{group.name}'", claimed, os.path.getsize(path))
+
+
+def loaders(parts, names):
+    return {name: lambda n=name: load(parts, n) for name in names}
+
+
+def number(attributes, name, default=None):
+    """Returns an attribute's first number."""
+    try:
+        value = np.ravel(attributes[name])[0]
+        return value.item() if isinstance(value, np.generic) and value.dtype.kind in "fiub" else float(value)
+    except (KeyError, IndexError, TypeError, ValueError):
+        return default
+
+
+def text(value):
+    value = np.ravel(value)[0] if np.size(value) else ""
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+
+
+def read_hdf5(path, types, step):
+    """Finds the layout by the names of the file's groups."""
+    with h5py.File(path, "r") as file:
+        names = set(file)
+        if is_h5part(names) and types is None:
+            return read_h5part(path, file, step)
+        choose_step(path.name, step, [0.0])
+        if any(name.startswith("PartType") for name in names):
+            return read_gadget(path, file, types)
+        if types is not None:
+            raise FileError(f"{path.name} is no snapshot of GADGET's layout: it has no types to choose.")
+        if {"header", "particles"} <= names:
+            return read_phantom(path, file)
+        if {"solver_data", "particles"} <= names:
+            return read_pysph(path, file)
+    raise FileError(f"{path.name} is HDF5, but no layout that is known here: GADGET, GIZMO, AREPO and SWIFT have "
+                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles, "
+                    "H5Part Step#0.")
+
+
+# -- GADGET --
+
+def describe_header(file):
+    header = dict(attributes(file, "Header"))
+    found = {"time": number(header, "Time"), "redshift": number(header, "Redshift"),
+             "hubble_parameter": number(header, "HubbleParam"), "units": {}}
+    box = np.ravel(header.get("BoxSize", []))
+    found["box_size"] = [float(side) for side in (box if len(box) == 3 else box[:1].repeat(3))] if len(box) else None
+    for source in (header, attributes(file, "Units")):
+        for name, value in source.items():
+            if name.startswith("Unit") and np.size(value) == 1:
+                found["units"][name] = number({name: value}, name)
+    found["scale_factor"] = number(attributes(file, "Cosmology"), "Scale-factor")
+    if found["scale_factor"] is None and found["redshift"]:
+        found["scale_factor"] = 1 / (1 + found["redshift"])
+    return header, found
+
+
+def attributes(file, name):
+    group = get(file, name)
+    return {} if group is None else group.attrs
+
+
+def period_of(file, box):
+    """Returns the period if the file says that the run is periodic: open runs have a BoxSize, too. AREPO is periodic along the
+    axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or over 2^LONG_X_BITS (GADGET-4)."""
+    parameters, config = attributes(file, "Parameters"), attributes(file, "Config")
+    periodic = number(parameters, "InitialConditions:periodic", 0) == 1 or "PERIODIC" in config \
+        or len(config) and "PeriodicBoundariesOn" in parameters
+    if not periodic or box is None:
+        return None
+    box = [side * number(config, f"LONG_{axis}", 1) * 0.5 ** number(config, f"LONG_{axis}_BITS", 0)
+           for side, axis in zip(box, "XYZ")]
+    if not all(np.isfinite(side) and side > 0 for side in box):
+        return None
+    ends = [0.0 if f"REFLECTIVE_{axis}" in config else side for side, axis in zip(box, "XYZ")]
+    return [bound for end in ends for bound in (0.0, end)] if any(ends) else None
+
+
+# These are GIZMO's numbers of the kernels that exist here.
+GIZMO_KERNELS = {3: "cubic", 4: "quartic", 5: "quintic", 6: "Wendland C2", 7: "Wendland C4", 9: "Wendland C6"}
+
+
+def kernel_of(file, header):
+    """Finds the kernel: by SWIFT's name, GIZMO's number, or GADGET-4's macro; None if the file does not tell."""
+    scheme = attributes(file, "HydroScheme")
+    if "Kernel function" in scheme:
+        return text(scheme["Kernel function"])
+    identity = number(header, "Kernel_Function_ID")
+    if identity is not None:
+        return GIZMO_KERNELS.get(int(identity), f"GIZMO's number {identity}")
+    macros = [name for name in attributes(file, "Config") if name.endswith("_KERNEL")]
+    return next(filter(find_kernel, macros), None)
+
+
+def read_gadget(path, file, types):
+    wanted = numbers_of(types)
+    header, parameters = describe_header(file)
+    parts, names = find_parts(files_of(path, int(number(header, "NumFilesPerSnapshot", 1))), wanted)
+    if not parts:
+        raise no_particles(path, wanted)
+    arrays = loaders(parts, [name for name in names if name != "Coordinates"])
+    h = next((name for name in ("SmoothingLengths", "SmoothingLength") if name in arrays), None)
+    swift, gamma = h == "SmoothingLengths", number(attributes(file, "HydroScheme"), "Kernel gamma")
+    if swift and gamma is None:
+        raise FileError(f"{path.name} is SWIFT's, but HydroScheme does not tell 'Kernel gamma', without which its "
+                        "smoothing lengths mean nothing.")
+    table = np.ravel(header.get("MassTable", []))
+
+    def masses():
+        kinds = [int(part.group[len("PartType"):]) for part in parts]
+        for kind in kinds:
+            if kind >= len(table) or not table[kind] > 0:
+                raise FileError(f"{path.name} has no masses of type {kind}, neither Masses nor in MassTable.")
+        return np.repeat([float(table[kind]) for kind in kinds], [part.count for part in parts])
+
+    arrays.setdefault("Masses", masses)
+    parameters["types"] = wanted
+    return Particles(
+        path.name, "SWIFT" if swift else "GADGET", lambda: load(parts, "Coordinates"), arrays, smoothing_length=h,
+        support_radius=True, h_factor=gamma if swift else 1.0, mass="Masses", kernel=kernel_of(file, header),
+        density=next((name for name in ("Densities", "Density") if name in arrays), None),
+        dimension=2 if "TWODIMS" in attributes(file, "Config") else int(number(header, "Dimension", 3)),
+        period=period_of(file, parameters["box_size"]), time=parameters["time"], parameters=parameters)
+
+
+def find_parts(files, kinds):
+    """Returns where the particles are, and the names of the arrays of numbers that all of them have."""
+    parts, names = [], None
+    for kind in kinds:
+        for path in files:
+            with h5py.File(path, "r") as file:
+                group = get(file, f"PartType{kind}")
+                positions = None if group is None else get(group, "Coordinates")
+                if positions is None or not is_numbers(positions) or not positions.shape or not positions.shape[0]:
+                    continue
+                parts.append(Part(path, group.name.strip("/"), positions.shape[0]))
+                own = names_of(group, positions.shape[0])
+                names = own if names is None else [name for name in names if name in own]
+    return parts, names
+
+
+# -- Phantom, PySPH, H5Part, VTK --
+
+def read_phantom(path, file):
+    header, gas = get(file, "header"), get(file, "particles")
+    part = Part(path, "particles", len(data_set(gas, "xyz")))
+    names = [name for name in names_of(gas, part.count) if name != "xyz"]
+    values = {name: np.ravel(get(header, name)[()]) for name in header
+              if is_numbers(get(header, name)) and get(header, name).size <= 64}
+    alive = load([part], "h") > 0
+    if "itype" in names:
+        alive &= np.abs(load([part], "itype")) == 1
+    there = [part.where(alive)]
+    return make_phantom(path, alive.any(), lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
+
+
+def read_pysph(path, file):
+    """Joins all particle arrays to one set; their names tell walls."""
+    particles = get(file, "particles")
+    places = {name: get(particles, name) for name in particles}
+    places = {name: place if get(place, "arrays") is None else get(place, "arrays") for name, place in places.items()}
+    check_claims(places.values())
+    sets = {}  # {name: (Part of this process's own particles (tag 0), names of arrays of one value each)}
+    for name, place in places.items():
+        part = Part(path, place.name, data_set(place, "x").size if get(place, "x") is not None else 0)
+        names = names_of(place, part.count, 1)
+        part = part.where(load([part], "tag") == 0) if "tag" in names else part
+        if part.size():
+            sets[name] = part, names
+    if not sets:
+        raise FileError(f"{path.name} has no particles.")
+    solver = get(file, "solver_data").attrs
+    solver = {name: number(solver, name) for name, value in solver.items() if np.asarray(value).dtype.kind in "fiub" and np.size(value) == 1}
+    parts, counts = [part for part, _ in sets.values()], [part.size() for part, _ in sets.values()]
+    walls = [tells_of_walls(name) for name in sets]
+    fluids = [names for (_, names), wall in zip(sets.values(), walls) if not wall] or [names for _, names in sets.values()]
+    names = [name for name in fluids[0] if all(name in each for each in fluids)]
+    solid = np.repeat(walls, counts)
+
+    def array(name):
+        """Returns one array of all sets; 0 for walls that lack it, because walls take no part in a field."""
+        there = [name in each for _, each in sets.values()]
+        found = load([part for part, has in zip(parts, there) if has], name)
+        if all(there):
+            return found
+        whole = np.zeros(len(solid), found.dtype)
+        whole[np.repeat(there, counts)] = found
+        return whole
+
+    def vector(letters):
+        return np.stack([array(letter) if letter in names else np.zeros(len(solid)) for letter in letters], axis=1).astype(float, copy=False)
+
+    arrays = {name: lambda n=name: array(n) for name in names}
+    if {"u", "v"} <= set(names):
+        arrays["Velocity"] = lambda: vector("uvw")
+    flat = "z" not in names or not array("z").any()
+    return Particles(path.name, "PySPH", lambda: vector("xyz"), arrays, smoothing_length="h" if "h" in names else None,
+                     mass="m" if "m" in names else None, density="rho" if "rho" in names else None,
+                     solid=solid if solid.any() and not solid.all() else None, time=solver.get("t"),
+                     dimension=2 if flat else 3,
+                     parameters={**solver, "sets": dict(zip(sets, counts))})
+
+
+def is_h5part(names):
+    return any(re.fullmatch("Step#[0-9]+", name) for name in names)
+
+
+def box_of(attributes):
+    """Returns the period from SPH-EXA's box, x0, x1, y0, ..., and boundaryType: 0 open, 1 periodic, 2 fixed."""
+    box, kinds = np.ravel(attributes.get("box", ())), np.ravel(attributes.get("boundaryType", ()))
+    if len(box) != 6 or len(kinds) != 3 or not np.isfinite(box.astype(float)).all():
+        return None
+    bounds = [float(side) if int(kinds[i // 2]) == 1 else 0.0 for i, side in enumerate(box)]
+    return bounds if any(bounds) else None
+
+
+def read_h5part(path, file, step):
+    """Reads a group Step#N for each step, with x, y, z and arrays of one value per particle."""
+    steps = sorted((int(name[5:]), name) for name in file if is_h5part([name]))
+    found = [number(get(file, name).attrs, "time") for _, name in steps]
+    times = [float(i) for i, _ in steps] if None in found else found
+    i = choose_step(path.name, step, times)
+    name = steps[i][1]
+    group = get(file, name)
+    axes = [axis for axis in "xyz" if get(group, axis) is not None]
+    if len(axes) < 3:
+        raise FileError(f"{path.name}: of x, y and z of its positions {name} has {', '.join(axes) or 'none'}.")
+    part = Part(path, group.name, data_set(group, "x").size)
+    arrays = loaders([part], [each for each in names_of(group, part.count, 1) if each not in axes])
+    add_velocity(arrays, arrays)
+    return Particles(path.name, "H5Part", lambda: np.stack([load([part], axis) for axis in "xyz"], axis=1), arrays,
+                     **usual_quantities(list(arrays)), time=times[i], times=times, period=box_of(group.attrs))
+
+
+def integers(group, place):
+    data = data_set(group, place)
+    if data.dtype.kind not in "iu":
+        raise FileError(f"'{place}' does not hold whole numbers.")
+    return np.ravel(data[()]).tolist()
+
+
+def read_vtkhdf(path, step):
+    """Reads points of poly data or an unstructured grid, and their arrays. An array has its steps one after the other. Steps tells where each
+    step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and, if this differs, an array's values (PointDataOffsets)."""
+    with h5py.File(path, "r") as file:
+        root = get(file, "VTKHDF")
+        kind = text(root.attrs.get("Type", ""))
+        if kind not in ("PolyData", "UnstructuredGrid"):
+            raise FileError(f"{path.name} holds data of the type '{kind}', not particles (PolyData or UnstructuredGrid).")
+        parts, offset, times = integers(root, "NumberOfPoints"), 0, None
+        steps, arrays = get(root, "Steps"), get(root, "PointData")
+        if steps is not None:
+            times = [float(time) for time in np.ravel(data_set(steps, "Values")[()])]
+            i = choose_step(path.name, step, times)
+            first, offset = integers(steps, "PartOffsets")[i], integers(steps, "PointOffsets")[i]
+            count = integers(steps, "NumberOfParts")[i] if get(steps, "NumberOfParts") is not None else 1
+            if min(first, count, offset) < 0 or first + count > len(parts):
+                raise FileError(f"{path.name} has no parts {first} to {first + count} of step {i}.")
+            parts = parts[first:first + count]
+        total, found = sum(parts), {}
+
+        def values(data, begin):
+            if min(parts, default=0) < 0 or begin < 0 or begin + total > data.shape[0]:
+                raise FileError(f"{path.name}: '{data.name}' has {data.shape[0]} values, not {total} from {begin} on.")
+            return data[begin:begin + total]
+
+        points = values(data_set(root, "Points"), offset)
+        names = [name for name in arrays or () if is_numbers(get(arrays, name)) and get(arrays, name).ndim in (1, 2)]
+        check_claims([arrays] if names else [])
+        for name in names:
+            begin = offset
+            if steps is not None and get(steps, f"PointDataOffsets/{name}") is not None:
+                begin = integers(steps, f"PointDataOffsets/{name}")[i]
+            found[name] = values(data_set(arrays, name), begin)
+    return Body(points, found, None if times is None else times[i], times=times)

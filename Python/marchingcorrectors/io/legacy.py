@@ -7,10 +7,9 @@ from urllib.parse import unquote_to_bytes
 
 import numpy as np
 
-from .._warnings import warn
 from ._cells import offsets_of, take_vertices
-from ._particles import TIMES, Body, FileError, period_of_field
-from ._text import parse_numbers
+from ._particles import TIMES, Body, FileError, by_name, period_of_field
+from ._bytes import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
          "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
@@ -22,7 +21,7 @@ COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS"
 class Legacy:
     def __init__(self, path):
         self.name, self.data, self.at = path.name, path.read_bytes(), 0
-        self.points, self.arrays, self.field, self.cell_arrays, self.twice = None, {}, {}, {}, None
+        self.points, self.arrays, self.field, self.cell_arrays = None, [], [], []  # Arrays are pairs (name, values).
         self.cells, self.types = {}, None  # {name: (values, number)}
         head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\n"
                         rb"DATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n", self.data)
@@ -38,8 +37,7 @@ class Legacy:
             into = self.section(words, into)
         if self.points is None or not len(self.points) or (self.types is None) != (head[3] == b"POLYDATA"):
             raise self.damaged()
-        if self.twice is not None:
-            warn(f"{self.name} has several arrays '{self.twice}'; the last one is taken.")
+        self.arrays, self.field, self.cell_arrays = by_name(self.name, self.arrays), dict(self.field), dict(self.cell_arrays)
 
     def damaged(self):
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
@@ -86,16 +84,13 @@ class Legacy:
                 raise self.damaged()
         return np.empty(0)
 
-    def put(self, into, name, values):
-        """Adds an array. Decodes its name as VTK does: files have %20 for a blank. Of two arrays with one name, the last stays."""
-        name = unquote_to_bytes(name).decode(errors="replace")
-        if name in self.arrays and into is self.arrays:
-            self.twice = name
-        into[name] = values
-
     def section(self, words, into):
         """Reads the section that these words begin. into: where its arrays go. Returns where the next section's arrays go."""
         word, rest = words[0].upper(), words[1:]
+
+        def put(name, *how):  # VTK writes %20 for a blank in a name.
+            into.append((unquote_to_bytes(name).decode(errors="replace"), self.values(*how)))
+
         if word == "POINTS":
             self.points = self.values(rest[1], rest[0], 3)
         elif word in LISTS and not self.offsets:
@@ -112,17 +107,17 @@ class Legacy:
         elif word == "FIELD":
             for _ in range(int(rest[1])):
                 name, columns, count, kind = self.next_array()
-                self.put(into, name, self.values(kind, count, columns))
+                put(name, kind, count, columns)
         elif word == "SCALARS":
             if self.line()[0].upper() != "LOOKUP_TABLE":
                 raise self.damaged()
-            self.put(into, rest[0], self.values(rest[1], self.count, rest[2] if len(rest) > 2 else 1))
+            put(rest[0], rest[1], self.count, rest[2] if len(rest) > 2 else 1)
         elif word in COLUMNS:
-            self.put(into, rest[0], self.values(rest[1], self.count, COLUMNS[word]))
+            put(rest[0], rest[1], self.count, COLUMNS[word])
         elif word == "TEXTURE_COORDINATES":
-            self.put(into, rest[0], self.values(rest[2], self.count, rest[1]))
+            put(rest[0], rest[2], self.count, rest[1])
         elif word == "COLOR_SCALARS":
-            self.put(into, rest[0], self.values("float" if self.text else "unsigned_char", self.count, rest[1]))
+            put(rest[0], "float" if self.text else "unsigned_char", self.count, rest[1])
         elif word == "LOOKUP_TABLE":
             self.values("float" if self.text else "unsigned_char", rest[1], 4)
         elif word == "METADATA":

@@ -5,43 +5,40 @@ import re
 
 import numpy as np
 
-from ._particles import Body, FileError, choose_step
-from .tables import columns_of, lines_of, numbers_of, period_of, rows_of, whole_number
+from ._particles import Body, FileError
+from .tables import columns_of, lines_of, numbers_of, period_of, rows_of, take_step, to_number, whole_number
 
-# The columns of an atom in .data, by its style, beside id, type and position; images may follow.
-STYLES = {"atomic": "", "bond": "molecule", "angle": "molecule", "molecular": "molecule", "charge": "q", "full": "molecule q",
-          "dipole": "q", "sphere": "diameter density", "granular": "diameter density", "sph": "rho esph cv", "meso": "rho e cv",
-          "dpd": "theta", "mdpd": "rho", "edpd": "temperature cv", "peri": "volume density", "rheo": "status rho",
-          "rheo/thermal": "status rho energy", "smd": "molecule volume mass kradius cradius x0 y0 z0"}
-BEHIND = {"dipole": ["mux", "muy", "muz"]}
-BEFORE_TYPE = ("bond", "angle", "molecular", "full")  # The molecule stands before the type.
+# The columns of an atom in .data, by its style; images may follow.
+STYLES = {"atomic": "id type x y z", **dict.fromkeys(("bond", "angle", "molecular"), "id molecule type x y z"), "charge": "id type q x y z",
+          "full": "id molecule type q x y z", "dipole": "id type q x y z mux muy muz",
+          **dict.fromkeys(("sphere", "granular"), "id type diameter density x y z"), "sph": "id type rho esph cv x y z",
+          "meso": "id type rho e cv x y z", "dpd": "id type theta x y z", "mdpd": "id type rho x y z", "edpd": "id type temperature cv x y z",
+          "peri": "id type volume density x y z", "rheo": "id type status rho x y z", "rheo/thermal": "id type status rho energy x y z",
+          "smd": "id type molecule volume mass kradius cradius x0 y0 z0 x y z"}
 
 
 def read_gro(path, step):
     """Reads columns of fixed width: the distance between two decimal points is the width of a number."""
-    lines, at, starts, times = lines_of(path), 0, [], []
+    lines, at, steps = lines_of(path), 0, []
     while at < len(lines):
         if not lines[at].strip() and all(not line.strip() for line in lines[at:]):
             break
         count = whole_number(path.name, lines, at + 1)
         rows_of(path.name, lines, at + 2, count + 1)  # The box is a line, too.
         time = re.search(r"\bt=\s*(\S+)", lines[at])
-        time = numbers_of(time[1]) if time else []
-        times.append(time[0] if len(time) == 1 else float(len(times)))
-        starts.append(at)
+        steps.append((to_number(time[1]) if time else None, at))
         at += count + 3
-    at = starts[choose_step(path.name, step, times)]
-    time, count = times[starts.index(at)], int(lines[at + 1])
+    at, times = take_step(path.name, step, steps)
+    count = int(lines[at + 1])
     rows = rows_of(path.name, lines, at + 2, count)
     points = [found.start() for found in re.finditer(r"\.", rows[0][20:])] if rows else [0, 8]
     width = points[1] - points[0] if len(points) > 1 else 0
     columns = (len(rows[0].rstrip()) - 20) // width if width and rows else 3
-    cells = [[row[20 + i * width:20 + (i + 1) * width] for i in range(columns)] for row in rows]
-    values = np.array([numbers_of(" ".join(row)) if len(numbers_of(" ".join(row))) == columns else [] for row in cells], object)
+    values = [numbers_of(" ".join(row[20 + i * width:20 + (i + 1) * width] for i in range(columns))) for row in rows]
     odd = next((i for i, row in enumerate(values) if len(row) != columns), None)
     if columns not in (3, 6) or odd is not None:
         raise FileError(f"{path.name}: line {at + 3 + (odd or 0)} has no three positions in columns of {width} characters.")
-    values = np.array(values.tolist(), float).reshape(count, columns)
+    values = np.array(values, float).reshape(count, columns)
     box = numbers_of(lines[at + 2 + count])
     if len(box) not in (3, 9):
         raise FileError(f"{path.name}: line {at + 3 + count} has {len(box)} numbers for its box, which are 3 or 9.")
@@ -51,7 +48,7 @@ def read_gro(path, step):
     arrays = {name: np.array([row[begin:begin + 5].strip() for row in rows])
               for name, begin in (("residue", 5), ("species", 10)) if rows}
     arrays.update({"velocity": values[:, 3:]} if columns == 6 else {})
-    return Body(values[:, :3], arrays, time=time, period=period_of(cell, [0.0] * 3, [True] * 3), times=times)
+    return Body(values[:, :3], arrays, period=period_of(cell, [0.0] * 3, [True] * 3), **times)
 
 
 def sections_of(path, lines):
@@ -88,9 +85,7 @@ def read_data(path):
     if style not in STYLES:
         raise FileError(f"{path.name}: the style of its section Atoms is '{style}'; write 'Atoms # STYLE', one of "
                         f"{', '.join(STYLES)}.")
-    more = STYLES[style].split()
-    names = ["id", *(more[:1] if style in BEFORE_TYPE else ()), "type", *(more[1:] if style in BEFORE_TYPE else more)]
-    names = [*names, "x", "y", "z", *BEHIND.get(style, ())]
+    names = STYLES[style].split()
     if width not in (len(names), len(names) + 3):
         raise FileError(f"{path.name}: an atom has {width} values, where the style {style} has {len(names)}, or three more.")
     columns = columns_of(path.name, rows, names + ["ix", "iy", "iz"][:width - len(names)])

@@ -5,28 +5,11 @@ inactive in a step (itype -1) counts as gas."""
 import numpy as np
 
 from ._particles import FileError, Particles
-from .hdf5 import Part, data_set, get, is_numbers, load, names_of
 
 
-def read_hdf5_dump(path):
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        header, gas = get(file, "header"), get(file, "particles")
-        part = Part(path, "particles", len(data_set(gas, "xyz")))
-        names = [name for name in names_of(gas, part.count) if name != "xyz"]
-        values = {name: np.ravel(get(header, name)[()]) for name in header
-                  if is_numbers(get(header, name)) and get(header, name).size <= 64}
-    alive = load([part], "h") > 0
-    if "itype" in names:
-        alive &= np.abs(load([part], "itype")) == 1
-    if not alive.any():
+def make_phantom(path, is_alive, array, positions, names, values):
+    if not is_alive:
         raise FileError(f"{path.name} has no gas that is alive.")
-    there = [part.where(alive)]
-    return make(path, lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
-
-
-def make(path, array, positions, names, values):
     factor, mass = float(values.get("hfact", [1.2])[0]), float(values["massoftype"][0])
 
     def density():
@@ -51,10 +34,8 @@ def read_native(path):
     frames = sarracen.read_phantom(str(path), separate_types=None)
     frame = frames[frames["itype"].abs() == 1] if "itype" in frames else frames
     frame = frame[(frame["h"] > 0)].dropna(subset=["x", "y", "z"])
-    if not len(frame):
-        raise FileError(f"{path.name} has no gas that is alive.")
     values = {name: np.ravel(value) for name, value in frames.params.items() if np.isscalar(value) or np.size(value) == 1}
     names = [name for name in frame if name not in ("x", "y", "z", "mass") and frame[name].dtype.kind in "fiub"]
-    return make(path, lambda name: frame[name].to_numpy(),
+    return make_phantom(path, len(frame) > 0, lambda name: frame[name].to_numpy(),
                 lambda: np.ascontiguousarray(frame[["x", "y", "z"]].to_numpy(float)), names,
                 {name: value for name, value in values.items() if value.dtype.kind in "fiub"})

@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from .._library import say
-from ._packed import read_bytes
+from ._bytes import read_bytes
 from ._particles import FileError
 from .tables import body_of, check_width, columns_of
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .._find import as_bytes
 from .._library import lib, say
-from ._packed import ending_of, read_bytes
+from ._bytes import ending_of, read_bytes
 from ._particles import Body, FileError, choose_step, usual
 
 MOST_COLUMNS = 10000
@@ -212,6 +212,13 @@ def rows_of(file, lines, begin, count):
     return lines[begin:begin + count]
 
 
+def take_step(file, step, steps):
+    """Returns what the chosen step holds, and the words of Body for its time. steps: pairs (time, or None for its number; what it holds)."""
+    times = [float(i) if time is None else time for i, (time, _) in enumerate(steps)]
+    i = choose_step(file, step, times)
+    return steps[i][1], {"time": times[i], "times": times}
+
+
 def value_of(comment, key):
     """Returns the text behind KEY= in the second line of extended XYZ, with or without quotes."""
     found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
@@ -224,20 +231,19 @@ def numbers_of(text):
 
 
 def read_xyz(path, step):
-    lines, at, starts, times = lines_of(path), 0, [], []
+    lines, at, steps = lines_of(path), 0, []
     while at < len(lines):
         if lines[at].strip():
-            if starts and len(lines[at].split()) == len(lines[at - 1].split()) > 1:
+            if steps and len(lines[at].split()) == len(lines[at - 1].split()) > 1:
                 raise FileError(f"{path.name}: line {at + 1} is one more than the {count} particles that the step says it "
                                 "has; correct that number.")
             count = whole_number(path.name, lines, at)
             rows_of(path.name, lines, at + 2, count)
-            time = numbers_of(value_of(lines[at + 1], "time"))
-            times.append(time[0] if len(time) == 1 else float(len(times)))
-            starts.append(at)
+            time = value_of(lines[at + 1], "time")
+            steps.append((to_number(time) if time else None, at))
             at += 1 + count
         at += 1
-    begin = starts[choose_step(path.name, step, times)]
+    begin, times = take_step(path.name, step, steps)
     count, comment, properties = whole_number(path.name, lines, begin), lines[begin + 1], []
     parts = value_of(comment, "properties").split(":")
     for name, width in zip(parts[0::3], parts[2::3]):
@@ -258,8 +264,7 @@ def read_xyz(path, step):
                             f"{9 if key == 'lattice' else 3}.")
     period = period_of(np.reshape(told["lattice"], (-1, 3)), told["origin"] or [0.0] * 3,
                        [flag not in ("F", "0", "False") for flag in told["pbc"] or "TTT"])
-    time = times[choose_step(path.name, step, times)]
-    return body_of(path.name, columns_of(path.name, rows, properties), time=time, period=period, times=times)
+    return body_of(path.name, columns_of(path.name, rows, properties), period=period, **times)
 
 
 def period_of(cell, origin, is_periodic):
@@ -315,16 +320,14 @@ def read_lammps(path, step):
             at += 2
         elif words[1] == "ATOMS":
             rows_of(path.name, lines, at, head.get("count", 0))
-            steps.append((at, words[2:], head))
+            steps.append((head.get("TIME", head.get("TIMESTEP")), (at, words[2:], head)))
             at, head = at + head.get("count", 0) - 1, {}
         elif words[1:] != ["UNITS"]:
             raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS that is known here.")
         at += 1
     if not steps:
         raise FileError(f"{path.name} has no particles.")
-    times = [head.get("TIME", head.get("TIMESTEP", float(i))) for i, (_, _, head) in enumerate(steps)]
-    i = choose_step(path.name, step, times)
-    begin, words, head = steps[i]
+    (begin, words, head), times = take_step(path.name, step, steps)
     names = name_columns(path.name, words)
     columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
     cell, origin, periodic = head.get("box", (np.empty((0, 3)), None, None))
@@ -337,4 +340,4 @@ def read_lammps(path, step):
         for a, name in enumerate(positions):
             columns[name] = origin[a] + sum(share * side[a] for share, side in zip(shares, cell))
     period = period_of(cell, origin, periodic)
-    return body_of(path.name, columns, positions, time=times[i], period=period, times=times)
+    return body_of(path.name, columns, positions, period=period, **times)

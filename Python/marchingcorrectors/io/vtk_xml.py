@@ -11,6 +11,7 @@ import json
 import lzma
 import re
 import zlib
+from xml.etree.ElementTree import TreeBuilder
 from xml.parsers import expat
 
 import numpy as np
@@ -19,7 +20,7 @@ from .._library import say
 from .._warnings import warn
 from ._cells import VERTICES, take_vertices, tell_mesh
 from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
-from ._text import parse_numbers
+from ._bytes import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
@@ -51,14 +52,28 @@ UNPACK = {"vtkZLibDataCompressor": lambda packed, size: zlib.decompressobj().dec
           "vtkLZ4DataCompressor": unpack_lz4}
 
 
+def refuse(*_):
+    raise ValueError("it has a document type")
+
+
+def parse(data):
+    """Returns the tree of elements. Takes text in large pieces, as XMLParser does not."""
+    tree, parser = TreeBuilder(), expat.ParserCreate()
+    parser.buffer_text, parser.buffer_size, parser.StartDoctypeDeclHandler = True, 1 << 20, refuse
+    parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = tree.start, tree.end, tree.data
+    parser.Parse(data, True)
+    return tree.close()
+
+
 class Array:
     """Holds a DataArray's attributes, and its text."""
 
-    def __init__(self, attributes, count):
-        self.name, self.format = attributes.get("Name", ""), attributes.get("format", "ascii")
-        self.kind, self.columns = KINDS.get(attributes.get("type")), int(attributes.get("NumberOfComponents", 1))
-        self.count = count if count is not None else int(attributes.get("NumberOfTuples", 1))
-        self.offset, self.text = int(attributes.get("offset", 0)), []
+    def __init__(self, element, count):
+        self.name, self.format = element.get("Name", ""), element.get("format", "ascii")
+        self.kind, self.columns = KINDS[element.get("type")], int(element.get("NumberOfComponents", 1))
+        self.count = int(element.get("NumberOfTuples", 1)) if count is None else count
+        self.offset = int(element.get("offset", 0))
+        self.text = "".join([element.text or "", *(child.tail or "" for child in element)])
         if self.count < 0 or not 0 < self.columns <= 1000:
             raise ValueError(f"the array '{self.name}' has {self.count} values of {self.columns} numbers")
 
@@ -66,72 +81,40 @@ class Array:
         return self.count * self.columns * np.dtype(self.kind).itemsize
 
 
+def arrays_in(element, part, count):
+    """Lists the arrays of numbers in the parts of this name. count: the number of their values; None: they tell it."""
+    return [Array(each, 0 if each.get("Name") == "connectivity" and part in CELLS else count) for inside in element.iter(part)
+            for each in inside.findall("DataArray") if each.get("type") in KINDS]
+
+
+def piece_of(element):
+    """Returns {"Points": arrays, ..., "count": number of points, "counts": numbers of cells}."""
+    count, counts = int(element.attrib["NumberOfPoints"]), {name: int(element.get(f"NumberOf{name}", 0)) for name in CELLS}
+    many = {"Points": count, "PointData": count, "CellData": sum(counts.values()), **counts}
+    return {**{name: arrays_in(element, name, many[name]) for name in many}, "count": count, "counts": counts}
+
+
 class XmlFile:
     def __init__(self, path):
         self.data = path.read_bytes()
-        self.pieces, self.field, self.file = [], [], {}  # A piece is {"Points": arrays, ..., "count": number of points}.
-        self.offsets, self.path, self.array = [], [], None
         appended = re.search(rb"<AppendedData\b([^>]*)>\s*_", self.data)
         self.begin = appended.end() if appended else len(self.data)
         self.is_raw = bool(appended and re.search(rb"encoding\s*=\s*[\"']raw", appended[1]))
-        parser = expat.ParserCreate()
-        parser.buffer_text = True
-        parser.StartDoctypeDeclHandler = self.refuse
-        parser.StartElementHandler, parser.EndElementHandler = self.start, self.end
-        parser.CharacterDataHandler = self.add_text
-        parser.Parse(self.data[:appended.start()] if appended else self.data, not appended)
-        self.offsets.sort()
+        self.file = parse(self.data[:appended.start()] + b"</VTKFile>" if appended else self.data)
+        self.offsets = sorted(int(each.get("offset", 0)) for each in self.file.iter("DataArray"))
         if self.file.get("type") not in ("PolyData", "UnstructuredGrid"):
             raise ValueError("it holds no poly data and no unstructured grid")
         self.order = ">" if self.file.get("byte_order") == "BigEndian" else "<"
         self.header = np.dtype(self.order + ("u8" if self.file.get("header_type") == "UInt64" else "u4"))
-        arrays = [array for piece in self.pieces for name, arrays in piece.items() if name not in ("count", "counts")
-                  for array in arrays]
+        self.pieces, self.field = [piece_of(each) for each in self.file.iter("Piece")], arrays_in(self.file, "FieldData", None)
         self.check = lambda arrays: check_claim(path.name, "one of the arrays, or all together,",
                                                 sum(array.bytes() for array in arrays), len(self.data))
-        self.check(arrays + self.field)
-
-    @staticmethod
-    def refuse(*_):
-        raise ValueError("it has a document type")
-
-    def start(self, tag, attributes):
-        self.path.append(tag)
-        if len(self.path) > 100:
-            raise ValueError("too deep a nest of elements")
-        if tag == "VTKFile":
-            self.file = attributes
-        elif tag == "Piece":
-            counts = {name: int(attributes.get(f"NumberOf{name}", 0)) for name in CELLS}
-            self.pieces.append({**{name: [] for name in ("Points", "PointData", "CellData", *CELLS)},
-                                "count": int(attributes["NumberOfPoints"]), "counts": counts})
-        elif tag == "DataArray":
-            if "offset" in attributes:
-                self.offsets.append(int(attributes["offset"]))
-            parent = self.path[-2] if len(self.path) > 1 else ""
-            if attributes.get("type") not in KINDS:
-                return
-            if parent == "FieldData":
-                self.array = Array(attributes, None)
-                self.field.append(self.array)
-            elif self.pieces and parent in self.pieces[-1]:
-                piece, counts = self.pieces[-1], self.pieces[-1]["counts"]
-                count = piece["count"] if parent in ("Points", "PointData") else counts.get(parent, sum(counts.values()))
-                self.array = Array(attributes, 0 if attributes.get("Name") == "connectivity" and parent in CELLS else count)
-                piece[parent].append(self.array)
-
-    def end(self, tag):
-        self.path.pop()
-        self.array = None if tag == "DataArray" else self.array
-
-    def add_text(self, text):
-        if self.array is not None and self.path[-1] == "DataArray":  # This must not be in what the array says about itself.
-            self.array.text.append(text)
+        self.check([array for piece in self.pieces for part in ("Points", "PointData", "CellData", *CELLS)
+                    for array in piece[part]] + self.field)
 
     def values(self, array):
         if array.format == "ascii":
-            text = "".join(array.text).encode()
-            values, end = parse_numbers(text, array.kind, array.count * array.columns)
+            values, _ = parse_numbers(array.text.encode(), array.kind, array.count * array.columns)
         else:
             values = np.frombuffer(self.bytes_of(array), self.order + array.kind).astype(array.kind)
         return values.reshape(array.count, array.columns) if array.columns > 1 else values
@@ -165,7 +148,7 @@ class XmlFile:
     def bytes_of(self, array):
         """Returns the array's bytes, by the header before them."""
         if array.format == "binary":
-            data = decode_base64("".join(array.text).encode())
+            data = decode_base64(array.text.encode())
         else:
             begin = self.begin + array.offset
             after = bisect.bisect(self.offsets, array.offset)
@@ -214,24 +197,16 @@ def read_xml(path):
 
 
 def elements(path, tag):
-    """Returns the attributes of all elements of this name."""
-    found, parser = [], expat.ParserCreate()
-
-    def take(name, attributes):
-        if name == tag:
-            found.append(attributes)
-
-    parser.StartDoctypeDeclHandler, parser.StartElementHandler = XmlFile.refuse, take
+    """Returns all elements of this name."""
     try:
-        parser.Parse(path.read_bytes(), True)
+        return list(parse(path.read_bytes()).iter(tag))
     except (expat.ExpatError, ValueError) as error:
         raise FileError(f"{path.name} is no XML, or damaged: {error}.") from None
-    return found
 
 
 def list_pieces(path):
     """Reads .pvtp and .pvtu: a list of files whose points are one set."""
-    names = [piece["Source"] for piece in elements(path, "Piece") if piece.get("Source")]
+    names = [piece.get("Source") for piece in elements(path, "Piece") if piece.get("Source")]
     wanted = path.suffix[:1] + path.suffix[2:]
     odd = next((name for name in names if not name.lower().endswith(wanted.lower())), None)
     if not names or odd is not None:
@@ -261,15 +236,14 @@ def list_times(path):
         try:
             time = float(entry.get("timestep") or 0)
         except ValueError:
-            raise FileError(f"{path.name}: the time '{entry['timestep']}' is no number.") from None
+            raise FileError(f"{path.name}: the time '{entry.get('timestep')}' is no number.") from None
         if not entry.get("file"):
             raise FileError(f"{path.name} has an entry that names no file.")
-        part = (entry.get("group", ""), entry["part"]) if entry.get("part") else None
-        same = next((key for key in entries if key[0] == time and (entries[key] == entry["file"] or (part and key[1] == part))),
-                    None)
+        file, part = entry.get("file"), (entry.get("group", ""), entry.get("part")) if entry.get("part") else None
+        same = next((key for key in entries if key[0] == time and (entries[key] == file or (part and key[1] == part))), None)
         if same:
             again.append(time)
-        entries[same or (time, part or entry["file"])] = entry["file"]
+        entries[same or (time, part or file)] = file
     if again:
         warn(say("LISTED_TWICE", path.name, len(again), "files" if len(again) > 1 else "file", f"{min(again):g}"))
     times = {}

@@ -904,10 +904,10 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles of 3/4
-   * of the smallest (scaled) smoothing length, which are cut where the weight sum is the level, and
-   * divided further until two divisions agree to 2.5e-6 of the largest flux that the section's
-   * velocities allow. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles of at
+   * most 3/4 of the smallest (scaled) smoothing length, which are cut where the weight sum is the
+   * level, and halved until two ways to integrate them agree to 2.5e-6 of what their velocities
+   * allow. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);

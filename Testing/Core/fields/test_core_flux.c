@@ -301,6 +301,38 @@ static void test_half_out_of_the_water(void** state)
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
+/* A disc that is only a little in the water has the flux of many triangles from its centre to its rim. */
+static void test_disc_at_the_surface(void** state)
+{
+  enum
+  {
+    CORNERS = 2048
+  };
+  const shape disc = { MCOR_SECTION_DISC, 2, { 8.2, 8, 11.5, 1, 0, 0 }, 0.8 };
+  CORE_FREED double* points = malloc(9 * CORNERS * sizeof(double));
+  const mcor_section fan = {
+    .shape = MCOR_SECTION_TRIANGLES, .points = points, .point_count = 3 * CORNERS
+  };
+  for (int i = 0; i < 3 * CORNERS; ++i)
+  {
+    const double angle = 2 * PI * (i / 3 + i % 3 - 1) / CORNERS, radius = i % 3 ? disc.radius : 0;
+    points[3 * i] = disc.points[0];
+    points[3 * i + 1] = disc.points[1] + radius * cos(angle);
+    points[3 * i + 2] = disc.points[2] + radius * sin(angle);
+  }
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  const mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT64);
+  const mcor_flux_reading r = flux_of(*state, &input, &options, &disc);
+  CORE_FLUXES found;
+  CORE_OK(*state, mcor_flux(*state, &input, &options, &fan, 1, &found));
+  const mcor_flux_reading* expected = found.readings;
+  CORE_CHECK(
+    r.area > 0.1 && r.area < 0.4 && fabs(r.area - expected->area) < 1e-5, r.area, expected->area);
+  CORE_CHECK(
+    fabs(r.volume_flux - expected->volume_flux) < 1e-5, r.volume_flux, expected->volume_flux);
+}
+
 /* The section touches the fluid with one corner only, exactly at the level. The flux is 0, or a small number, not
  * NaN. */
 static void test_corner_on_the_level(void** state)
@@ -487,5 +519,5 @@ static void test_weird(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_uniform, test_uniform_in_a_plane,
-  test_half_out_of_the_water, test_corner_on_the_level, test_same_bits, test_period, test_walls,
-  test_weird)
+  test_half_out_of_the_water, test_disc_at_the_surface, test_corner_on_the_level, test_same_bits,
+  test_period, test_walls, test_weird)

@@ -2,221 +2,394 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
- * where the weight sum is at least the level. The probe evaluates samples; the gauges find
- * crossings of the level. A piece of a section is divided until its parts together have the
- * integrals of the piece itself. */
+ * where the weight sum is at least the level. A piece in fluid is integrated by two rules, from the
+ * same samples. A piece across the level is cut along straight lines, as a whole and in parts. If
+ * the two results differ, the piece is halved. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
+#include "mcor_vector.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A section's accuracy is relative to its greatest speed and density, but at least to this share of
+/* Longest side of a cell, in smallest scaled smoothing lengths. */
+#define MCOR_FLUX_CELL 0.75
+/* Most cells near particles, of all sections together; the farthest that a section may be from the
+ * origin, in cells, so that doubles can tell the corners of cells apart. */
+#define MCOR_FLUX_MOST (1 << 24)
+#define MCOR_FLUX_MOST_ALONG 1e15
+/* A piece's accuracy is relative to its greatest speed and density, but at least to this share of
  * the greatest of all particles, because these set how means are rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
 /* A sum may become this many times area times the greatest speed and density. Weights below 0, as
  * M'4 has, make sums a little larger than that product. */
 #define MCOR_FLUX_ROOM 8
-/* Cells treated together. */
-#define MCOR_FLUX_TOGETHER 4096
-/* Greatest difference between the integrals of a piece and its parts, relative to the piece's
- * area times the speeds of its section. A piece that is small beside the section may differ by
- * more (MCOR_FLUX_SMALL), because errors of many pieces cancel. */
+/* Greatest difference between the two results of a piece, relative to its area times its speed. A
+ * piece that is small beside the section may differ by more (MCOR_FLUX_SMALL), because errors of
+ * many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* The most divisions of a piece, and of an unclear piece. */
-#define MCOR_FLUX_DEPTH 12
-#define MCOR_FLUX_UNCLEAR_DEPTH 6
+/* The most halvings of a cell, and of a piece that the level may cross between its samples. */
+#define MCOR_FLUX_DEPTH 24
+#define MCOR_FLUX_UNCLEAR_DEPTH 12
+/* Weights bend by about 4 / h^2, so between samples they may differ by this from the nearest one,
+ * times the square of the longest side. */
+#define MCOR_FLUX_BEND 0.125
 
-/* ---- speeds ---- */
-
-/* Reduces the greatest speeds and densities of sections over all ranks. Ranks without particles
- * call it, too. */
-static mcor_status mcor_scale_sections(mcor_flux_job* job)
+/* What differs between triangles and lines. A piece has samples: its corners come first, its middle
+ * is the last one. */
+#define MCOR_FLUX_POINTS 7
+#define MCOR_FLUX_PARTS 4
+struct mcor_flux_form
 {
-  mcor_context* context = job->edges.context;
-  for (int64_t s = 0; s < job->section_count; ++s)
+  int corners, points;
+  double place[MCOR_FLUX_POINTS][3]; /* where samples are: weights of the corners */
+  double share[2][MCOR_FLUX_POINTS]; /* each sample's share of an integral, in both rules */
+  int part[MCOR_FLUX_PARTS][3];      /* the samples that are the corners of each part */
+};
+
+static const mcor_flux_form mcor_flux_forms[2] = {
+  { 3, 7,
+    { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0.5, 0.5, 0 }, { 0, 0.5, 0.5 }, { 0.5, 0, 0.5 },
+      { 1 / 3.0, 1 / 3.0, 1 / 3.0 } },
+    { { 0, 0, 0, 1 / 3.0, 1 / 3.0, 1 / 3.0, 0 },
+      { 1 / 20.0, 1 / 20.0, 1 / 20.0, 2 / 15.0, 2 / 15.0, 2 / 15.0, 9 / 20.0 } },
+    { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 }, { 3, 4, 5 } } },
+  { 2, 5, { { 1, 0 }, { 0, 1 }, { 0.75, 0.25 }, { 0.25, 0.75 }, { 0.5, 0.5 } },
+    { { 1 / 6.0, 1 / 6.0, 0, 0, 2 / 3.0 },
+      { 7 / 90.0, 7 / 90.0, 32 / 90.0, 32 / 90.0, 12 / 90.0 } },
+    { { 0, 2 }, { 2, 4 }, { 4, 3 }, { 3, 1 } } },
+};
+
+/* ---- pieces ---- */
+
+double mcor_piece_size(const mcor_flux_job* job, const mcor_flux_piece* piece)
+{
+  double edges[2][3], product[3];
+  mcor_subtract(piece->corner[1], piece->corner[0], edges[0]);
+  mcor_subtract(piece->corner[2], piece->corner[0], edges[1]);
+  mcor_cross(edges[0], edges[1], product);
+  return job->is_plane ? sqrt(mcor_dot(edges[0], edges[0]))
+                       : 0.5 * sqrt(mcor_dot(product, product));
+}
+
+/* Finds the longest side, from corner *side to the next one; returns how long it is. */
+static double mcor_longest_side(const mcor_flux_job* job, const mcor_flux_piece* piece, int* side)
+{
+  double longest = -1;
+  for (int c = 0; c < (job->is_plane ? 1 : 3); ++c)
   {
-    mcor_flux_section* found = &job->found[s];
-    double seen[2] = { found->speed, found->density };
-    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, seen, 2));
-    found->speed = fmax(seen[0], job->speed_floor);
-    found->density = fmax(seen[1], job->density_floor);
-    MCOR_TRY(mcor_reduce_counts(context, MCOR_GREATEST, &found->reached, 1));
+    double way[3];
+    mcor_subtract(piece->corner[(c + 1) % 3], piece->corner[c], way);
+    const double square = mcor_dot(way, way);
+    *side = square > longest ? c : *side;
+    longest = fmax(longest, square);
   }
+  return sqrt(longest);
+}
+
+/* Replaces a piece by its halves. */
+static mcor_status mcor_halve_piece(mcor_flux_job* job, const mcor_flux_piece* piece)
+{
+  mcor_flux_piece halves[2] = { *piece, *piece };
+  int side = 0;
+  mcor_longest_side(job, piece, &side);
+  const int next = (side + 1) % 3;
+  double middle[3];
+  mcor_point_between(piece->corner[side], piece->corner[next], 0.5, middle);
+  memcpy(halves[0].corner[next], middle, sizeof middle);
+  memcpy(halves[1].corner[side], middle, sizeof middle);
+  MCOR_APPEND(job->base.context, &job->pieces, halves[0]);
+  MCOR_APPEND(job->base.context, &job->pieces, halves[1]);
   return MCOR_OK;
 }
 
-static mcor_status mcor_find_speeds(mcor_flux_job* job)
+/* Whether particles, and this call's share of the section, may be near a piece. */
+static bool mcor_is_near(const mcor_flux_job* job, const mcor_flux_piece* piece)
 {
-  const mcor_flux_field* field = &job->field;
-  for (int64_t first = 0; first < job->cells.count; first += MCOR_GAUGE_BATCH)
+  for (int a = 0; a < 3; ++a)
   {
-    const int64_t rest = job->cells.count - first;
-    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
-    for (int i = 0; i < count; ++i)
+    double low = INFINITY, high = -INFINITY;
+    for (int c = 0; c < job->form->corners; ++c)
     {
-      const mcor_flux_cell* cell = &job->cells.of[first + i];
-      const double* counts = job->patches.of[cell->patch].counts;
-      field->at[i][0] = ((double)cell->u + 0.5) / counts[0];
-      field->at[i][1] = job->is_plane ? 0 : ((double)cell->v + 0.5) / counts[1];
-      field->at[i][2] = (double)cell->patch;
+      low = fmin(low, piece->corner[c][a]);
+      high = fmax(high, piece->corner[c][a]);
     }
-    MCOR_TRY(mcor_sample_flux(job, count));
-    for (int i = 0; i < count; ++i)
+    if (high < job->low[a] || low > job->high[a])
     {
-      const mcor_patch* patch = &job->patches.of[job->cells.of[first + i].patch];
-      mcor_flux_section* found = &job->found[patch->section];
-      found->reached = found->reached || field->weight[i] != 0;
-      if (field->weight[i] >= job->edges.level)
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Finds sample k of a piece. */
+static void mcor_place_sample(
+  const mcor_flux_form* form, const mcor_flux_piece* piece, int k, double point[3])
+{
+  const double* place = form->place[k];
+  for (int a = 0; a < 3; ++a)
+  {
+    point[a] = place[0] * piece->corner[0][a] + place[1] * piece->corner[1][a] +
+      place[2] * piece->corner[2][a];
+  }
+}
+
+/* Takes pieces from the list until the batch is full: halves those that are longer than a cell,
+ * and drops those that are not this call's. */
+static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
+{
+  mcor_context* context = job->base.context;
+  const int most = MCOR_GAUGE_BATCH / job->form->points;
+  const double cell = MCOR_FLUX_CELL * job->smoothing_length;
+  for (*count = 0; *count < most && job->pieces.count > 0;)
+  {
+    mcor_flux_piece piece = job->pieces.of[--job->pieces.count];
+    if (piece.depth == 0)
+    {
+      double middle[3];
+      int side = 0;
+      mcor_place_sample(job->form, &piece, job->form->points - 1, middle);
+      const bool is_near = mcor_is_near(job, &piece);
+      if (is_near && mcor_longest_side(job, &piece, &side) > cell)
       {
-        const double* velocity = field->velocity + (int64_t)i * job->velocity_components;
-        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, i, velocity)));
-        found->density = fmax(found->density, fabs(field->density[i]));
+        MCOR_TRY(mcor_halve_piece(job, &piece));
+        continue;
       }
+      if (!is_near || (job->base.has_box && !mcor_owns_point(context, middle, job->owned)))
+      {
+        job->area_done += mcor_piece_size(job, &piece);
+        continue;
+      }
+      MCOR_FAIL_IF(++job->cells > MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(SECTION_CELLS), mcor_label_section(job, piece.section).text, MCOR_FLUX_MOST, cell);
+      piece.depth = 1;
     }
-  }
-  return mcor_scale_sections(job);
-}
-
-/* ---- division ---- */
-
-/* Makes the pieces of cells [first, last). */
-static mcor_status mcor_begin_pieces(mcor_flux_job* job, int64_t first, int64_t last)
-{
-  job->pieces.count = 0;
-  for (int64_t i = first; i < last; ++i)
-  {
-    const mcor_flux_cell* cell = &job->cells.of[i];
-    const mcor_patch* patch = &job->patches.of[cell->patch];
-    const double u[2] = { (double)cell->u / patch->counts[0],
-      (double)(cell->u + 1) / patch->counts[0] };
-    const double v[2] = { (double)cell->v / patch->counts[1],
-      (double)(cell->v + 1) / patch->counts[1] };
-    const double middle[2] = { 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]) };
-    const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
-    const double low = job->is_plane ? 0 : v[0];
-    mcor_flux_piece piece = { .patch = cell->patch,
-      .corner = { { u[0], low }, { u[1], low }, { u[0], v[1] } },
-      .area = size * mcor_patch_measure(patch, middle) };
-    MCOR_APPEND(job->edges.context, &job->pieces, piece);
-    /* A triangle patch has no second piece beyond its diagonal. */
-    if (!job->is_plane &&
-      (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
-    {
-      const double corner[3][2] = { { u[1], v[1] }, { u[0], v[1] }, { u[1], v[0] } };
-      memcpy(piece.corner, corner, sizeof corner);
-      MCOR_APPEND(job->edges.context, &job->pieces, piece);
-    }
+    job->batch[(*count)++] = piece;
   }
   return MCOR_OK;
 }
 
-/* Whether the parts of a piece may replace it in the sum. Sets `sum` to the sum of the parts. */
-static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
-  const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
+/* ---- integrals ---- */
+
+static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
 {
-  const mcor_flux_section* section = &job->found[job->patches.of[piece->patch].section];
-  const double tolerance = MCOR_FLUX_TOLERANCE *
-    fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
-  const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
-  bool settled = true;
-  memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
-  for (int part = 0; part < job->form->parts; ++part)
+  const int points = job->form->points, samples = count * points;
+  double* points_at = (double*)job->base.run->points->data;
+  double* values[2] = { job->velocity, job->density };
+  for (int i = 0; i < samples; ++i)
   {
-    settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
+    mcor_place_sample(job->form, &job->batch[i / points], i % points, points_at + 3 * i);
+  }
+  memset(values[0], 0, (size_t)samples * (size_t)job->velocity_components * sizeof(double));
+  memset(values[1], 0, (size_t)samples * sizeof(double));
+  job->base.run->samples->values = values;
+  return mcor_sample_level(&job->base, job->weight, samples);
+}
+
+/* Adds the integrals of linear functions over the part in fluid of a triangle or line, whose
+ * corners are these samples. value: at all samples. Returns whether the level cuts it. */
+static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
+  double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
+{
+  /* By the corners in fluid: the one that is alone on its side. */
+  static const int lone_corner[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
+  const int corners = job->form->corners;
+  const double level = job->base.level;
+  int inside = 0;
+  for (int c = 0; c < corners; ++c)
+  {
+    inside |= weight[corner[c]] >= level ? 1 << c : 0;
+  }
+  const int lone = corners == 3 ? lone_corner[inside] : 0, from = corner[lone];
+  const bool is_cut = inside != 0 && inside != (1 << corners) - 1;
+  /* Means over all, and over the corner that the level cuts off. */
+  double tip[MCOR_FLUX_SUMS], mean[MCOR_FLUX_SUMS], share = is_cut ? 1 : 0;
+  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  {
+    tip[s] = mean[s] = value[from][s] / corners;
+  }
+  for (int c = 1; c < corners; ++c)
+  {
+    const int to = corner[(lone + c) % corners];
+    const double at = is_cut ? (level - weight[from]) / (weight[to] - weight[from]) : 0;
+    share *= at;
     for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
     {
-      sum[s] += parts[part].sum[s];
+      mean[s] += value[to][s] / corners;
+      tip[s] += (value[from][s] + at * (value[to][s] - value[from][s])) / corners;
     }
+  }
+  for (int s = 0; s < MCOR_FLUX_SUMS && inside != 0; ++s)
+  {
+    const double cut = share * tip[s];
+    sum[s] += size * (is_cut && inside >> lone & 1 ? cut : mean[s] - cut);
+  }
+  return is_cut;
+}
+
+/* What the samples of a piece tell. */
+typedef struct mcor_flux_result
+{
+  double sum[2][MCOR_FLUX_SUMS]; /* by the simpler and the better way */
+  double scale[MCOR_FLUX_SUMS];  /* of the sums, for a unit of area */
+  bool is_unclear;               /* the level may cross the piece between its samples */
+  bool is_reached;
+} mcor_flux_result;
+
+/* Integrates a piece. first: its first sample. */
+static mcor_flux_result mcor_measure_piece(
+  const mcor_flux_job* job, const mcor_flux_piece* piece, int first)
+{
+  static const int corners[3] = { 0, 1, 2 };
+  const mcor_flux_form* form = job->form;
+  const double *weight = job->weight + first, *density = job->density + first,
+               size = mcor_piece_size(job, piece);
+  double value[MCOR_FLUX_POINTS][MCOR_FLUX_SUMS];
+  double nearest = INFINITY, speed = job->speed_floor, dense = job->density_floor;
+  mcor_flux_result result = { .is_reached = false };
+  bool is_inside = true, is_cut = false;
+  int side = 0;
+  for (int k = 0; k < form->points; ++k)
+  {
+    const double* velocity = job->velocity + (int64_t)(first + k) * job->velocity_components;
+    const double above = weight[k] - job->base.level;
+    double along = 0, square = 0;
+    for (int c = 0; c < job->velocity_components; ++c)
+    {
+      along += velocity[c] * piece->normal[c];
+      square += velocity[c] * velocity[c];
+    }
+    value[k][0] = 1;
+    value[k][1] = along;
+    value[k][2] = density[k] * along;
+    speed = fmax(speed, sqrt(square));
+    dense = fmax(dense, fabs(density[k]));
+    nearest = fmin(nearest, weight[0] >= job->base.level ? above : -above);
+    is_inside = is_inside && above >= 0;
+    result.is_reached = result.is_reached || weight[k] != 0;
+  }
+  if (is_inside)
+  {
+    for (int i = 0; i < 2 * MCOR_FLUX_SUMS * form->points; ++i)
+    {
+      const int rule = i % 2, s = i / 2 % MCOR_FLUX_SUMS, k = i / (2 * MCOR_FLUX_SUMS);
+      result.sum[rule][s] += size * form->share[rule][k] * value[k][s];
+    }
+  }
+  else
+  {
+    is_cut = mcor_add_cut(job, corners, weight, value, size, result.sum[0]);
+    for (int part = 0; part < MCOR_FLUX_PARTS; ++part)
+    {
+      mcor_add_cut(job, form->part[part], weight, value, size / MCOR_FLUX_PARTS, result.sum[1]);
+    }
+  }
+  const double length = mcor_longest_side(job, piece, &side) / job->smoothing_length;
+  result.is_unclear = !is_cut && nearest < MCOR_FLUX_BEND * length * length;
+  result.scale[0] = 1;
+  result.scale[1] = speed;
+  result.scale[2] = speed * dense;
+  return result;
+}
+
+/* Adds a piece to its section, or halves it. */
+static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece, int first)
+{
+  const mcor_flux_result result = mcor_measure_piece(job, piece, first);
+  mcor_flux_section* found = &job->found[piece->section];
+  const double size = mcor_piece_size(job, piece);
+  const double tolerance =
+    MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->area));
+  bool is_settled = !result.is_unclear || piece->depth > MCOR_FLUX_UNCLEAR_DEPTH;
+  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  {
+    const double difference = result.sum[1][s] - result.sum[0][s];
+    is_settled = is_settled && fabs(difference) <= tolerance * result.scale[s];
+  }
+  if (!is_settled && piece->depth <= MCOR_FLUX_DEPTH)
+  {
+    ++piece->depth;
+    return mcor_halve_piece(job, piece);
   }
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
-    settled = settled && fabs(sum[s] - piece->sum[s]) <= tolerance * scale[s];
+    const double units = result.sum[1][s] / found->unit[s];
+    found->sum[s] += llrint(fmin(fmax(units, -0x1p62), 0x1p62));
   }
-  return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
-}
-
-/* Divides the pieces into their parts until they are settled, and adds them to their sections. */
-static mcor_status mcor_settle_pieces(mcor_flux_job* job)
-{
-  const int divided = job->form->parts;
-  while (job->pieces.count > 0)
-  {
-    job->parts.count = 0;
-    for (int64_t i = 0; i < divided * job->pieces.count; ++i)
-    {
-      const mcor_flux_piece* whole = &job->pieces.of[i / divided];
-      mcor_flux_piece part = *whole;
-      ++part.depth;
-      for (int c = 0; c < 3; ++c)
-      {
-        double at[3];
-        mcor_place_point(job, whole, job->form->part[i % divided][c], at);
-        memcpy(part.corner[c], at, sizeof part.corner[c]);
-      }
-      MCOR_APPEND(job->edges.context, &job->parts, part);
-    }
-    MCOR_TRY(mcor_measure_pieces(job, &job->parts));
-    mcor_flux_piece* parts = job->parts.of;
-    int64_t left = 0;
-    for (int64_t i = 0; i < job->pieces.count; ++i)
-    {
-      const mcor_flux_piece* piece = &job->pieces.of[i];
-      mcor_flux_section* found = &job->found[job->patches.of[piece->patch].section];
-      double sum[MCOR_FLUX_SUMS];
-      if (!mcor_is_settled(job, piece, &parts[divided * i], sum))
-      {
-        memmove(&parts[left], &parts[divided * i], (size_t)divided * sizeof *parts);
-        left += divided;
-        continue;
-      }
-      for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
-      {
-        found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
-      }
-    }
-    const mcor_flux_pieces settled = job->pieces;
-    job->pieces = job->parts;
-    job->pieces.count = left;
-    job->parts = settled;
-  }
+  found->sum[MCOR_FLUX_SUMS] += result.is_reached;
+  job->area_done += size;
   return MCOR_OK;
 }
 
-/* Adds up all cells. */
-static mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
+/* Adds up all sections. */
+static mcor_status mcor_add_fluxes(mcor_level_job* base)
 {
-  mcor_flux_job* job = (mcor_flux_job*)edges;
+  mcor_flux_job* job = (mcor_flux_job*)base;
   const size_t n = MCOR_GAUGE_BATCH;
-  const double count = (double)job->cells.count;
-  double* samples = malloc(8 * n * sizeof *samples);
-  MCOR_TRY(mcor_allocated(edges->context, samples));
-  double *weight = samples + 3 * n, *velocity = weight + n, *density = velocity + 3 * n;
-  job->field =
-    (mcor_flux_field){ (double(*)[3])samples, weight, velocity, density, { velocity, density } };
-  MCOR_TRY(mcor_find_speeds(job));
-  for (int64_t first = 0, last; first < job->cells.count; first = last)
+  double whole = 0;
+  for (int64_t s = 0; s < job->section_count; ++s)
   {
-    const int64_t rest = job->cells.count - first;
-    last = first + (rest < MCOR_FLUX_TOGETHER ? rest : MCOR_FLUX_TOGETHER);
-    MCOR_TRY(mcor_report(
-      edges->context, "flux", 0.2 + 0.8 * (double)first / count, 0.2 + 0.8 * (double)last / count));
-    MCOR_TRY(mcor_begin_pieces(job, first, last));
-    MCOR_TRY(mcor_measure_pieces(job, &job->pieces));
-    MCOR_TRY(mcor_settle_pieces(job));
+    whole += job->found[s].area;
+  }
+  job->batch = malloc(n / (size_t)job->form->points * sizeof *job->batch);
+  job->weight = malloc(5 * n * sizeof *job->weight);
+  MCOR_TRY(mcor_allocated(base->context, job->batch && job->weight));
+  job->velocity = job->weight + n;
+  job->density = job->velocity + 3 * n;
+  for (int count = 1; count > 0;)
+  {
+    MCOR_TRY(mcor_report(base->context, "flux", 0.2 + 0.8 * job->area_done / whole, 1));
+    MCOR_TRY(mcor_take_pieces(job, &count));
+    MCOR_TRY(count > 0 ? mcor_sample_pieces(job, count) : MCOR_OK);
+    for (int i = 0; i < count; ++i)
+    {
+      MCOR_TRY(mcor_settle_piece(job, &job->batch[i], i * job->form->points));
+    }
   }
   return MCOR_OK;
 }
 
 /* ---- the call ---- */
 
+/* Finds where pieces are sampled; the lattice must be known. */
+static mcor_status mcor_bound_pieces(mcor_flux_job* job)
+{
+  mcor_context* context = job->base.context;
+  const mcor_lattice* lattice = &context->lattice;
+  const double* box = job->base.box;
+  job->smoothing_length = context->run.options->h_scale * context->measure.h_min;
+  const double cell = MCOR_FLUX_CELL * job->smoothing_length;
+  if (job->base.has_box)
+  {
+    mcor_own_cells(context, box, job->owned);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool periodic = lattice->period[a] > 0; /* there are particles all along a period */
+    const bool boxed = job->base.has_box && !periodic;
+    const double low = periodic ? -INFINITY : context->measure.low[a] - lattice->cube;
+    const double high = periodic ? INFINITY : context->measure.high[a] + lattice->cube;
+    job->low[a] = boxed ? fmax(low, box[2 * a] - 2 * cell) : low;
+    job->high[a] = boxed ? fmin(high, box[2 * a + 1] + 2 * cell) : high;
+  }
+  for (int64_t i = 0; i < 9 * job->pieces.count; ++i)
+  {
+    const mcor_flux_piece* piece = &job->pieces.of[i / 9];
+    const double cells = fabs(piece->corner[i / 3 % 3][i % 3]) / cell;
+    MCOR_FAIL_IF(!(cells <= MCOR_FLUX_MOST_ALONG), context, MCOR_INVALID_ARGUMENT,
+      MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece->section).text, cells,
+      context->measure.h_min, MCOR_FLUX_MOST_ALONG);
+  }
+  return MCOR_OK;
+}
+
 /* Sets the floors of speed and density, and the units in which sums are whole numbers, from the
  * ranges of velocity and density. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
-  mcor_context* context = job->edges.context;
+  mcor_context* context = job->base.context;
   double largest[2] = { 0 };
   for (int i = 0; i < context->attributes.varying_count; ++i)
   {
@@ -227,19 +400,16 @@ static mcor_status mcor_scale_flux(mcor_flux_job* job)
   const double speed = sqrt(largest[0]);
   job->speed_floor = MCOR_FLUX_FLOOR * speed;
   job->density_floor = MCOR_FLUX_FLOOR * largest[1];
-  for (int64_t s = 0; s < job->section_count; ++s)
+  for (int64_t i = 0; i < MCOR_FLUX_SUMS * job->section_count; ++i)
   {
-    mcor_flux_section* found = &job->found[s];
-    const double most[MCOR_FLUX_SUMS] = { found->area, found->area * speed,
-      found->area * speed * largest[1] };
-    for (int k = 0; k < MCOR_FLUX_SUMS; ++k)
-    {
-      MCOR_FAIL_IF(!isfinite(most[k]), context, MCOR_INVALID_DATA, MCOR_SAY(FLUX_TOO_LARGE), speed,
-        largest[1]);
-      int exponent = 0;
-      frexp(MCOR_FLUX_ROOM * most[k], &exponent);
-      found->unit[k] = ldexp(1, exponent > -900 ? exponent - 62 : -962);
-    }
+    mcor_flux_section* found = &job->found[i / MCOR_FLUX_SUMS];
+    const int s = (int)(i % MCOR_FLUX_SUMS);
+    const double most = found->area * (s > 0 ? speed : 1) * (s > 1 ? largest[1] : 1);
+    int exponent = 0;
+    MCOR_FAIL_IF(
+      !isfinite(most), context, MCOR_INVALID_DATA, MCOR_SAY(FLUX_TOO_LARGE), speed, largest[1]);
+    frexp(MCOR_FLUX_ROOM * most, &exponent);
+    found->unit[s] = ldexp(1, exponent > -900 ? exponent - 62 : -962);
   }
   return MCOR_OK;
 }
@@ -247,14 +417,14 @@ static mcor_status mcor_scale_flux(mcor_flux_job* job)
 static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
 {
   fluxes->readings = calloc((size_t)job->section_count + 1, sizeof *fluxes->readings);
-  MCOR_TRY(mcor_allocated(job->edges.context, fluxes->readings));
+  MCOR_TRY(mcor_allocated(job->base.context, fluxes->readings));
   fluxes->count = job->section_count;
   for (int64_t s = 0; s < job->section_count; ++s)
   {
     mcor_flux_section* found = &job->found[s];
     mcor_flux_reading* reading = &fluxes->readings[s];
-    MCOR_TRY(mcor_reduce_counts(job->edges.context, MCOR_SUM_OF, found->sum, MCOR_FLUX_SUMS));
-    reading->outside = !found->reached;
+    MCOR_TRY(mcor_reduce_counts(job->base.context, MCOR_SUM_OF, found->sum, MCOR_FLUX_SUMS + 1));
+    reading->outside = found->sum[MCOR_FLUX_SUMS] == 0;
     reading->area = (double)found->sum[0] * found->unit[0];
     reading->volume_flux = (double)found->sum[1] * found->unit[1];
     reading->mass_flux = job->has_density ? (double)found->sum[2] * found->unit[2] : NAN;
@@ -263,11 +433,12 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
   return MCOR_OK;
 }
 
-static mcor_status mcor_flux_input(
+/* Adds up the sections over the particles of this rank. */
+static mcor_status mcor_flux_particles(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
 {
   int64_t not_finite[2] = { -1, -1 };
-  const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
+  const int axes = context->space.axes, components = job->velocity_components;
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_FAIL_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(VELOCITY_COMPONENTS), components, axes == 2 ? ", or 2 in two dimensions" : "");
@@ -289,53 +460,39 @@ static mcor_status mcor_flux_input(
   MCOR_TRY(mcor_scale_flux(job));
   if (input->count == 0 || job->section_count == 0)
   {
-    return mcor_scale_sections(job);
+    return MCOR_OK;
   }
-  const double margin = job->edges.box
+  const double margin = options->globals
     ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
       0.5 * options->globals->measured.cube
     : 0;
-  MCOR_TRY(mcor_bound_level(context, input, options, job->edges.box, margin, &job->around));
+  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &job->around));
   MCOR_TRY(mcor_prepare(context, input, options));
   if (context->grid.count == 0)
   {
-    return mcor_scale_sections(job);
+    return MCOR_OK;
   }
-  MCOR_TRY(mcor_list_flux_cells(job));
-  return mcor_run_points(&job->edges, input, mcor_add_fluxes);
+  MCOR_TRY(mcor_bound_pieces(job));
+  return mcor_run_points(&job->base, input, mcor_add_fluxes);
 }
 
 static mcor_status mcor_run_flux(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_flux_job job = *(const mcor_flux_job*)data;
-  mcor_fluxes* fluxes = job.fluxes;
-  double box[6];
-  job.is_plane = context->space.flat;
+  job.is_plane = mcor_is_plane(context);
   job.plane = &context->plane;
   job.across = mcor_plane_axis(job.plane, 2);
-  job.form = &mcor_flux_forms[context->space.flat];
-  job.edges.map_data = &job;
-  if (job.edges.box && job.is_plane)
-  {
-    mcor_flatten_sides(&context->plane, job.edges.box, box);
-    job.edges.box = box;
-  }
-  mcor_free_fluxes(fluxes); /* results of an earlier attempt */
+  job.form = &mcor_flux_forms[job.is_plane];
+  mcor_free_fluxes(job.fluxes); /* results of an earlier attempt */
   job.found = calloc((size_t)job.section_count + 1, sizeof *job.found);
   mcor_status status = mcor_allocated(context, job.found);
-  MCOR_THEN(status, mcor_flux_input(context, input, options, &job));
-  MCOR_THEN(status, mcor_read_fluxes(&job, fluxes));
-  mcor_free_gauge_parts(&job.edges);
+  MCOR_THEN(status, mcor_flux_particles(context, input, options, &job));
+  MCOR_THEN(status, mcor_read_fluxes(&job, job.fluxes));
   free(job.found);
-  free(job.patches.of);
-  free(job.cells.of);
-  free(job.field.at);
   free(job.pieces.of);
-  free(job.parts.of);
-  free(job.inside.of);
-  free(job.cuts.of);
-  free(job.lines.of);
+  free(job.batch);
+  free(job.weight);
   return status != MCOR_OK || input->count == 0 || job.section_count == 0
     ? status
     : mcor_finish_field(context);
@@ -353,19 +510,14 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "sections");
   MCOR_FAIL_IF((input->attribute_count != 1 && input->attribute_count != 2) || !input->attributes,
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUX_ATTRIBUTES), input->attribute_count);
-  mcor_input given = *input;
-  mcor_options own;
-  mcor_flux_job job = { .edges = { .context = context, .map = mcor_map_patch },
+  mcor_flux_job job = { .base = { .context = context, .who = "Fluxes", .body = mcor_run_flux },
     .sections = sections,
     .section_count = count,
     .fluxes = fluxes,
     .velocity_components = mcor_components(&input->attributes[0]),
     .has_density = input->attribute_count == 2,
     .around = mcor_no_findings() };
-  MCOR_TRY(
-    mcor_begin_level(context, options, "Fluxes", &given, &own, &job.edges.level, &job.edges.box));
-  const mcor_status status = mcor_run_call(
-    context, &given, &own, mcor_uses_solids(input, &own), &fluxes->statistics, mcor_run_flux, &job);
+  const mcor_status status = mcor_call_level(&job.base, input, options, &fluxes->statistics);
   if (status != MCOR_OK)
   {
     mcor_free_fluxes(fluxes);

@@ -37,20 +37,9 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
 /* Returns the length of a line. hypot does not have the same bits everywhere. */
 static double mcor_gauge_length(const mcor_gauge_line* line)
 {
-  double way[3], most = 0, sum = 0;
-  int exponent;
+  double way[3];
   mcor_subtract(line->to, line->from, way);
-  for (int a = 0; a < 3; ++a)
-  {
-    most = fmax(most, fabs(way[a]));
-  }
-  frexp(most, &exponent);
-  for (int a = 0; a < 3; ++a)
-  {
-    way[a] = ldexp(way[a], -exponent);
-    sum += way[a] * way[a];
-  }
-  return ldexp(sqrt(sum), exponent);
+  return sqrt(mcor_dot(way, way));
 }
 
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number)
@@ -92,20 +81,6 @@ static double mcor_gauge_step(double h_scale, double smoothing_length_min)
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
 }
 
-/* Appends own samples with up to two neighbours on either side. */
-static mcor_status mcor_append_samples(
-  mcor_gauge_job* job, const mcor_gauge_samples* whole, int64_t own_first, int64_t own_last)
-{
-  mcor_gauge_samples samples = *whole;
-  samples.begin = whole->first;
-  samples.own_first = own_first;
-  samples.own_last = own_last;
-  samples.first = own_first - 2 > whole->first ? own_first - 2 : whole->first;
-  samples.last = own_last + 2 < whole->last ? own_last + 2 : whole->last;
-  MCOR_APPEND(job->context, &job->samples, samples);
-  return MCOR_OK;
-}
-
 void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2])
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -140,33 +115,43 @@ bool mcor_owns_point(const mcor_context* context, const double point[3], double 
   return true;
 }
 
+/* Appends the owned samples of a line, each run of them with up to two neighbours on either side. */
 static mcor_status mcor_append_owned(mcor_gauge_job* job, const mcor_gauge_samples* whole)
 {
   double cells[3][2], point[3];
-  mcor_own_cells(job->context, job->box, cells);
   const mcor_gauge_line* line = &job->lines[whole->line];
-  int64_t begin = -1;
+  mcor_gauge_samples samples = *whole;
+  bool was_owned = false;
+  samples.begin = whole->first;
+  if (job->base.has_box)
+  {
+    mcor_own_cells(job->base.context, job->base.box, cells);
+  }
   for (int64_t i = whole->first; i <= whole->last + 1; ++i)
   {
     mcor_point_between(line->from, line->to, (double)i / (double)whole->steps, point);
-    const bool owned = i <= whole->last && mcor_owns_point(job->context, point, cells);
-    if (owned && begin < 0)
+    const bool owned =
+      i <= whole->last && (!job->base.has_box || mcor_owns_point(job->base.context, point, cells));
+    if (owned && !was_owned)
     {
-      begin = i;
+      samples.own_first = i;
+      samples.first = i - 2 > whole->first ? i - 2 : whole->first;
     }
-    else if (!owned && begin >= 0)
+    else if (!owned && was_owned)
     {
-      MCOR_TRY(mcor_append_samples(job, whole, begin, i - 1));
-      begin = -1;
+      samples.own_last = i - 1;
+      samples.last = i + 1 < whole->last ? i + 1 : whole->last;
+      MCOR_APPEND(job->base.context, &job->samples, samples);
     }
+    was_owned = owned;
   }
   return MCOR_OK;
 }
 
-/* Appends the samples of a line; with a box, only the owned ones. The lattice must be known. */
+/* Appends the samples of a line where particles may reach it. The lattice must be known. */
 static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 {
-  mcor_context* context = job->context;
+  mcor_context* context = job->base.context;
   const mcor_gauge_line* line = &job->lines[number];
   const double step = mcor_gauge_step(context->run.options->h_scale, context->measure.h_min);
   const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
@@ -195,7 +180,8 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   }
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
-  const bool whole_is_countable = steps < 4e15; /* so that doubles can tell places on the line apart */
+  const bool whole_is_countable =
+    steps < 4e15; /* so that doubles can tell places on the line apart */
   MCOR_FAIL_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
     MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES), mcor_label_gauge(line->name, number).text,
     (whole_is_countable ? last - first : steps) + 1, context->measure.h_min,
@@ -208,8 +194,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     whole.first = whole.first >= 2 ? whole.last - 2 : 0;
     whole.last = whole.first + 2;
   }
-  return job->box ? mcor_append_owned(job, &whole)
-                  : mcor_append_samples(job, &whole, whole.first, whole.last);
+  return mcor_append_owned(job, &whole);
 }
 
 /* ---- readings ---- */
@@ -260,7 +245,7 @@ static mcor_status mcor_read_lines(
   if (!sorted || !gauges->readings || !gauges->crossings)
   {
     free(sorted);
-    return mcor_allocated(job->context, false);
+    return mcor_allocated(job->base.context, false);
   }
   if (count > 0)
   {
@@ -292,8 +277,9 @@ static mcor_status mcor_read_lines(
 /* ---- the call ---- */
 
 /* Treats lines together, as many as have about MCOR_GAUGE_TOGETHER samples. */
-static mcor_status mcor_gauge_all(mcor_gauge_job* job)
+static mcor_status mcor_gauge_all(mcor_level_job* base)
 {
+  mcor_gauge_job* job = (mcor_gauge_job*)base;
   const int64_t count = job->samples.count;
   for (int64_t first = 0, last; first < count; first = last)
   {
@@ -302,7 +288,7 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
     {
       points += job->samples.of[last].last - job->samples.of[last].first + 1;
     }
-    MCOR_TRY(mcor_report(job->context, "gauges", 0.2 + 0.8 * (double)first / (double)count,
+    MCOR_TRY(mcor_report(base->context, "gauges", 0.2 + 0.8 * (double)first / (double)count,
       0.2 + 0.8 * (double)last / (double)count));
     MCOR_TRY(mcor_gauge_samples_of(job, first, last));
   }
@@ -310,26 +296,32 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 }
 
 /* This box is a box of points, not of cells. */
-mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const double* box, double margin, const mcor_findings* around)
+mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, double margin, const mcor_findings* around)
 {
-  MCOR_FAIL_IF(box && margin > mcor_reach_margin(options, options->globals, 0), context,
+  mcor_context* context = job->context;
+  const bool has_box = job->has_box;
+  if (has_box && mcor_is_plane(context))
+  {
+    mcor_flatten_sides(&context->plane, job->box, job->box);
+  }
+  MCOR_FAIL_IF(has_box && margin > mcor_reach_margin(options, options->globals, 0), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(CUBE_TOO_SMALL_FOR_GAUGES), options->globals->measured.cube);
   for (int a = 0; a < 3; ++a)
   {
-    context->box.points[2 * a] = box ? box[2 * a] - margin : around->least[a];
-    context->box.points[2 * a + 1] = box ? box[2 * a + 1] + margin : around->most[a];
+    context->box.points[2 * a] = has_box ? job->box[2 * a] - margin : around->least[a];
+    context->box.points[2 * a + 1] = has_box ? job->box[2 * a + 1] + margin : around->most[a];
   }
   context->box.has_points = true;
   /* Other calls may reuse the search grid, unless it is cut to these points. */
-  context->box.of_points = box || input->particles_version == 0 || context->run.far;
+  context->box.of_points = has_box || input->particles_version == 0 || context->run.far;
   return MCOR_OK;
 }
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
  * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
  * equals the level where F is exactly this share of T. Far from solids F = T, and F stays. */
-mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count)
+mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;
   const double share = mcor_fluid_share(job->context);
@@ -349,7 +341,7 @@ mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count)
 }
 
 mcor_status mcor_run_points(
-  mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*))
+  mcor_level_job* job, const mcor_input* input, mcor_status (*work)(mcor_level_job*))
 {
   mcor_context* context = job->context;
   double* places = malloc(3 * (size_t)MCOR_GAUGE_BATCH * sizeof *places);
@@ -390,29 +382,29 @@ static mcor_status mcor_gauge_particles(
     const double from = line->from[i % 3], to = line->to[i % 3];
     mcor_add_range(&around, (int)(i % 3), fmin(from, to), fmax(from, to));
   }
-  const double margin = job->box
+  const double margin = options->globals
     ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
     : 0;
-  MCOR_TRY(mcor_bound_level(context, input, options, job->box, margin, &around));
+  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &around));
   MCOR_TRY(mcor_prepare(context, input, options));
   for (int64_t i = 0; i < job->line_count && context->grid.count > 0; ++i)
   {
     MCOR_TRY(mcor_plan_line(job, i));
   }
-  return context->grid.count > 0 ? mcor_run_points(job, input, mcor_gauge_all) : MCOR_OK;
+  return context->grid.count > 0 ? mcor_run_points(&job->base, input, mcor_gauge_all) : MCOR_OK;
 }
 
-/* Turns the lines and the box into the plane z = 0. */
-static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* lines, double box[6])
+/* Turns the lines into the plane z = 0. */
+static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* lines)
 {
-  const mcor_plane* plane = &job->context->plane;
+  const mcor_plane* plane = &job->base.context->plane;
   const int w = mcor_plane_axis(plane, 2);
   for (int64_t i = 0; i < job->line_count; ++i)
   {
     const mcor_gauge_line* line = &job->lines[i];
     const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
       (line->from[w] != plane->at || line->to[w] != plane->at);
-    MCOR_FAIL_IF(off, job->context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE),
+    MCOR_FAIL_IF(off, job->base.context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE),
       mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
     lines[i] = *line;
     for (int a = 0; a < 3; ++a)
@@ -423,11 +415,6 @@ static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* line
     }
   }
   job->lines = lines;
-  if (job->box)
-  {
-    mcor_flatten_sides(plane, job->box, box);
-    job->box = box;
-  }
   return MCOR_OK;
 }
 
@@ -436,14 +423,13 @@ static mcor_status mcor_run_gauge(
 {
   mcor_gauge_job job = *(const mcor_gauge_job*)data;
   mcor_gauge_line* flat = malloc((size_t)job.line_count * sizeof *flat + 1);
-  double box[6];
   const void* all = NULL;
   int64_t count = 0;
   mcor_free_gauges(job.gauges); /* results of an earlier attempt */
   mcor_status status = mcor_allocated(context, flat);
   if (mcor_is_plane(context))
   {
-    MCOR_THEN(status, mcor_flatten_lines(&job, flat, box));
+    MCOR_THEN(status, mcor_flatten_lines(&job, flat));
   }
   MCOR_THEN(status, mcor_check_input(context, input, options));
   for (int64_t i = 0; i < job.line_count; ++i)
@@ -466,29 +452,32 @@ static mcor_status mcor_run_gauge(
                                                                        : mcor_finish_field(context);
 }
 
-mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,
-  mcor_input* input, mcor_options* own, double* level, const double** box)
+mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics)
 {
-  *level =
+  mcor_input given = *input;
+  mcor_options own = *options;
+  job->level =
     options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
-  MCOR_FAIL_IF(options->iso_count > 1 || !(*level > 0) || !isfinite(*level), context,
-    MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUID_LEVEL), who);
-  *own = *options;
-  if (own->wall_share == MCOR_WALL_SHARE_AUTO)
+  MCOR_FAIL_IF(options->iso_count > 1 || !(job->level > 0) || !isfinite(job->level), job->context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUID_LEVEL), job->who);
+  if (own.wall_share == MCOR_WALL_SHARE_AUTO)
   {
-    own->wall_share = MCOR_WALL_SHARE_MEASURED;
+    own.wall_share = MCOR_WALL_SHARE_MEASURED;
   }
-  mcor_evaluate_without_scalar(input, own);
-  own->ranks = options->globals ? options->ranks : NULL;
-  own->outputs = 0;
-  own->node_threshold = 0;
-  if (mcor_has_box(own))
+  mcor_evaluate_without_scalar(&given, &own);
+  own.ranks = options->globals ? options->ranks : NULL;
+  own.outputs = 0;
+  own.node_threshold = 0;
+  job->has_box = mcor_has_box(&own);
+  if (job->has_box)
   {
-    *box = options->box;
-    memset(own->box, 0, sizeof own->box);
-    input->particles_version = 0; /* a grid cut by another box must not be reused */
+    memcpy(job->box, own.box, sizeof own.box);
+    memset(own.box, 0, sizeof own.box);
+    given.particles_version = 0; /* a grid cut by another box must not be reused */
   }
-  return MCOR_OK;
+  return mcor_run_call(
+    job->context, &given, &own, mcor_uses_solids(input, &own), statistics, job->body, job);
 }
 
 mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mcor_options* options,
@@ -502,14 +491,12 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "lines");
   mcor_input without = *input;
-  mcor_options own;
-  mcor_gauge_job job = {
-    .context = context, .lines = lines, .line_count = count, .gauges = gauges
-  };
   without.attribute_count = 0;
-  MCOR_TRY(mcor_begin_level(context, options, "Gauges", &without, &own, &job.level, &job.box));
-  const mcor_status status = mcor_run_call(context, &without, &own, mcor_uses_solids(input, &own),
-    &gauges->statistics, mcor_run_gauge, &job);
+  mcor_gauge_job job = { .base = { .context = context, .who = "Gauges", .body = mcor_run_gauge },
+    .lines = lines,
+    .line_count = count,
+    .gauges = gauges };
+  const mcor_status status = mcor_call_level(&job.base, &without, options, &gauges->statistics);
   if (status != MCOR_OK)
   {
     mcor_free_gauges(gauges);

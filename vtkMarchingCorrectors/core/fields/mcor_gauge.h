@@ -3,8 +3,7 @@
 #ifndef mcor_gauge_h
 #define mcor_gauge_h
 
-/* Lines whose crossings with the level are sought. Places on a line are numbers from 0 to 1.
- * Fluxes (mcor_flux.h) use lines along the edges of a section's triangles. */
+/* Lines whose crossings with the level are sought. Places on a line are numbers from 0 to 1. */
 
 #include "mcor_input.h"
 #include "mcor_probe.h"
@@ -39,21 +38,26 @@ typedef struct mcor_gauge_place
 
 typedef MCOR_LIST(mcor_gauge_place) mcor_gauge_places;
 
+/* A call that measures where fluid is, as gauges and fluxes do. */
+typedef struct mcor_level_job
+{
+  mcor_context* context;
+  const char* who; /* subject of the error sentence about the level */
+  mcor_body body;  /* gets a pointer to this */
+  double level;
+  bool has_box;
+  double box[6];       /* the box of what this call owns, in the call's coordinates */
+  mcor_probe_run* run; /* evaluates the field */
+  double* with_solids; /* [MCOR_GAUGE_BATCH], weight sums of fluid and solids; NULL: no solids */
+} mcor_level_job;
+
 /* A call under way: its arguments, then its results. */
 typedef struct mcor_gauge_job
 {
-  mcor_context* context;
+  mcor_level_job base;          /* must be first */
   const mcor_gauge_line* lines; /* [line_count] */
   int64_t line_count;
-  double level;
-  const double* box; /* [6], box of the samples that this call owns; NULL: all */
   mcor_gauges* gauges;
-  mcor_probe_run* run; /* evaluates the field */
-  double* with_solids; /* [MCOR_GAUGE_BATCH], weight sums of fluid and solids; NULL: no solids */
-  /* Turns parameters into points if lines are given in parameters; NULL: lines are given in
-   * points. */
-  void (*map)(const void* data, const double parameters[3], double point[3]);
-  const void* map_data;
   MCOR_LIST(mcor_gauge_samples) samples;
   mcor_gauge_places records;
   mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
@@ -73,22 +77,20 @@ typedef struct mcor_gauge_label
   char text[80];
 } mcor_gauge_label;
 
-/* mcor_gauge.c. Shared by gauges and fluxes. Derives the options of the call in `own`, and the
- * level, which it checks; moves the box, if there is one, out of `own` to *box. who: subject of the
- * error sentence. */
-mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,
-  mcor_input* input, mcor_options* own, double* level, const double** box);
-/* Sets the box in which the field is evaluated: the ranges `around`, or, if ranks share the work,
- * the caller's box and `margin` around it. */
-mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const double* box, double margin, const mcor_findings* around);
+/* mcor_gauge.c. Shared by gauges and fluxes. Sets the level and the box, and runs the job's body. */
+mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics);
+/* Turns the job's box into the plane. Sets the box in which the field is evaluated: the ranges
+ * `around`, or, if ranks share the work, the job's box and `margin` around it. */
+mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, double margin, const mcor_findings* around);
 /* Loads the attributes, prepares the job's run for MCOR_GAUGE_BATCH points at a time, and calls
  * `work`. */
 mcor_status mcor_run_points(
-  mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*));
+  mcor_level_job* job, const mcor_input* input, mcor_status (*work)(mcor_level_job*));
 /* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered
  * near solids so that they fall below the level where the fluid ends at them. */
-mcor_status mcor_sample_level(mcor_gauge_job* job, double* weight, int count);
+mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
 /* mcor_own_cells finds the cells of a box along x, y, z; mcor_owns_point tells whether a point is
  * in one of them. */
@@ -98,11 +100,6 @@ bool mcor_owns_point(const mcor_context* context, const double point[3], double 
 /* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
  * results to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
-/* Shortens the job's changed parts until their crossings are known. one: each part keeps only its
- * first crossing; otherwise it keeps all crossings that the first round finds. */
-mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one);
-/* Returns the place on a changed part where the weight sum equals the level. */
-double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part);
 void mcor_free_gauge_parts(mcor_gauge_job* job);
 
 #endif

@@ -37,11 +37,11 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
 /* Evaluates the weight sums at the inner places. */
 static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 {
-  double* points = (double*)job->run->points->data;
+  double* points = (double*)job->base.run->points->data;
   const int64_t count = job->inner.count;
   free(job->weights);
   job->weights = malloc(((size_t)count + 1) * sizeof *job->weights);
-  MCOR_TRY(mcor_allocated(job->context, job->weights));
+  MCOR_TRY(mcor_allocated(job->base.context, job->weights));
   for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
   {
     const int64_t rest = count - first;
@@ -50,14 +50,9 @@ static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
     {
       const mcor_gauge_place* at = &job->inner.of[first + i];
       const mcor_gauge_line* line = &job->lines[at->line];
-      double parameters[3], *point = points + 3 * i;
-      mcor_point_between(line->from, line->to, at->place, job->map ? parameters : point);
-      if (job->map)
-      {
-        job->map(job->map_data, parameters, point);
-      }
+      mcor_point_between(line->from, line->to, at->place, points + 3 * i);
     }
-    MCOR_TRY(mcor_sample_level(job, job->weights + first, n));
+    MCOR_TRY(mcor_sample_level(&job->base, job->weights + first, n));
   }
   return MCOR_OK;
 }
@@ -80,7 +75,7 @@ static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
   const mcor_gauge_row* row, int64_t low, int64_t high)
 {
-  MCOR_APPEND(job->context, parts,
+  MCOR_APPEND(job->base.context, parts,
     (mcor_gauge_part){ row->line, mcor_row_place(row, low), mcor_row_place(row, high),
       row->weight[low], row->weight[high] });
   return MCOR_OK;
@@ -117,7 +112,7 @@ static mcor_status mcor_scan_row(
   *found = false;
   for (int64_t i = row->own_first; i <= row->own_last && i + 1 < row->count; ++i)
   {
-    if ((row->weight[i] >= job->level) != (row->weight[i + 1] >= job->level))
+    if ((row->weight[i] >= job->base.level) != (row->weight[i + 1] >= job->base.level))
     {
       *found = true;
       MCOR_TRY(mcor_append_part(job, &job->changed, row, i, i + 1));
@@ -125,7 +120,7 @@ static mcor_status mcor_scan_row(
   }
   for (int64_t i = row->own_first; i <= row->own_last && suspects; ++i)
   {
-    if (mcor_row_suspect(job->level, row, i))
+    if (mcor_row_suspect(job->base.level, row, i))
     {
       const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
       MCOR_TRY(mcor_append_part(job, suspects, row, low, high));
@@ -150,7 +145,7 @@ static mcor_status mcor_look_closer(
     const mcor_gauge_part* part = &whole.of[p];
     for (int i = 1; i < sections; ++i)
     {
-      MCOR_APPEND(job->context, &job->inner,
+      MCOR_APPEND(job->base.context, &job->inner,
         (mcor_gauge_place){ part->line, part->low + (part->high - part->low) * i / sections });
     }
   }
@@ -175,23 +170,6 @@ static mcor_status mcor_look_closer(
   return MCOR_OK;
 }
 
-double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
-{
-  const double rise = part->high_weight - part->low_weight;
-  const double share = rise != 0 ? (job->level - part->low_weight) / rise : 0.5;
-  return part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
-}
-
-/* Only the first round may find several crossings in a part; later ones would be rounding. */
-mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one)
-{
-  for (int round = 0; round < rounds && job->changed.count > 0; ++round)
-  {
-    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, one || round > 0));
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last)
 {
   job->changed.count = job->suspects.count = job->inner.count = 0;
@@ -200,8 +178,8 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
     const mcor_gauge_samples* s = &job->samples.of[l];
     for (int64_t i = s->first; i <= s->last; ++i)
     {
-      MCOR_APPEND(
-        job->context, &job->inner, (mcor_gauge_place){ s->line, (double)i / (double)s->steps });
+      MCOR_APPEND(job->base.context, &job->inner,
+        (mcor_gauge_place){ s->line, (double)i / (double)s->steps });
     }
   }
   MCOR_TRY(mcor_gauge_weights(job));
@@ -221,11 +199,13 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
     }
     if (reached)
     {
-      MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
+      MCOR_APPEND(
+        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
     }
-    if (s->own_last == s->steps && weight[row.own_last] >= job->level)
+    if (s->own_last == s->steps && weight[row.own_last] >= job->base.level)
     {
-      MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
+      MCOR_APPEND(
+        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
     }
     weight += row.count;
   }
@@ -233,12 +213,18 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   {
     MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
   }
-  MCOR_TRY(mcor_solve_crossings(job, MCOR_GAUGE_SOLVE_ROUNDS, false));
+  /* Only the first round may find several crossings in a part; later ones would be rounding. */
+  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, round > 0));
+  }
   for (int64_t p = 0; p < job->changed.count; ++p)
   {
     const mcor_gauge_part* part = &job->changed.of[p];
-    MCOR_APPEND(
-      job->context, &job->records, (mcor_gauge_place){ part->line, mcor_crossing_of(job, part) });
+    const double rise = part->high_weight - part->low_weight;
+    const double share = rise != 0 ? (job->base.level - part->low_weight) / rise : 0.5;
+    const double place = part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
+    MCOR_APPEND(job->base.context, &job->records, (mcor_gauge_place){ part->line, place });
   }
   return MCOR_OK;
 }

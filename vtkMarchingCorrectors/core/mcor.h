@@ -622,10 +622,6 @@ extern "C"
    * has two different values). */
   int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
-  /* The solver whose output has arrays of these names (one per line): "DualSPHysics", "PySPH",
-   * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
-  const char* mcor_find_layout(const char* names);
-
   /* A numeric array of a particle file's field data, in tuples of any size. */
   typedef struct mcor_field_data
   {
@@ -759,16 +755,9 @@ extern "C"
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
-  /* Warns that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs
-   * counts[i] times, is not used, so that all particles count as fluid. No message if the array has
-   * only one value or more than MCOR_PARTICLE_TYPES. */
-  mcor_message mcor_describe_unused_type(
-    const char* name, const double* values, const int64_t* counts, int count);
-
   /* Warns that single precision is too coarse for the points of a surface whose largest
    * coordinate, in magnitude, is `largest`. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
-#define MCOR_PARTICLE_TYPES 8
 /* In blocks joined to one set, this array marks the particles of blocks that are named as walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 

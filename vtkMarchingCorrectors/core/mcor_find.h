@@ -160,16 +160,6 @@ extern "C"
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
   void mcor_free_found(mcor_found* found);
 
-  /* Returns, as bits 1 << role, which of volume, mass and density make the volumes; 0: none, so
-   * volumes are request->particle_volume or computed. What is given by hand replaces only the same
-   * quantity, so known volumes stay, unless mass and density are both given, or volumes are to be
-   * computed. known: all that is given or found. */
-  unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known);
-  /* Says what is given by hand but not used; volumes: the name of the array of volumes that is
-   * used, or NULL. */
-  mcor_message mcor_describe_unused(
-    const mcor_request* request, unsigned given, unsigned used, const char* volumes);
-
   /* Take the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities, borrowed, for
    * an input that needs them. Densities become the scalar; volumes follow from them, too, if there
    * are masses, but no densities or volumes. */
@@ -187,9 +177,6 @@ extern "C"
 
   /* Whether a block or body of this name holds walls: "walls", "boundary", "tank", ... */
   int mcor_tells_of_walls(const char* name);
-
-  /* Lists the arrays: "Point arrays: A, B."; free it with free(). */
-  char* mcor_list_names(const mcor_named* arrays, int count);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

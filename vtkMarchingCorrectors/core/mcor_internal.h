@@ -61,6 +61,18 @@ mcor_status mcor_fail(
 #endif
   ;
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
+/* Writes a text, and appends to one that it frees. The caller frees the result; NULL: memory ran
+ * out, also in the call before. */
+char* mcor_text(const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 1, 2)))
+#endif
+  ;
+char* mcor_append(char* text, const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 2, 3)))
+#endif
+  ;
 /* Fills slots into out [size], as snprintf does; returns the length. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
 /* The room for a slot's word, with the final 0; a longer word is cut. */

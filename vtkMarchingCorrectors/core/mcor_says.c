@@ -180,18 +180,50 @@ mcor_says mcor_code_of(const char* sentence)
   return found;
 }
 
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 0)))
+#endif
+static char*
+mcor_write_text(const char* format, va_list arguments)
+{
+  va_list again;
+  va_copy(again, arguments);
+  const int length = vsnprintf(NULL, 0, format, arguments);
+  char* text = length < 0 ? NULL : malloc((size_t)length + 1);
+  if (text)
+  {
+    vsnprintf(text, (size_t)length + 1, format, again);
+  }
+  va_end(again);
+  return text;
+}
+
+char* mcor_text(const char* format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  char* text = mcor_write_text(format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+char* mcor_append(char* text, const char* format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  char* more = mcor_write_text(format, arguments);
+  va_end(arguments);
+  char* whole = text && more ? mcor_text("%s%s", text, more) : NULL;
+  free(text);
+  free(more);
+  return whole;
+}
+
 mcor_message mcor_say(mcor_says code, const char* format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  const int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
-  mcor_message message = { code, length < 0 ? NULL : malloc((size_t)length + 1) };
-  va_start(arguments, format);
-  if (message.text)
-  {
-    vsnprintf(message.text, (size_t)length + 1, format, arguments);
-  }
+  const mcor_message message = { code, mcor_write_text(format, arguments) };
   va_end(arguments);
   return message;
 }

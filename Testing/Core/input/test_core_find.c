@@ -173,12 +173,29 @@ static void test_fluid(void** state)
   const mcor_named half = real("Type", halves); /* which are no types */
   assert_int_equal(find(&request, &half, 1, &found), MCOR_OK);
   assert_int_equal(found.which[MCOR_ROLE_FLUID], -1);
+  assert_true(core_tells(&found.unused_type, "TYPE_UNUSED| 1 x 0, 1 x 0.5, 2 x 1.|{fluid Type}"));
   mcor_free_found(&found);
   request.find_fluid = 0;
   assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
   assert_true(found.which[MCOR_ROLE_FLUID] == -1 && !found.input.solid && found.fluid_count == 4);
-  assert_true(core_tells(&found.unused_type, "TYPE_UNUSED|'Type'"));
+  assert_true(core_tells(&found.unused_type, "TYPE_UNUSED|'Type'|seems to be 3."));
   mcor_free_found(&found);
+  assert_int_equal(find(&request, arrays + 3, 1, &found), MCOR_OK);
+  assert_int_equal(found.unused_type.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
+  mcor_free_found(&found);
+  double nine[9] = { 8, 7, 6, 5, 4, 3, 2, 1, NAN };
+  const mcor_named place = { NULL, MCOR_ELEMENT_FLOAT64, 3, 9, (double[27]){ 0 }, { 0, 0 } },
+                   type = { "Type", MCOR_ELEMENT_FLOAT64, 1, 9, nine, { 0, 0 } };
+  for (int one = 0; one < 2; ++one) /* an array of very many values, or of one, tells no types */
+  {
+    assert_int_equal(mcor_find_input(&request, &place, &type, 1, NULL, &found), MCOR_OK);
+    CORE_CHECK(!found.unused_type.text, one, found.unused_type.text);
+    mcor_free_found(&found);
+    for (int i = 0; i < 9; ++i)
+    {
+      nine[i] = 4;
+    }
+  }
   request.names[MCOR_ROLE_FLUID] = "ptype";
   request.fluid_value = 7;
   assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);

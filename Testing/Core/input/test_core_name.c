@@ -32,16 +32,6 @@ static void test_names(void** state)
   }
   assert_true(mcor_name_priority(MCOR_DENSITY, "Rhop") > 0);
   assert_true(mcor_name_priority(MCOR_PARTICLE_TYPE, "Type") > 0);
-  assert_string_equal(mcor_find_layout("Idp\nVel\nRhop\nType"), "DualSPHysics");
-  assert_string_equal(mcor_find_layout("gid\nh\nm\nrho\ntag\nu\nv\nw"), "PySPH");
-  assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
-  assert_string_equal(mcor_find_layout("Masses\nParticleIDs\nSmoothingLength"), "GADGET");
-  assert_string_equal(mcor_find_layout("vx\nvy\nvz\nMass\nSmoothing Length"), "SPH-EXA");
-  assert_string_equal(mcor_find_layout("Density\nMass\nh\nvx\nvy\nvz"), "SPH-EXA");
-  assert_string_equal(mcor_find_layout("h\nm\nrho\nvx\nvy\nvz"), "SPH-EXA");
-  assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
-  assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
-  assert_string_equal(mcor_find_layout(""), "");
   assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
   assert_int_equal(mcor_name_priority(MCOR_POSITION, "Points"), 0);
   assert_true(mcor_name_priority(MCOR_POSITION, "coords") > 0);

@@ -367,41 +367,6 @@ static void test_single_points(void** state)
   assert_non_null(strstr(message.text, "1e+06 to steps of 0.062, and cubes are 6.2:"));
 }
 
-static void test_unused_type(void** state)
-{
-  const double values[9] = { 0, 3, 0.5 };
-  const int64_t counts[9] = { 12, INT64_C(5000000000), 1 };
-  mcor_message message = mcor_describe_unused_type("Type", values, counts, 3);
-  assert_int_equal(message.code, MCOR_SAYS_TYPE_UNUSED);
-  assert_non_null(strstr(message.text, "'Type'"));
-  assert_non_null(strstr(message.text, " 12 x 0, 5000000000 x 3, 1 x 0.5."));
-  assert_non_null(strstr(message.text, "{fluid Type}"));
-  mcor_free_message(&message);
-  message = mcor_describe_unused_type("Type", values, counts, 2);
-  assert_non_null(strstr(message.text, "seems to be 3."));
-  mcor_free_message(&message);
-  message = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
-  assert_int_equal(message.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
-  mcor_free_message(&message);
-  assert_null(mcor_describe_unused_type("Type", values, counts, 1).text);
-  assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1).text);
-  assert_null(mcor_describe_unused_type(NULL, values, counts, 3).text);
-  /* These are the longest sentences that there can be. */
-  char name[500];
-  double far[MCOR_PARTICLE_TYPES];
-  int64_t many[MCOR_PARTICLE_TYPES];
-  memset(name, 'x', sizeof name - 1);
-  name[sizeof name - 1] = 0;
-  for (int i = 0; i < MCOR_PARTICLE_TYPES; ++i)
-  {
-    far[i] = -1.23456e-300;
-    many[i] = INT64_MAX;
-  }
-  message = mcor_describe_unused_type(name, far, many, MCOR_PARTICLE_TYPES);
-  assert_non_null(strstr(message.text, "9223372036854775807 x -1.23456e-300. If it"));
-  mcor_free_message(&message);
-}
-
 CORE_MAIN(core_set_up, core_tear_down, test_slots, test_neighbours, test_plane, test_tilted_plane,
   test_iso_value, test_trimmed, test_tolerance, test_precision, test_told_residual,
-  test_without_input, test_single_points, test_unused_type)
+  test_without_input, test_single_points)

@@ -25,19 +25,26 @@ void* mcor_find_memory(mcor_finder* f, size_t bytes)
 
 int mcor_refuse(mcor_finder* f, mcor_message message)
 {
-  if (f->found->error.code != MCOR_SAYS_NOTHING)
+  if (mcor_has_error(f))
   {
     mcor_free_message(&message);
-    return -1;
   }
-  f->found->error = message;
+  else
+  {
+    f->found->error = message;
+  }
   return -1;
 }
 
-/* Lists the arrays; "" if memory runs out. */
+/* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
 static const char* mcor_names_of(mcor_finder* f)
 {
-  char* list = mcor_list_names(f->arrays, f->count);
+  char* list = mcor_text("%s", f->count > 0 ? "Point arrays: " : "The input has no point arrays.");
+  for (int i = 0; i < f->count; ++i)
+  {
+    const char* name = f->arrays[i].name;
+    list = mcor_append(list, "%s%s", name ? name : "", i + 1 < f->count ? ", " : ".");
+  }
   const char* names = mcor_keep_name(f, list);
   free(list);
   return names ? names : "";
@@ -54,46 +61,49 @@ const char* mcor_keep_name(mcor_finder* f, const char* name)
   return kept ? strcpy(kept, name) : NULL;
 }
 
-/* Returns an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
- * else a copy. */
-mcor_array mcor_view_of(mcor_finder* f, int index)
+/* Writes element i of an array of floats or doubles. */
+static void mcor_put_element(void* array, mcor_element type, int64_t i, double value)
 {
-  const mcor_named* named = index == MCOR_FIND_POSITIONS ? f->positions : mcor_named_of(f, index);
-  mcor_array own, *view = index == MCOR_FIND_POSITIONS || !f->views ? &own : f->views + index;
-  if (view != &own && view->data)
+  if (type == MCOR_ELEMENT_FLOAT32)
   {
-    return *view;
+    ((float*)array)[i] = (float)value;
   }
+  else
+  {
+    ((double*)array)[i] = value;
+  }
+}
+
+mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
+{
   static const double none[3];
   const bool is_float = named->type == MCOR_ELEMENT_FLOAT32;
-  const size_t width = is_float ? sizeof(float) : sizeof(double);
-  const int64_t values = named->tuples * named->components;
-  *view = (mcor_array){ .type = is_float ? MCOR_FLOAT32 : MCOR_FLOAT64,
-    .components = named->components,
-    .data = values > 0 ? named->data : none };
-  view->name = index == MCOR_FIND_POSITIONS ? NULL : mcor_keep_name(f, named->name);
+  const int64_t values = named->tuples * named->components,
+                width = is_float ? sizeof(float) : sizeof(double);
   const bool is_plain = (is_float || named->type == MCOR_ELEMENT_FLOAT64) &&
-    (named->stride[1] == 0 || named->components == 1 || named->stride[1] == (int64_t)width) &&
-    (named->stride[0] == 0 || named->stride[0] == (int64_t)width * named->components) &&
-    (uintptr_t)named->data % width == 0;
-  if (values == 0 || is_plain)
-  {
-    return *view;
-  }
-  void* copy = mcor_find_memory(f, (size_t)values * width);
+    (named->stride[1] == 0 || named->components == 1 || named->stride[1] == width) &&
+    (named->stride[0] == 0 || named->stride[0] == width * named->components) &&
+    (uintptr_t)named->data % (size_t)width == 0;
+  void* copy = values == 0 || is_plain ? NULL : mcor_find_memory(f, (size_t)(values * width));
   for (int64_t i = 0; copy && i < values; ++i)
   {
-    const double x = mcor_element_at(named, i / named->components, (int)(i % named->components));
-    if (is_float)
-    {
-      ((float*)copy)[i] = (float)x;
-    }
-    else
-    {
-      ((double*)copy)[i] = x;
-    }
+    mcor_put_element(copy, named->type, i,
+      mcor_element_at(named, i / named->components, (int)(i % named->components)));
   }
-  view->data = copy ? copy : none;
+  const void* data = copy ? copy : is_plain && values > 0 ? named->data : none;
+  return (mcor_array){ .type = is_float ? MCOR_FLOAT32 : MCOR_FLOAT64,
+    .components = named->components,
+    .data = data,
+    .name = mcor_keep_name(f, named->name) };
+}
+
+mcor_array mcor_view_of(mcor_finder* f, int index)
+{
+  mcor_array* view = f->views + index;
+  if (!view->data)
+  {
+    *view = mcor_view_named(f, mcor_named_of(f, index));
+  }
   return *view;
 }
 
@@ -167,19 +177,6 @@ int mcor_find_named(
   return found;
 }
 
-char* mcor_list_names(const mcor_named* arrays, int count)
-{
-  char* list = mcor_text("%s", count > 0 ? "Point arrays: " : "The input has no point arrays.");
-  for (int i = 0; list && i < count; ++i)
-  {
-    char* before = list;
-    list =
-      mcor_text("%s%s%s", before, arrays[i].name ? arrays[i].name : "", i + 1 < count ? ", " : ".");
-    free(before);
-  }
-  return list;
-}
-
 /* Joins vx, vy and vz to one vector, unless there is an array "Velocity". The vector is float only if all three are. */
 int mcor_join_velocity(mcor_finder* f)
 {
@@ -190,7 +187,7 @@ int mcor_join_velocity(mcor_finder* f)
   }
   const int parts[3] = { mcor_find_by_name(f, "vx"), mcor_find_by_name(f, "vy"),
     mcor_find_by_name(f, "vz") };
-  bool is_float = true;
+  mcor_element type = MCOR_ELEMENT_FLOAT32;
   for (int c = 0; c < 3; ++c)
   {
     const mcor_named* part = f->arrays + parts[c];
@@ -199,30 +196,23 @@ int mcor_join_velocity(mcor_finder* f)
     {
       return -1;
     }
-    is_float = is_float && part->type == MCOR_ELEMENT_FLOAT32;
+    type = part->type > type ? part->type : type;
   }
   const int64_t count = f->positions->tuples;
   void* data = mcor_find_by_name(f, "Velocity") >= 0
     ? NULL
-    : mcor_find_memory(f, (size_t)count * 3 * (is_float ? sizeof(float) : sizeof(double)));
+    : mcor_find_memory(
+        f, (size_t)count * 3 * (type == MCOR_ELEMENT_FLOAT32 ? sizeof(float) : sizeof(double)));
   for (int64_t i = 0; data && i < 3 * count; ++i)
   {
-    const double x = mcor_element_at(f->arrays + parts[i % 3], i / 3, 0);
-    if (is_float)
-    {
-      ((float*)data)[i] = (float)x;
-    }
-    else
-    {
-      ((double*)data)[i] = x;
-    }
+    mcor_put_element(data, type, i, mcor_element_at(f->arrays + parts[i % 3], i / 3, 0));
   }
-  if (data)
+  if (!data)
   {
-    *made = (mcor_named){ "Velocity", is_float ? MCOR_ELEMENT_FLOAT32 : MCOR_ELEMENT_FLOAT64, 3,
-      count, data, { 0, 0 } };
+    return -1;
   }
-  return data ? f->count : -1;
+  *made = (mcor_named){ "Velocity", type, 3, count, data, { 0, 0 } };
+  return f->count;
 }
 
 /* Returns the index if the array exists and has numbers for all particles; else -1. */
@@ -292,17 +282,15 @@ static bool mcor_find_quantity(mcor_finder* f, mcor_role role)
   return name != NULL;
 }
 
+/* Says that there is no smoothing length, and which one may be right. */
 static mcor_message mcor_no_length(mcor_finder* f)
 {
-  char* names = mcor_text("%s", "");
-  for (int i = 0; names && i < f->count; ++i)
+  bool has_rhop = false, has_idp = false;
+  for (int i = 0; i < f->count; ++i)
   {
-    char* before = names;
-    names = mcor_text("%s%s\n", before, f->arrays[i].name ? f->arrays[i].name : "");
-    free(before);
+    has_rhop = has_rhop || mcor_is_usual_name(f->arrays[i].name, "rhop");
+    has_idp = has_idp || mcor_is_usual_name(f->arrays[i].name, "idp");
   }
-  const bool is_dual = names && strcmp(mcor_find_layout(names), "DualSPHysics") == 0;
-  free(names);
   const int64_t count = f->positions->tuples;
   const int spacing = mcor_find_named(f->arrays, f->count, MCOR_SPACING, 1, count);
   const double distance =
@@ -314,11 +302,12 @@ static mcor_message mcor_no_length(mcor_finder* f)
   }
   char* usual = is_one ? mcor_text(" By '%s', particles are %g apart: %g is usual.",
                            f->arrays[spacing].name, distance, 1.3 * distance)
-                       : mcor_text("%s", "");
+                       : NULL;
   const mcor_message message = mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
-    is_dual ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program --coefh "
-              "and --dp)."
-            : "",
+    has_rhop && has_idp
+      ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program --coefh "
+        "and --dp)."
+      : "",
     usual ? usual : "", mcor_names_of(f));
   free(usual);
   return message;
@@ -345,7 +334,11 @@ static void mcor_find_length(mcor_finder* f)
   }
 }
 
-unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
+/* Returns, as bits 1 << role, which of volume, mass and density make the volumes; 0: none, so
+ * volumes are request->particle_volume or computed. What is given by hand replaces only the same
+ * quantity, so known volumes stay, unless mass and density are both given, or volumes are to be
+ * computed. known: all that is given or found. */
+static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
 {
   const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
                  both = mass | 1u << MCOR_ROLE_DENSITY;
@@ -356,7 +349,9 @@ unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsign
                                                                        : known & mass;
 }
 
-mcor_message mcor_describe_unused(
+/* Says what is given by hand but not used; volumes: the name of the array of volumes that is
+ * used, or NULL. */
+static mcor_message mcor_describe_unused(
   const mcor_request* request, unsigned given, unsigned used, const char* volumes)
 {
   const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
@@ -440,23 +435,6 @@ static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
   return (f->request->not_on_points & 1 << role) != 0;
 }
 
-/* Finds the array of the scalar. Returns -1 if there is none, or if the scalar is summed. */
-static int mcor_find_scalar_array(mcor_finder* f, const char* words, bool sums)
-{
-  mcor_found* found = f->found;
-  const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
-  int index = -1;
-  if (sums && mcor_is_summed(f))
-  {
-    found->needs_densities = 1;
-    return -1;
-  }
-  index = name ? mcor_find_given(f, words, name, 0)
-               : mcor_check_named(f, words, "", found->which[MCOR_ROLE_SCALAR]);
-  found->which[MCOR_ROLE_SCALAR] = index;
-  return index;
-}
-
 /* Sets the scalar, and checks its component. */
 static void mcor_keep_scalar(mcor_finder* f, mcor_array view)
 {
@@ -498,39 +476,6 @@ static void mcor_find_dot(mcor_finder* f, const char* name, int scalar)
   found->input.scalar_dot = found->views[MCOR_ROLE_SCALAR_DOT] = mcor_view_of(f, dot);
 }
 
-/* Finds the scalar to contour. */
-static void mcor_find_scalar(mcor_finder* f)
-{
-  const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),
-             *dot = mcor_given_name(f, MCOR_ROLE_SCALAR_DOT);
-  const bool is_off = mcor_is_off_points(f, MCOR_ROLE_SCALAR);
-  if (!name && f->found->which[MCOR_ROLE_SCALAR] < 0)
-  {
-    mcor_refuse(f, mcor_say(MCOR_SAY(NO_SCALAR), mcor_names_of(f)));
-    return;
-  }
-  if (is_off || mcor_is_off_points(f, MCOR_ROLE_SCALAR_DOT))
-  {
-    mcor_refuse(f,
-      mcor_say(MCOR_SAY(SCALAR_NOT_ON_POINTS),
-        is_off  ? (name ? name : "")
-          : dot ? dot
-                : "",
-        mcor_names_of(f)));
-    return;
-  }
-  const int index = mcor_find_scalar_array(f, "scalar", true);
-  if (index < 0)
-  {
-    return;
-  }
-  if (dot)
-  {
-    mcor_find_dot(f, dot, index);
-  }
-  mcor_keep_scalar(f, mcor_view_of(f, index));
-}
-
 /* Makes an array one of the attributes. */
 static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
 {
@@ -540,32 +485,54 @@ static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
   found->attributes[at] = index;
 }
 
-/* Finds the one attribute of derivatives, or the scalar of a projection, which may have none. */
-static void mcor_find_array(mcor_finder* f)
+/* Finds the scalar to contour, the one attribute of derivatives, or the scalar of a projection, which
+ * may have none. */
+static void mcor_find_scalar(mcor_finder* f, bool contours)
 {
-  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0;
-  const char* name = mcor_given_name(f, MCOR_ROLE_SCALAR);
-  if (!name && (is_column || f->found->which[MCOR_ROLE_SCALAR] < 0))
+  mcor_found* found = f->found;
+  const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),
+             *dot = contours ? mcor_given_name(f, MCOR_ROLE_SCALAR_DOT) : NULL;
+  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0,
+             is_off = mcor_is_off_points(f, MCOR_ROLE_SCALAR);
+  int* const which = &found->which[MCOR_ROLE_SCALAR];
+  if (!name && is_column)
   {
-    if (!is_column)
-    {
-      mcor_refuse(f, mcor_say(MCOR_SAY(NO_ARRAY), mcor_names_of(f)));
-    }
     return;
   }
-  if (mcor_is_off_points(f, MCOR_ROLE_SCALAR))
+  if (!name && *which < 0)
   {
-    mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_NOT_ON_POINTS), name ? name : "", mcor_names_of(f)));
+    mcor_refuse(f,
+      contours ? mcor_say(MCOR_SAY(NO_SCALAR), mcor_names_of(f))
+               : mcor_say(MCOR_SAY(NO_ARRAY), mcor_names_of(f)));
     return;
   }
-  const int index = mcor_find_scalar_array(f, is_column ? "projection" : "derivatives", is_column);
-  if (index >= 0 && is_column)
+  if (is_off || (contours && mcor_is_off_points(f, MCOR_ROLE_SCALAR_DOT)))
   {
-    mcor_keep_scalar(f, mcor_view_of(f, index));
+    const char* array = is_off ? name : dot;
+    array = array ? array : "";
+    mcor_refuse(f,
+      contours ? mcor_say(MCOR_SAY(SCALAR_NOT_ON_POINTS), array, mcor_names_of(f))
+               : mcor_say(MCOR_SAY(ARRAY_NOT_ON_POINTS), array, mcor_names_of(f)));
+    return;
   }
-  else if (index >= 0)
+  if ((contours || is_column) && mcor_is_summed(f))
   {
-    mcor_add_attribute(f, index, mcor_view_of(f, index));
+    found->needs_densities = 1;
+    return;
+  }
+  const char* words = contours ? "scalar" : is_column ? "projection" : "derivatives";
+  *which = name ? mcor_find_given(f, words, name, 0) : mcor_check_named(f, words, "", *which);
+  if (*which >= 0 && dot)
+  {
+    mcor_find_dot(f, dot, *which);
+  }
+  if (*which >= 0 && (contours || is_column))
+  {
+    mcor_keep_scalar(f, mcor_view_of(f, *which));
+  }
+  else if (*which >= 0)
+  {
+    mcor_add_attribute(f, *which, mcor_view_of(f, *which));
   }
 }
 
@@ -724,7 +691,8 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   }
   memset(f.views, 0, most * sizeof *f.views);
   found->input.attributes = attributes;
-  found->input.positions = mcor_view_of(&f, MCOR_FIND_POSITIONS);
+  found->input.positions = mcor_view_named(&f, positions);
+  found->input.positions.name = NULL;
   mcor_find_fluid(&f);
   const bool contours = (wants & MCOR_WANT_SCALAR) && !request->free_surface;
   if ((contours || (wants & MCOR_WANT_ARRAY)) && !mcor_given_name(&f, MCOR_ROLE_SCALAR))
@@ -738,13 +706,9 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
       mcor_find_named(arrays, count, MCOR_PARTICLE_ID, 1, positions->tuples);
   }
   /* From here on, nothing is said to other ranks. */
-  if (contours)
+  if (contours || (wants & (MCOR_WANT_ARRAY | MCOR_WANT_COLUMN)))
   {
-    mcor_find_scalar(&f);
-  }
-  if (wants & (MCOR_WANT_ARRAY | MCOR_WANT_COLUMN))
-  {
-    mcor_find_array(&f);
+    mcor_find_scalar(&f, contours);
   }
   if (wants & MCOR_WANT_SIZES && !mcor_has_error(&f))
   {

@@ -16,17 +16,17 @@ static const char* const mcor_wall_words[] = { "wall", "bound", "solid", "obstac
 
 int mcor_tells_of_walls(const char* name)
 {
-  for (size_t w = 0; name && w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
+  for (; name && *name; ++name)
   {
-    const char* word = mcor_wall_words[w];
-    for (const char* at = name; *at; ++at)
+    for (size_t w = 0; w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
     {
-      size_t i = 0;
-      while (word[i] && (at[i] >= 'A' && at[i] <= 'Z' ? at[i] - 'A' + 'a' : at[i]) == word[i])
+      const char *word = mcor_wall_words[w], *at = name;
+      while (*word && mcor_small_letter(*at) == *word)
       {
-        ++i;
+        ++word;
+        ++at;
       }
-      if (!word[i])
+      if (!*word)
       {
         return 1;
       }
@@ -35,57 +35,49 @@ int mcor_tells_of_walls(const char* name)
   return 0;
 }
 
-/* A value, and how often it occurs. count -1: there are more values than kinds of particles. */
+/* A value, and how often it occurs. */
 typedef struct mcor_kind
 {
   double value;
   int64_t count;
 } mcor_kind;
 
-/* Compares by value, with NaN last. */
-static int mcor_compare_kinds(const void* a, const void* b)
+/* The room for kinds: one more than there may be. */
+#define MCOR_KINDS (MCOR_PARTICLE_TYPES + 1)
+
+/* NaN is above all numbers. */
+static bool mcor_is_below(double a, double b)
 {
-  const double x = ((const mcor_kind*)a)->value, y = ((const mcor_kind*)b)->value;
-  return isnan(x) || isnan(y) ? !!isnan(x) - !!isnan(y) : (x > y) - (x < y);
+  return a < b || (isnan(b) && !isnan(a));
 }
 
-/* Adds a kind, in order. Returns the number of kinds, or one more than can be. */
+/* Adds a kind, in the order of values. Returns the number of kinds; MCOR_KINDS: too many. */
 static int mcor_add_kind(mcor_kind* kinds, int count, mcor_kind kind)
 {
   int at = 0;
-  while (at < count && mcor_compare_kinds(kinds + at, &kind) < 0)
+  while (at < count && mcor_is_below(kinds[at].value, kind.value))
   {
     ++at;
   }
-  if (at < count && mcor_compare_kinds(kinds + at, &kind) == 0)
+  if (at < count && !mcor_is_below(kind.value, kinds[at].value))
   {
     kinds[at].count += kind.count;
     return count;
-  }
-  if (kind.count < 0 || count >= MCOR_PARTICLE_TYPES)
-  {
-    return MCOR_PARTICLE_TYPES + 1;
   }
   memmove(kinds + at + 1, kinds + at, (size_t)(count - at) * sizeof *kinds);
   kinds[at] = kind;
   return count + 1;
 }
 
-/* Counts how often each value of an array occurs on all ranks. Returns 0 if there are more values than kinds
- * of particles. */
+/* Counts how often each value of an array occurs on all ranks. Returns 0 if there are too many. */
 static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_kind* kinds)
 {
-  mcor_kind own[MCOR_PARTICLE_TYPES];
-  int own_count = 0;
-  for (int64_t i = 0; i < array->tuples && own_count <= MCOR_PARTICLE_TYPES; ++i)
+  mcor_kind own[MCOR_KINDS];
+  int own_count = 0, count = 0;
+  for (int64_t i = 0; i < array->tuples && own_count < MCOR_KINDS; ++i)
   {
     const double value = mcor_element_at(array, i, 0);
     own_count = mcor_add_kind(own, own_count, (mcor_kind){ isnan(value) ? NAN : value, 1 });
-  }
-  if (own_count > MCOR_PARTICLE_TYPES)
-  {
-    own[0] = (mcor_kind){ NAN, -1 };
-    own_count = 1;
   }
   const void* all = own;
   int64_t all_count = own_count;
@@ -94,26 +86,50 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   {
     return 0;
   }
-  int count = 0;
-  for (int64_t i = 0; i < all_count && count <= MCOR_PARTICLE_TYPES; ++i)
+  for (int64_t i = 0; i < all_count && count < MCOR_KINDS; ++i)
   {
-    mcor_kind kind;
-    memcpy(&kind, (const char*)all + (size_t)i * sizeof kind, sizeof kind);
-    count = kind.count < 0 ? MCOR_PARTICLE_TYPES + 1 : mcor_add_kind(kinds, count, kind);
+    count = mcor_add_kind(kinds, count, ((const mcor_kind*)all)[i]);
   }
-  return count > MCOR_PARTICLE_TYPES ? 0 : count;
+  return count < MCOR_KINDS ? count : 0;
 }
 
-static mcor_message mcor_describe_kinds(const char* name, const mcor_kind* kinds, int count)
+/* Finds the value of fluid particles in an array that clearly tells it. */
+static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
-  double values[MCOR_PARTICLE_TYPES];
-  int64_t counts[MCOR_PARTICLE_TYPES];
+  bool whole = count > 0;
   for (int k = 0; k < count; ++k)
   {
-    values[k] = kinds[k].value;
-    counts[k] = kinds[k].count;
+    whole = whole && kinds[k].value == floor(kinds[k].value);
   }
-  return mcor_describe_unused_type(name, values, counts, count);
+  return whole && mcor_find_fluid_value(name, kinds[0].value, kinds[count - 1].value, fluid);
+}
+
+/* Says that an array with several values of particle types is not used. */
+static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind* kinds, int count)
+{
+  if (count < 2)
+  {
+    return MCOR_NO_MESSAGE;
+  }
+  if (strcmp(name, MCOR_WALL_BLOCK) == 0)
+  {
+    return mcor_say(MCOR_SAY(WALL_BLOCKS_UNUSED), MCOR_WALL_BLOCK);
+  }
+  double fluid;
+  char *list = mcor_text("%s", ""), seems[50] = "";
+  for (int k = 0; k < count; ++k)
+  {
+    list =
+      mcor_append(list, "%s %lld x %g", k ? "," : "", (long long)kinds[k].count, kinds[k].value);
+  }
+  if (mcor_finds_fluid(name, kinds, count, &fluid))
+  {
+    snprintf(seems, sizeof seems, ", which seems to be %g", fluid);
+  }
+  const mcor_message message =
+    mcor_say(MCOR_SAY(TYPE_UNUSED), name, list ? list : "", name, seems);
+  free(list);
+  return message;
 }
 
 /* Whether the request has ranges of this array, so the array is used. */
@@ -137,20 +153,14 @@ static void mcor_look_for_fluid(mcor_finder* f)
     for (int i = 0; i < f->count; ++i)
     {
       const mcor_named* a = f->arrays + i;
-      mcor_kind kinds[MCOR_PARTICLE_TYPES];
+      mcor_kind kinds[MCOR_KINDS];
       if (mcor_name_priority(MCOR_PARTICLE_TYPE, a->name) != priority || a->components != 1 ||
         a->tuples != f->positions->tuples || a->type == MCOR_ELEMENT_OTHER)
       {
         continue;
       }
       const int count = mcor_count_kinds(f, a, kinds);
-      bool whole = count > 0;
-      for (int k = 0; k < count; ++k)
-      {
-        whole = whole && kinds[k].value == floor(kinds[k].value);
-      }
-      if (f->request->find_fluid && whole &&
-        mcor_find_fluid_value(a->name, kinds[0].value, kinds[count - 1].value, &found->fluid_value))
+      if (f->request->find_fluid && mcor_finds_fluid(a->name, kinds, count, &found->fluid_value))
       {
         found->which[MCOR_ROLE_FLUID] = i;
         mcor_free_message(&found->unused_type);
@@ -158,7 +168,7 @@ static void mcor_look_for_fluid(mcor_finder* f)
       }
       if (found->unused_type.code == MCOR_SAYS_NOTHING && !mcor_chooses_particles(f, a->name))
       {
-        found->unused_type = mcor_describe_kinds(a->name, kinds, count);
+        found->unused_type = mcor_describe_unused_type(a->name, kinds, count);
       }
     }
   }
@@ -188,58 +198,38 @@ static bool mcor_has_within(const mcor_request* request)
   return has;
 }
 
-/* Whether a particle is in one of the ranges that are given for an array. first: the first of these
- * ranges. */
-static bool mcor_is_in_a_range(const mcor_finder* f, int first, const mcor_named* array, int64_t i)
-{
-  const double value = mcor_element_at(array, i, 0);
-  for (int r = first; r < f->request->only_count; ++r)
-  {
-    const mcor_only* only = f->request->only + r;
-    if (strcmp(only->name, f->request->only[first].name) == 0 && value >= only->low &&
-      value <= only->high)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-/* Marks particles that Within and Only leave out. Returns whether any are left. */
-static bool mcor_mark_absent(mcor_finder* f, uint8_t* solid)
+/* Marks particles that Within and Only leave out. */
+static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
 {
   const mcor_request* request = f->request;
+  const mcor_only* only = request->only;
   const double* b = request->within;
+  const bool has_within = mcor_has_within(request);
   const int64_t count = f->positions->tuples;
-  for (int64_t i = 0; i < count && mcor_has_within(request); ++i)
+  const int ranges = count > 0 ? request->only_count : 0;
+  int* of = mcor_find_memory(f, (size_t)ranges * sizeof *of); /* the array of each range */
+  for (int r = 0; of && r < ranges; ++r)
   {
-    for (int a = 0; a < 3; ++a)
+    of[r] = mcor_find_given(f, "choice of particles", only[r].name, 1);
+  }
+  for (int64_t i = 0; of && i < count && !mcor_has_error(f); ++i)
+  {
+    for (int a = 0; a < 3 && has_within; ++a)
     {
       const double x = mcor_element_at(f->positions, i, a);
       solid[i] = x >= b[2 * a] && x <= b[2 * a + 1] ? solid[i] : MCOR_ABSENT;
     }
-  }
-  for (int r = 0; r < request->only_count; ++r)
-  {
-    bool is_first = true;
-    for (int before = 0; before < r; ++before)
+    for (int r = 0; r < ranges; ++r)
     {
-      is_first = is_first && strcmp(request->only[before].name, request->only[r].name) != 0;
-    }
-    const int index = is_first && count > 0
-      ? mcor_find_given(f, "choice of particles", request->only[r].name, 1)
-      : -1;
-    for (int64_t i = 0; index >= 0 && i < count; ++i)
-    {
-      solid[i] = mcor_is_in_a_range(f, r, f->arrays + index, i) ? solid[i] : MCOR_ABSENT;
+      const double x = mcor_element_at(f->arrays + of[r], i, 0);
+      bool holds = false;
+      for (int k = 0; k < ranges && !holds; ++k) /* of the ranges of one array, any may hold */
+      {
+        holds = of[k] == of[r] && x >= only[k].low && x <= only[k].high;
+      }
+      solid[i] = holds ? solid[i] : MCOR_ABSENT;
     }
   }
-  bool some = false;
-  for (int64_t i = 0; i < count; ++i)
-  {
-    some = some || solid[i] != MCOR_ABSENT;
-  }
-  return some;
 }
 
 /* Writes why particles are left out: "within 0,1,0,1,0,1 and left by Type=1:2". */
@@ -256,17 +246,12 @@ static char* mcor_describe_choice(const mcor_finder* f)
   char* text = has
     ? mcor_text("No particle is within %g,%g,%g,%g,%g,%g", b[0], b[1], b[2], b[3], b[4], b[5])
     : mcor_text("No particle is");
-  for (int i = 0; i < request->only_count && text; ++i)
+  for (int i = 0; i < request->only_count; ++i)
   {
     const mcor_only* only = request->only + i;
-    char high[40] = "", *before = text;
-    if (only->high != only->low)
-    {
-      snprintf(high, sizeof high, ":%g", only->high);
-    }
-    text = mcor_text("%s%s%s%s=%g%s", before, i > 0 || has ? " and " : " ",
-      i == 0 ? "left by " : "", only->name, only->low, high);
-    free(before);
+    text = mcor_append(text, "%s%s%s=%g", i > 0 || has ? " and " : " ", i == 0 ? "left by " : "",
+      only->name, only->low);
+    text = only->high == only->low ? text : mcor_append(text, ":%g", only->high);
   }
   return text;
 }
@@ -298,11 +283,16 @@ void mcor_mark_particles(mcor_finder* f)
   {
     solid[i] = fluid >= 0 && mcor_element_at(f->arrays + fluid, i, 0) != found->fluid_value;
   }
-  const bool some = !is_chosen || mcor_mark_absent(f, solid);
+  if (is_chosen)
+  {
+    mcor_mark_absent(f, solid);
+  }
+  bool some = !is_chosen;
   found->input.solid = solid;
   found->fluid_count = 0;
   for (int64_t i = 0; i < count; ++i)
   {
+    some = some || solid[i] != MCOR_ABSENT;
     found->fluid_count += solid[i] == 0;
   }
   if (found->fluid_count == 0)
@@ -314,65 +304,54 @@ void mcor_mark_particles(mcor_finder* f)
   }
 }
 
-/* Finds the first number among a component's values, and whether another value differs from it. */
-static void mcor_find_variation(const mcor_named* a, int component, double* first, double* varies)
+static int mcor_shown_components(const mcor_named* array)
 {
-  for (int64_t i = 0; i < a->tuples && !*varies; ++i)
-  {
-    const double x = mcor_element_at(a, i, component);
-    *first = isnan(*first) ? x : *first;
-    *varies = !isnan(x) && x != *first;
-  }
+  return array->type < MCOR_ELEMENT_OTHER && array->name ? array->components : 0;
 }
 
 /* The ranks first agree which components of which arrays vary. */
 int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks)
 {
-  int components = 0, best = -1, best_rank = -1;
+  int ends = 0, best = -1, best_rank = -1;
   for (int i = 0; i < count; ++i)
   {
-    components += arrays[i].type < MCOR_ELEMENT_OTHER && arrays[i].name ? arrays[i].components : 0;
+    ends += 2 * mcor_shown_components(arrays + i);
   }
-  double* low = malloc(((size_t)components * 3 + 1) * sizeof *low);
-  double *high = low + components, *varies = high + components;
-  for (int i = 0, c = 0; low && i < count; ++i)
+  /* A component's least value, then minus its greatest; of values that differ, two are enough. */
+  double *least = malloc(((size_t)ends + 1) * sizeof *least), *of = least;
+  for (int i = 0; least && i < count; ++i)
   {
-    const int of_array =
-      arrays[i].type < MCOR_ELEMENT_OTHER && arrays[i].name ? arrays[i].components : 0;
-    for (int k = 0; k < of_array; ++k, ++c)
+    for (int c = 0; c < mcor_shown_components(arrays + i); ++c, of += 2)
     {
-      double first = NAN;
-      varies[c] = 0;
-      mcor_find_variation(arrays + i, k, &first, varies + c);
-      low[c] = isnan(first) ? INFINITY : first;
-      high[c] = isnan(first) ? -INFINITY : first;
+      of[0] = of[1] = INFINITY;
+      for (int64_t k = 0; k < arrays[i].tuples && !(of[0] < -of[1]); ++k)
+      {
+        const double x = mcor_element_at(arrays + i, k, c);
+        of[0] = fmin(of[0], x);
+        of[1] = fmin(of[1], -x);
+      }
     }
   }
-  if (low && ranks && components > 0 &&
-    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, low, components) != 0 ||
-      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, high, 2 * components) != 0))
+  const bool failed = !least ||
+    (ranks && ends > 0 && ranks->reduce_doubles(ranks->user, MCOR_LEAST, least, ends) != 0);
+  of = least;
+  for (int i = 0; i < count && !failed; ++i)
   {
-    free(low);
-    return -1;
-  }
-  for (int i = 0, c = 0; low && i < count; ++i)
-  {
-    const int of_array =
-      arrays[i].type < MCOR_ELEMENT_OTHER && arrays[i].name ? arrays[i].components : 0;
+    const int components = mcor_shown_components(arrays + i);
     bool differs = false;
-    for (int k = 0; k < of_array; ++k, ++c)
+    for (int c = 0; c < components; ++c, of += 2)
     {
-      differs = differs || varies[c] != 0 || low[c] < high[c];
+      differs = differs || of[0] < -of[1];
     }
-    const int rank = of_array == 0 ? -1
-                                   : mcor_view_priority(arrays[i].name, of_array,
-                                       arrays[i].type <= MCOR_ELEMENT_FLOAT64, differs);
+    const int rank = components == 0 ? -1
+                                     : mcor_view_priority(arrays[i].name, components,
+                                         arrays[i].type <= MCOR_ELEMENT_FLOAT64, differs);
     if (rank >= 0 && (i == active || best < 0 || (rank < best_rank && best != active)))
     {
       best = i;
       best_rank = rank;
     }
   }
-  free(low);
+  free(least);
   return best;
 }

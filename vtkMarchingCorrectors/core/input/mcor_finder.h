@@ -6,11 +6,21 @@
 #include "mcor_find.h"
 #include "mcor_input.h"
 
+/* An array with more values tells no types of particles. */
+#define MCOR_PARTICLE_TYPES 8
+
 /* The most names that a quantity has. */
 #define MCOR_NAMES 14
 
-/* Stands for the positions in the place of an index. */
-#define MCOR_FIND_POSITIONS (-2)
+/* mcor_name.c. Whether a name is this usual one, of small letters and digits; "_", "-", blanks and case
+ * do not matter. */
+bool mcor_is_usual_name(const char* name, const char* usual);
+
+/* Turns ASCII letters to small ones in any locale: in a Turkish one, tolower('I') is no i. */
+static inline char mcor_small_letter(char c)
+{
+  return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+}
 
 /* The state of mcor_find_input. */
 typedef struct mcor_finder
@@ -49,6 +59,10 @@ int mcor_find_by_name(const mcor_finder* f, const char* name);
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
 const mcor_named* mcor_named_of(const mcor_finder* f, int index);
+/* Return an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
+ * else a copy. */
+mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named);
+mcor_array mcor_view_of(mcor_finder* f, int index);
 /* Reads any element as a double. */
 double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
 

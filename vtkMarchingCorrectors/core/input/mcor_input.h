@@ -190,8 +190,10 @@ double mcor_w_of(mcor_sph_kernel kernel, double q);
  * most samples of fluid; fewer take less time. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
 
-/* Hashes a position: particles with the least hashes stand for all. */
+/* Hashes a position: particles with the least hashes stand for all. The second function adds one to
+ * the samples if its hash is among the least. */
 uint64_t mcor_hash_position(const double x[3]);
+void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample);
 
 /* Estimates one smoothing length for all particles from the spacing of the samples, and sets it as
  * their h. */
@@ -209,13 +211,6 @@ void mcor_read_smoothing_length(
 /* Computes the lengths of the kernels from smoothing lengths. */
 void mcor_widen_lengths(
   const mcor_input* input, int64_t first, int count, const double* h, double* out);
-
-/* mcor_summary.c. Writes a sentence, which the caller frees; NULL if memory ran out. */
-char* mcor_text(const char* format, ...)
-#if defined(__GNUC__)
-  __attribute__((format(printf, 1, 2)))
-#endif
-  ;
 
 /* Whether the device computes volumes from the particles' density. */
 static inline bool mcor_needs_density(const mcor_input* input)

@@ -26,22 +26,16 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
     "coordinate", "coords", "coord", "xyz", "r" },
 };
 
-static bool mcor_is_same_name(const char* name, const char* usual)
+bool mcor_is_usual_name(const char* name, const char* usual)
 {
-  for (; *name; ++name)
+  for (; name && *name; ++name)
   {
-    if (*name == '_' || *name == '-' || *name == ' ')
-    {
-      continue;
-    }
-    /* Turns ASCII letters to small ones in any locale: in a Turkish one, tolower('I') is no i. */
-    if ((*name >= 'A' && *name <= 'Z' ? *name - 'A' + 'a' : *name) != *usual)
+    if (*name != '_' && *name != '-' && *name != ' ' && mcor_small_letter(*name) != *usual++)
     {
       return false;
     }
-    ++usual;
   }
-  return *usual == '\0';
+  return name && *usual == '\0';
 }
 
 int mcor_name_priority(mcor_quantity quantity, const char* name)
@@ -49,7 +43,7 @@ int mcor_name_priority(mcor_quantity quantity, const char* name)
   for (int i = 0; name && (unsigned)quantity < MCOR_QUANTITY_COUNT && i < MCOR_NAMES; ++i)
   {
     const char* usual = mcor_usual_names[quantity][i];
-    if (usual && mcor_is_same_name(name, usual))
+    if (usual && mcor_is_usual_name(name, usual))
     {
       return i;
     }
@@ -61,25 +55,20 @@ int mcor_tells_apart(const char* name)
 {
   static const char* const ends[] = { "id", "ids", "idp", "type", "types", "index", "mk", "tag",
     "mol", "iorig" };
-  bool tells = false;
-  for (size_t e = 0; name && e < sizeof ends / sizeof ends[0]; ++e)
+  char last[6] = { 0 }; /* the last five letters; digits and blanks do not count */
+  for (; name && *name; ++name)
   {
-    size_t left = strlen(ends[e]), at = strlen(name);
-    while (left > 0 && at > 0)
+    const char letter = mcor_small_letter(*name);
+    if (letter >= 'a' && letter <= 'z')
     {
-      const char c = name[--at];
-      const char letter = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-      if (letter < 'a' || letter > 'z')
-      {
-        continue; /* digits and blanks do not count */
-      }
-      if (letter != ends[e][--left])
-      {
-        left = SIZE_MAX;
-        break;
-      }
+      memmove(last, last + 1, 4);
+      last[4] = letter;
     }
-    tells = tells || left == 0;
+  }
+  bool tells = false;
+  for (size_t e = 0; e < sizeof ends / sizeof ends[0]; ++e)
+  {
+    tells = tells || strcmp(last + 5 - strlen(ends[e]), ends[e]) == 0;
   }
   return tells;
 }
@@ -92,11 +81,11 @@ int mcor_find_fluid_value(const char* name, double low, double high, double* flu
   }
   if (low == 0 && high == 1)
   {
-    *fluid = mcor_is_same_name(name, "isfluid");
+    *fluid = mcor_is_usual_name(name, "isfluid");
     return 1;
   }
   /* DualSPHysics' types: fixed, moving and floating bodies, fluid. */
-  if (low >= 0 && low < 3 && high == 3 && mcor_is_same_name(name, "type"))
+  if (low >= 0 && low < 3 && high == 3 && mcor_is_usual_name(name, "type"))
   {
     *fluid = 3;
     return 1;
@@ -122,60 +111,6 @@ int mcor_view_priority(const char* name, int components, int is_real, int varies
                                                                 : 4;
 }
 
-/* The array names by which a solver's output is recognised; sources:
- * Documentation/Guide/your-data.md. Names that several solvers use come later. */
-typedef struct mcor_layout
-{
-  const char *solver, *names[4];
-} mcor_layout;
-
-static const mcor_layout mcor_layouts[] = { { "DualSPHysics", { "rhop", "idp" } },
-  { "PySPH", { "h", "rho", "m", "gid" } },
-  { "SWIFT", { "smoothinglengths", "densities", "masses" } },
-  { "GADGET", { "smoothinglength", "masses", "particleids" } },
-  { "GADGET", { "hsml", "masses", "particleids" } },
-  { "SPH-EXA", { "smoothinglength", "vx", "vy", "vz" } },
-  { "SPH-EXA", { "h", "mass", "vx", "vz" } }, { "SPH-EXA", { "h", "m", "vx", "vz" } },
-  { "Phantom", { "h", "vx", "vy", "vz" } } };
-
-/* Whether one of the names, which stand one on a line, is this usual name. */
-static bool mcor_lists_name(const char* names, const char* usual)
-{
-  for (const char* name = names; *name;)
-  {
-    char one[64];
-    const size_t length = strcspn(name, "\n");
-    if (length < sizeof one)
-    {
-      memcpy(one, name, length);
-      one[length] = '\0';
-      if (mcor_is_same_name(one, usual))
-      {
-        return true;
-      }
-    }
-    name += length + (name[length] != '\0');
-  }
-  return false;
-}
-
-const char* mcor_find_layout(const char* names)
-{
-  for (size_t l = 0; names && l < sizeof mcor_layouts / sizeof mcor_layouts[0]; ++l)
-  {
-    bool all = true;
-    for (int i = 0; i < 4 && mcor_layouts[l].names[i]; ++i)
-    {
-      all = all && mcor_lists_name(names, mcor_layouts[l].names[i]);
-    }
-    if (all)
-    {
-      return mcor_layouts[l].solver;
-    }
-  }
-  return "";
-}
-
 /* Finds the first array with this name and number of values. */
 static const double* mcor_find_values(
   const mcor_field_data* arrays, int count, const char* usual, int64_t values, int* which)
@@ -183,7 +118,7 @@ static const double* mcor_find_values(
   for (int i = 0; i < count; ++i)
   {
     if (arrays[i].name && arrays[i].values && arrays[i].count == values &&
-      mcor_is_same_name(arrays[i].name, usual))
+      mcor_is_usual_name(arrays[i].name, usual))
     {
       *which = i;
       return arrays[i].values;
@@ -274,7 +209,7 @@ int mcor_tells_of_period(const char* name)
   static const char* const usual[] = { "periodicbounds", "boxsize", "box", "boundarytype" };
   for (int i = 0; name && i < 4; ++i)
   {
-    if (mcor_is_same_name(name, usual[i]))
+    if (mcor_is_usual_name(name, usual[i]))
     {
       return 1;
     }

@@ -6,7 +6,6 @@
 #include "mcor_input.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -79,22 +78,6 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   const double spacing = per_length / 1.3;
   const double area = cubes * spacing * spacing, per_area = size * size;
   return size <= 0.0 ? 0.0 : is_plane ? area / per_area : area * spacing / (per_area * size);
-}
-
-char* mcor_text(const char* format, ...)
-{
-  va_list arguments;
-  va_start(arguments, format);
-  const int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
-  char* text = length < 0 ? NULL : malloc((size_t)length + 1);
-  va_start(arguments, format);
-  if (text)
-  {
-    vsnprintf(text, (size_t)length + 1, format, arguments);
-  }
-  va_end(arguments);
-  return text;
 }
 
 mcor_message mcor_describe_estimate(double cells)

@@ -370,34 +370,6 @@ mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input
   return mcor_is_explained(warning, &suspicion) ? MCOR_NO_MESSAGE : checks[warning](&suspicion);
 }
 
-mcor_message mcor_describe_unused_type(
-  const char* name, const double* values, const int64_t* counts, int count)
-{
-  if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
-  {
-    return MCOR_NO_MESSAGE;
-  }
-  if (strcmp(name, MCOR_WALL_BLOCK) == 0)
-  {
-    return mcor_say(MCOR_SAY(WALL_BLOCKS_UNUSED), MCOR_WALL_BLOCK);
-  }
-  char list[40 * MCOR_PARTICLE_TYPES] = "", seems[50] = "", *end = list;
-  double low = values[0], high = values[0], fluid;
-  bool whole = true;
-  for (int i = 0; i < count; ++i)
-  {
-    low = values[i] < low ? values[i] : low;
-    high = values[i] > high ? values[i] : high;
-    whole = whole && values[i] == floor(values[i]);
-    end += snprintf(end, 40, "%s %lld x %g", i ? "," : "", (long long)counts[i], values[i]);
-  }
-  if (whole && mcor_find_fluid_value(name, low, high, &fluid))
-  {
-    snprintf(seems, sizeof seems, ", which seems to be %g", fluid);
-  }
-  return mcor_say(MCOR_SAY(TYPE_UNUSED), name, list, name, seems);
-}
-
 /* The longest step between two coordinates, as a share of the cube size; some triangles are far
  * smaller than cubes. */
 #define MCOR_MOST_STEP 0.01

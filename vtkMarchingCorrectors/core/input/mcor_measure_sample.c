@@ -33,7 +33,7 @@ static bool mcor_comes_before(const mcor_sample* a, const mcor_sample* b)
                             : a->volume < b->volume;
 }
 
-static void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample)
+void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample)
 {
   int to = found->count;
   while (to > 0 && mcor_comes_before(sample, &found->of[to - 1]))

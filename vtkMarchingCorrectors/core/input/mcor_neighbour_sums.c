@@ -24,7 +24,6 @@
 /* The extent goes at most this many widths of the particles' middle half beyond that half.
  * Otherwise one particle far away would leave no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
-#define MCOR_WIDTH_SAMPLE 4096 /* the positions whose quartiles are taken */
 
 typedef struct mcor_neighbour
 {
@@ -103,47 +102,28 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   return order == 0 ? memcmp(p, q, offsetof(mcor_neighbour, place)) : order;
 }
 
-typedef struct mcor_hashed
+/* Adds a position to the samples, unless it is one of them already: ranks have copies of each other's
+ * particles. */
+static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
 {
-  uint64_t hash;
-  double x[3];
-} mcor_hashed;
-
-static int mcor_compare_hashed(const void* a, const void* b)
-{
-  const mcor_hashed *p = a, *q = b;
-  return p->hash != q->hash ? (p->hash < q->hash ? -1 : 1) : memcmp(p->x, q->x, sizeof p->x);
-}
-
-/* Keeps the positions with the least hashes, each once, in order. Returns how many these are. */
-static int64_t mcor_keep_least(mcor_hashed* sample, int64_t count)
-{
-  int64_t kept = 0;
-  qsort(sample, (size_t)count, sizeof *sample, mcor_compare_hashed);
-  for (int64_t i = 0; i < count && kept < MCOR_WIDTH_SAMPLE; ++i)
+  bool is_new =
+    samples->count < samples->most || place->hash < samples->of[samples->most - 1].hash;
+  for (int i = 0; i < samples->count && is_new; ++i)
   {
-    if (kept == 0 || mcor_compare_hashed(&sample[kept - 1], &sample[i]) != 0)
-    {
-      sample[kept++] = sample[i];
-    }
+    is_new = samples->of[i].hash != place->hash;
   }
-  return kept;
+  if (is_new)
+  {
+    mcor_add_sample(samples, place);
+  }
 }
 
-/* Finds the bounds of all ranks' particles, and the positions with the least hashes among them. The
- * result does not depend on order, or on copies of other ranks' particles. *sample: to be freed. */
-static mcor_status mcor_sample_extent(mcor_context* context, const mcor_neighbour_job* job,
-  double low[3], double high[3], mcor_hashed** sample, int64_t* count)
+/* Measures the bounds of all ranks' particles, and cuts them to some widths around the middle half of
+ * a sample. */
+static mcor_status mcor_measure_extent(
+  mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
 {
-  enum
-  {
-    ROOM = 4 * MCOR_WIDTH_SAMPLE
-  };
-  int64_t n = 0, all_count = 0;
-  uint64_t last = UINT64_MAX;
-  const void* all = NULL;
-  mcor_hashed* own = *sample = malloc(ROOM * sizeof *own);
-  MCOR_TRY(mcor_allocated(context, own != NULL));
+  mcor_sample_list own = { .most = MCOR_SAMPLES }, samples = { .most = MCOR_SAMPLES };
   for (int a = 0; a < 3; ++a)
   {
     low[a] = INFINITY;
@@ -152,59 +132,37 @@ static mcor_status mcor_sample_extent(mcor_context* context, const mcor_neighbou
   for (int64_t i = 0; i < job->count; ++i)
   {
     const double* x = job->sorted[i].x;
-    const mcor_hashed hashed = { mcor_hash_position(x), { x[0], x[1], x[2] } };
+    const mcor_sample place = { .hash = mcor_hash_position(x), .x = { x[0], x[1], x[2] } };
+    mcor_add_place(&own, &place);
     for (int a = 0; a < 3; ++a)
     {
       low[a] = fmin(low[a], x[a]);
       high[a] = fmax(high[a], x[a]);
     }
-    if (hashed.hash <= last)
-    {
-      own[n++] = hashed;
-    }
-    if (n == ROOM)
-    {
-      n = mcor_keep_least(own, n);
-      last = n == MCOR_WIDTH_SAMPLE ? own[n - 1].hash : last;
-    }
   }
-  *count = mcor_keep_least(own, n);
+  const void* all = NULL;
+  int64_t count = 0;
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 3));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 3));
-  MCOR_TRY(mcor_gather_records(context, own, *count, sizeof *own, &all, &all_count));
-  if (context->run.options->ranks)
+  MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
+  for (int64_t i = 0; i < count; ++i)
   {
-    *sample = malloc((size_t)all_count * sizeof *own + 1);
-    if (*sample)
-    {
-      memcpy(*sample, all, (size_t)all_count * sizeof *own);
-      *count = mcor_keep_least(*sample, all_count);
-    }
-    free(own);
+    mcor_add_place(&samples, (const mcor_sample*)all + i);
   }
-  return mcor_allocated(context, *sample != NULL);
-}
-
-static mcor_status mcor_measure_extent(
-  mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
-{
-  double width = 0, quarter[3][2], values[MCOR_WIDTH_SAMPLE];
-  mcor_hashed* sample = NULL;
-  int64_t n = 0;
-  const mcor_status status = mcor_sample_extent(context, job, low, high, &sample, &n);
-  for (int a = 0; a < 3 && status == MCOR_OK; ++a)
+  const int n = samples.count;
+  double width = 0, quarter[3][2], values[MCOR_SAMPLES];
+  for (int a = 0; a < 3 && n > 0; ++a)
   {
-    for (int64_t i = 0; i < n; ++i)
+    for (int s = 0; s < n; ++s)
     {
-      values[i] = sample[i].x[a];
+      values[s] = samples.of[s].x[a];
     }
     qsort(values, (size_t)n, sizeof *values, mcor_compare_doubles);
-    quarter[a][0] = n > 0 ? values[n / 4] : 0;
-    quarter[a][1] = n > 0 ? values[n - 1 - n / 4] : 0;
+    quarter[a][0] = values[n / 4];
+    quarter[a][1] = values[n - 1 - n / 4];
     width = fmax(width, quarter[a][1] - quarter[a][0]);
   }
-  free(sample);
-  for (int a = 0; a < 3 && n > 0 && status == MCOR_OK; ++a)
+  for (int a = 0; a < 3 && n > 0; ++a)
   {
     if (width > 0)
     {
@@ -213,7 +171,7 @@ static mcor_status mcor_measure_extent(
     }
     job->extent = fmax(job->extent, fmax(high[a] - low[a], job->period[a]));
   }
-  return status;
+  return MCOR_OK;
 }
 
 static mcor_status mcor_sort_neighbours(mcor_context* context, mcor_neighbour_job* job)

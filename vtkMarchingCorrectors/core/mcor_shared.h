@@ -52,12 +52,10 @@ typedef struct mcor_level
  * do other work while it waits for one. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
-/* INSERTION: most particles with one key (in one cell or one place) that one work-item sorts alone.
- * USUAL: the least value of most_in_cell in mcor_grid. */
+/* INSERTION: most particles of a cell that are sorted by insertion; more are sorted by a heap. USUAL:
+ * the least value of most_in_cell in mcor_grid. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
-/* Larger groups are cut into runs of this length, which are sorted by insertion, then merged. */
-#define MCOR_SORTED_RUN 32
 
 /* Buckets that one work-item fills. */
 #define MCOR_ITEM_BUCKETS_OF(lanes) ((lanes) == 1 ? 1 : 1024)

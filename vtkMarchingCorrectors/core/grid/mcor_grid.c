@@ -99,39 +99,6 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-/* How to sort groups of particles with the same key, see mcor_sort_before. */
-typedef struct mcor_key_sort
-{
-  const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;
-  int by_value, most; /* whether a group is one position, not a cell; its most particles */
-} mcor_key_sort;
-
-#define MCOR_SORT_ARGS(c, s)                                                                       \
-  MCOR_INT((c)->grid.count), MCOR_BUFFER((s)->keys), MCOR_BUFFER((s)->x), MCOR_BUFFER((s)->y),     \
-    MCOR_BUFFER((s)->z), MCOR_BUFFER((s)->inv_h), MCOR_BUFFER((s)->size), MCOR_INT((s)->by_value), \
-    MCOR_BUFFER((s)->value)
-
-/* Sorts the groups that are too large for one work-item. */
-static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sort* sort)
-{
-  mcor_grid* grid = &context->grid;
-  const int batches = mcor_batches(context, grid->count);
-  MCOR_TRY(mcor_reserve(context, &context->sort.values, (size_t)grid->count * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
-    MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
-  for (int64_t width = MCOR_SORTED_RUN; width < sort->most; width *= 2)
-  {
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
-        MCOR_INT((int)width), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&context->sort.values)));
-    const mcor_buffer merged = context->sort.values;
-    context->sort.values = grid->order;
-    grid->order = merged;
-  }
-  MCOR_RELEASE_EACH(context, &context->sort);
-  return MCOR_OK;
-}
-
 /* Orders the particles of each cell, then moves particles to where `order` says, one array after
  * the other, so that each array may take the memory of the one before. An array whose elements are
  * all the same is in order already. */
@@ -141,16 +108,16 @@ static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging
   mcor_stage_data* stage = &context->stage;
   const int count = grid->count;
   const size_t size = context->cl.fix_size;
-  mcor_buffer* from[] = { &stage->x, &stage->y, &stage->z, &stage->inv_h, &stage->size };
-  mcor_buffer* to[] = { &grid->px, &grid->py, &grid->pz, &grid->inv_h, &grid->trim_weight };
+  mcor_buffer* from[] = { &stage->y, &stage->z, &stage->inv_h, &stage->size };
+  mcor_buffer* to[] = { &grid->py, &grid->pz, &grid->inv_h, &grid->trim_weight };
   MCOR_TRY(mcor_reserve_padded(context, &grid->px, count, size));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
     MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->x), MCOR_BUFFER(&stage->y),
     MCOR_BUFFER(&stage->z), MCOR_BUFFER(&stage->inv_h), MCOR_BUFFER(&stage->size),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px)));
-  const bool has_x = grid->most_in_cell <= MCOR_INSERTION_OF(context->cl.lanes);
-  const bool is_moved[] = { !has_x, true, true, !staging->one_inv_h, !staging->one_size };
-  for (int i = 0; i < 5; ++i)
+  mcor_release(context, &stage->x);
+  const bool is_moved[] = { true, true, !staging->one_inv_h, !staging->one_size };
+  for (int i = 0; i < 4; ++i)
   {
     if (is_moved[i])
     {
@@ -158,7 +125,7 @@ static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging
       MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
         MCOR_BUFFER(&grid->order), MCOR_BUFFER(from[i]), MCOR_BUFFER(to[i]), MCOR_INT(0)));
     }
-    else if (i > 0)
+    else
     {
       mcor_take_buffer(context, from[i], to[i]);
       MCOR_TRY(mcor_reserve_padded(context, to[i], count, size));
@@ -229,12 +196,6 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->found)));
   MCOR_TRY(mcor_read(context, &stage->found, 0, &most_in_cell, sizeof most_in_cell));
   grid->most_in_cell = most_in_cell;
-  if (most_in_cell > MCOR_INSERTION_OF(context->cl.lanes)) /* too large for one work-item */
-  {
-    const mcor_key_sort sort = { &grid->cell_keys, &stage->x, &stage->y, &stage->z, &stage->inv_h,
-      &stage->size, &stage->inv_h, 0, most_in_cell };
-    MCOR_TRY(mcor_sort_same_keys(context, &sort));
-  }
   MCOR_TRY(mcor_move_particles(context, staging));
   return mcor_index_cells(context, cells);
 }
@@ -386,42 +347,6 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     MCOR_INT(to_row));
 }
 
-#define MCOR_COINCIDENT_ARGS(g)                                                                    \
-  MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
-    MCOR_BUFFER(mcor_fluid_weight(g)), MCOR_BUFFER(&(g)->trim_weight)
-
-/* Orders particles that differ in the scalar only, which mcor_sort_values has just written. */
-static mcor_status mcor_order_coincident(mcor_context* context)
-{
-  mcor_grid* grid = &context->grid;
-  const int count = grid->count;
-  const mcor_buffer* raw = &context->stage.values; /* the scalar in input order */
-  mcor_buffer *many = &context->stage.found, *flags = &context->stage.flags,
-              *keys = &context->stage.keys;
-  cl_int some = 0;
-  int places;
-  MCOR_TRY(mcor_fill(context, many, 0, sizeof some));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_COINCIDENT_ARGS(grid), MCOR_BUFFER(&grid->value), MCOR_BUFFER(&grid->order),
-    MCOR_BUFFER(many)));
-  MCOR_TRY(mcor_read(context, many, 0, &some, sizeof some));
-  if (!some)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, keys, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count_places", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_COINCIDENT_ARGS(grid), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_scan(context, flags, count, &places));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
-  const mcor_key_sort sort = { keys, &grid->px, &grid->py, &grid->pz, raw, raw, raw, 1, count };
-  MCOR_TRY(mcor_sort_same_keys(context, &sort));
-  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(&grid->value), MCOR_INT(0));
-}
-
 /* Chooses A0, the shift of the scalar. A Shepard mean shifts with its values, so A - A0, with A0
  * near most values, keeps the digits of a scalar with a large offset, and of one with a few huge
  * peaks. */
@@ -450,7 +375,12 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
     single ? "Choose {precision double}" : "Use another unit");
   MCOR_TRY(
     mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, false, &grid->value, 0));
-  return mcor_order_coincident(context);
+  /* Orders particles that differ in the scalar only. */
+  return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
+    MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(mcor_fluid_weight(grid)),
+    MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(&context->stage.values),
+    MCOR_BUFFER(&grid->value), MCOR_BUFFER(&grid->order));
 }
 
 void mcor_release_grid(mcor_context* context)

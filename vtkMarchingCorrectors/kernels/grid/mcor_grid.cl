@@ -54,8 +54,8 @@ __kernel void mcor_grid_count(const int count, __global const ulong* keys, __glo
   __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
     __global const real *size
 
-/* Compares two particles of one search cell by position, smoothing length, size and kind. If all
- * are equal, the particles differ at most in their scalar, see mcor_grid_order_value. */
+/* Compares two particles of one search cell by position, smoothing length, size and kind; then by
+ * number, because the particles differ at most in their scalar, see mcor_grid_order_value. */
 bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
   return x[i] != x[j]                ? x[i] < x[j]
@@ -63,7 +63,47 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
     : z[i] != z[j]                   ? z[i] < z[j]
     : inv_h[i] != inv_h[j]           ? inv_h[i] < inv_h[j]
     : fabs(size[i]) != fabs(size[j]) ? fabs(size[i]) < fabs(size[j])
-                                     : size[i] > size[j];
+    : size[i] != size[j]             ? size[i] > size[j]
+                                     : i < j;
+}
+
+/* Compares two particles by their values, then by number; or as above if `value` is 0. */
+bool mcor_grid_value_before(MCOR_PARTICLES, __global const real* value, int i, int j)
+{
+  return !value            ? mcor_grid_before(x, y, z, inv_h, size, i, j)
+    : value[i] != value[j] ? value[i] < value[j]
+                           : i < j;
+}
+
+/* Sorts particles by a heap, which needs no memory beside them. */
+void mcor_grid_heap_sort(
+  MCOR_PARTICLES, __global const real* value, __global int* order, int count)
+{
+  int left = count, root = count / 2; /* where the heap ends; where it begins while it grows */
+  while (left > 1)
+  {
+    const bool grows = root > 0;
+    root -= grows;
+    left -= !grows;
+    const int item = order[grows ? root : left];
+    if (!grows)
+    {
+      order[left] = order[0];
+    }
+    int to = root, child = 2 * root + 1;
+    for (; child < left; to = child, child = 2 * child + 1)
+    {
+      const bool second = child + 1 < left &&
+        mcor_grid_value_before(x, y, z, inv_h, size, value, order[child], order[child + 1]);
+      child += second;
+      if (!mcor_grid_value_before(x, y, z, inv_h, size, value, item, order[child]))
+      {
+        break;
+      }
+      order[to] = order[child];
+    }
+    order[to] = item;
+  }
 }
 
 /* Most elements of an insertion sort. */
@@ -167,8 +207,7 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
 
 /* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order.
  * Sorts the particles within these cells, so that their order no longer depends on the input;
- * writes `order`, and px in this order. Leaves out cells with more than MCOR_INSERTION_LIMIT
- * particles, which mcor_grid_sort_runs and mcor_grid_merge have sorted. */
+ * writes `order`, and px in this order. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_PARTICLES,
   __global int* order, __global fix* px)
 {
@@ -180,9 +219,18 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
   while (first < end)
   {
-    const int last = mcor_grid_cells_end(keys, first, end, count);
+    int last = mcor_grid_cells_end(keys, first, end, count);
     mcor_grid_insert(keys + first, x, y, z, inv_h, size, order + first, px + first, last - first);
-    first = last > first ? last : mcor_find_key(keys, first, count, keys[first] + 1);
+    if (last == first)
+    {
+      last = mcor_find_key(keys, first, count, keys[first] + 1);
+      mcor_grid_heap_sort(x, y, z, inv_h, size, 0, order + first, last - first);
+      for (int i = first; i < last; ++i)
+      {
+        px[i] = x[order[i]];
+      }
+    }
+    first = last;
   }
 }
 
@@ -195,102 +243,6 @@ __kernel void mcor_grid_weigh(const int count, const real norm, __global const r
   const real w = fabs(size) * norm * inv_h[i] * inv_h[i] * inv_h[i];
   trim_weight[i] = w;
   weight[i] = size < 0 ? (real)0 : w; /* without solids, weight and trim_weight are one array */
-}
-
-/* Groups of more than MCOR_INSERTION_LIMIT particles with one key are sorted by all work-items
- * together: runs of MCOR_SORTED_RUN first, then pairs of runs are merged into runs twice as long. A
- * group is a cell, or (by_value) the particles at one position. Particles at one position are
- * sorted by their scalar, so that results never depend on the order of the input; with equal
- * scalars, by their number before, so that no earlier scalar matters. */
-#define MCOR_SORT_PARAMS                                                                           \
-  const int count, __global const ulong *keys, MCOR_PARTICLES, const int by_value,                 \
-    __global const real *value
-#define MCOR_SORT_ARGS count, keys, x, y, z, inv_h, size, by_value, value
-
-bool mcor_grid_value_before(real v, int source, real w, int other)
-{
-  return v != w ? v < w : source < other;
-}
-
-bool mcor_sort_before(MCOR_SORT_PARAMS, int i, int j)
-{
-  return by_value ? mcor_grid_value_before(value[i], i, value[j], j)
-                  : mcor_grid_before(x, y, z, inv_h, size, i, j);
-}
-
-/* Whether place i may belong to a group of more than MCOR_INSERTION_LIMIT particles. */
-bool mcor_sort_is_large(__global const ulong* keys, int i, int count)
-{
-  const int step = MCOR_INSERTION_LIMIT / 2;
-  return (i >= step && keys[i - step] == keys[i]) ||
-    (i + step < count && keys[i + step] == keys[i]);
-}
-
-/* One work-item = one batch of sorted particles. Sorts the runs that begin there. */
-__kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
-{
-  const int begin = get_global_id(0) * MCOR_BATCH;
-  for (int i = begin, group = count; i < min(begin + MCOR_BATCH, count); ++i)
-  {
-    if (!mcor_sort_is_large(keys, i, count))
-    {
-      continue;
-    }
-    group = group < i && keys[group] == keys[i] ? group : mcor_find_key(keys, 0, i, keys[i]);
-    const int beyond = group + MCOR_INSERTION_LIMIT;
-    if (beyond >= count || keys[beyond] != keys[i] || (i - group) % MCOR_SORTED_RUN != 0)
-    {
-      continue;
-    }
-    const int end = min(i + MCOR_SORTED_RUN, count);
-    for (int next = i + 1; next < end && keys[next] == keys[i]; ++next)
-    {
-      const int item = order[next];
-      int to = next;
-      for (; to > i && mcor_sort_before(MCOR_SORT_ARGS, item, order[to - 1]); --to)
-      {
-        order[to] = order[to - 1];
-      }
-      order[to] = item;
-    }
-  }
-}
-
-/* One work-item = one batch of sorted particles. Reads an order whose runs of `width` particles are
- * sorted. Writes each particle to its place in the run of twice that width: its place in its own
- * run, plus the number of particles of the other run before it. */
-__kernel void mcor_grid_merge(
-  MCOR_SORT_PARAMS, const int width, __global const int* order, __global int* merged)
-{
-  const int begin = get_global_id(0) * MCOR_BATCH;
-  for (int i = begin, group = 0, end = 0; i < min(begin + MCOR_BATCH, count); ++i)
-  {
-    const bool large = mcor_sort_is_large(keys, i, count);
-    if (large && i >= end)
-    {
-      group = mcor_find_key(keys, 0, i, keys[i]);
-      end = mcor_find_key(keys, i, count, keys[i] + 1);
-    }
-    if (!large || end - group <= MCOR_INSERTION_LIMIT)
-    {
-      merged[i] = order[i];
-      continue;
-    }
-    const int own = (i - group) / width, run = group + own * width;
-    const bool is_first = own % 2 == 0;
-    const int other = is_first ? (int)min((long)run + width, (long)end) : run - width;
-    int low = other, high = is_first ? (int)min((long)other + width, (long)end) : run;
-    while (low < high)
-    {
-      const int middle = low + (high - low) / 2;
-      /* Of equal particles, the first run's come first. */
-      const bool before = is_first ? mcor_sort_before(MCOR_SORT_ARGS, order[middle], order[i])
-                                   : !mcor_sort_before(MCOR_SORT_ARGS, order[i], order[middle]);
-      low = before ? middle + 1 : low;
-      high = before ? high : middle;
-    }
-    merged[(is_first ? i : i - width) + (low - other)] = order[i];
-  }
 }
 
 /* One work-item = one sorted particle. Reads an array, of fix or real, in input order. Writes it in
@@ -314,10 +266,11 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle, if it is the first of several at one position. Sorts these;
- * if there are more than MCOR_INSERTION_LIMIT, sets `many`. */
-__kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __global real* value,
-  __global int* order, __global int* many)
+/* One work-item = one sorted particle, if it is the first of several at one position. Sorts these by
+ * their scalar, so that results never depend on the order of the input. raw: the scalar in input
+ * order. */
+__kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS,
+  __global const real* raw, __global real* value, __global int* order)
 {
   const int begin = get_global_id(0);
   if (begin + 1 >= count || !MCOR_SAME(begin, begin + 1) ||
@@ -325,42 +278,16 @@ __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __g
   {
     return;
   }
-  const int limit = min(begin + MCOR_INSERTION_LIMIT, count - 1);
-  for (int i = begin + 1; i <= limit && MCOR_SAME(begin, i); ++i)
+  int end = begin + 2;
+  while (end < count && MCOR_SAME(begin, end))
   {
-    if (i == begin + MCOR_INSERTION_LIMIT)
-    {
-      atomic_or(many, 1);
-      break;
-    }
-    const real v = value[i];
-    const int source = order[i];
-    int to = i;
-    for (; to > begin && mcor_grid_value_before(v, source, value[to - 1], order[to - 1]); --to)
-    {
-      value[to] = value[to - 1];
-      order[to] = order[to - 1];
-    }
-    value[to] = v;
-    order[to] = source;
+    ++end;
   }
-}
-
-/* One work-item = one sorted particle. Writes 1 if it differs from the particle before it in more
- * than the scalar. */
-__kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __global int* flags)
-{
-  MCOR_ITEM(i, i < count);
-  flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
-}
-
-/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that coincident
- * particles share. */
-__kernel void mcor_grid_fill_places(
-  const int count, __global const int* scanned, __global ulong* keys)
-{
-  MCOR_ITEM(i, i < count);
-  keys[i] = (ulong)scanned[i + 1];
+  mcor_grid_heap_sort(0, 0, 0, 0, 0, raw, order + begin, end - begin);
+  for (int i = begin; i < end; ++i)
+  {
+    value[i] = raw[order[i]];
+  }
 }
 
 #endif

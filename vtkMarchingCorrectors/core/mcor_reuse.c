@@ -5,6 +5,8 @@
 
 #include "mcor_internal.h"
 
+#include <string.h>
+
 static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
 {
   return (a->data == NULL) == (b->data == NULL) && a->type == b->type &&
@@ -39,12 +41,7 @@ static uint64_t mcor_hash_splits(const mcor_globals* globals)
 
 static bool mcor_same_bounds(const double a[6], const double b[6])
 {
-  bool same = true;
-  for (int i = 0; i < 6; ++i)
-  {
-    same = same && a[i] == b[i];
-  }
-  return same;
+  return memcmp(a, b, 6 * sizeof *a) == 0;
 }
 
 /* Whether all options are the same on which the search grid depends. */
@@ -81,17 +78,14 @@ void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor
   const mcor_globals none = { 0 };
   const mcor_globals *a = &context->kept.globals, *b = options->globals ? options->globals : &none;
   const mcor_measure *m = &a->measured, *n = &b->measured;
-  bool parameters = mcor_same_options(options, &context->kept.options) &&
+  const bool parameters = mcor_same_options(options, &context->kept.options) &&
     m->fluid_count == n->fluid_count && m->solid_count == n->solid_count && m->h_min == n->h_min &&
     m->support_min == n->support_min && m->support_max == n->support_max &&
     m->h_estimate == n->h_estimate && m->wall_share == n->wall_share &&
     m->scalar_min == n->scalar_min && m->scalar_max == n->scalar_max &&
     a->mass_max == b->mass_max && a->scalar_shift == b->scalar_shift &&
+    memcmp(m->low, n->low, sizeof m->low) == 0 && memcmp(m->high, n->high, sizeof m->high) == 0 &&
     context->kept.splits == (options->globals ? mcor_hash_splits(b) : 0);
-  for (int i = 0; i < 3; ++i)
-  {
-    parameters = parameters && m->low[i] == n->low[i] && m->high[i] == n->high[i];
-  }
   context->kept.grid = context->kept.grid && particles && parameters &&
     context->run.uses_solids == context->kept.uses_solids;
   context->kept.value = context->kept.value && context->kept.grid && input->scalar_version != 0 &&

@@ -18,14 +18,9 @@
  * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
  * h_median. If the watched particles lie in a tilted plane, it also finds whether all others do. */
 
-#define MCOR_WATCHED 32 /* bits of a mask */
-#define MCOR_WATCH_CELLS 64
+#define MCOR_WATCHED 32
 typedef struct mcor_watch
 {
-  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
-   * None reaches the outermost intervals. */
-  double low[3], per_length[3];
-  uint32_t reached[3][MCOR_WATCH_CELLS];
   int count;
   const mcor_sample* sample;
   double support;
@@ -36,14 +31,6 @@ typedef struct mcor_watch
    * the sign reversed. */
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
-
-/* Written to be vectorised. */
-static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
-{
-  const double cell = (x - watch->low[axis]) * watch->per_length[axis];
-  const double above = cell > 0 ? cell : 0;
-  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
-}
 
 /* ---- A plane that is tilted in space ---- */
 
@@ -96,26 +83,9 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-/* Whether a watched particle may reach a place in these bounds. */
-static bool mcor_watch_reaches(const mcor_watch* watch, const double low[3], const double high[3])
-{
-  uint32_t all = UINT32_MAX;
-  for (int a = 0; a < 3; ++a)
-  {
-    uint32_t reached = 0;
-    const int last = mcor_watch_cell(watch, a, high[a]);
-    for (int c = mcor_watch_cell(watch, a, low[a]); c <= last; ++c)
-    {
-      reached |= watch->reached[a][c];
-    }
-    all &= reached;
-  }
-  return all;
-}
-
 /* Watches the positions of a chunk. low, high: their bounds. */
-static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
-  const double low[3], const double high[3])
+MCOR_VECTOR_LOOPS static void mcor_watch_positions(mcor_watch* watch, int slice, int count,
+  double x[3][MCOR_CHUNK], const double low[3], const double high[3])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   double* beyond = watch->beyond[slice];
@@ -125,34 +95,32 @@ static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  if (!mcor_watch_reaches(watch, low, high))
+  for (int s = 0; s < watch->count; ++s)
   {
-    return;
-  }
-  int cell[3][MCOR_CHUNK];
-  for (int a = 0; a < 3; ++a)
-  {
+    const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
+    bool reaches = count > 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      reaches = reaches && low[a] - at[a] <= reach && at[a] - high[a] <= reach;
+    }
+    if (!reaches)
+    {
+      continue;
+    }
+    double square[MCOR_CHUNK], unused = DBL_MAX;
+    int64_t neighbours = 0;
     for (int i = 0; i < count; ++i)
     {
-      cell[a][i] = mcor_watch_cell(watch, a, x[a][i]);
+      const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
+      square[i] = dx * dx + dy * dy + dz * dz;
+      neighbours += square[i] < reach * reach;
     }
-  }
-  for (int i = 0; i < count; ++i)
-  {
-    uint32_t reached =
-      watch->reached[0][cell[0][i]] & watch->reached[1][cell[1][i]] & watch->reached[2][cell[2][i]];
-    for (int s = 0; reached; ++s, reached >>= 1)
+    for (int i = 0; i < count; ++i) /* a particle at the same place is not the nearest one */
     {
-      const double reach = watch->support * watch->sample[s].h;
-      double square = 0, *nearest = &watch->nearest[slice][s];
-      for (int a = 0; a < 3 && (reached & 1); ++a)
-      {
-        const double d = x[a][i] - watch->sample[s].x[a];
-        square += d * d;
-      }
-      watch->neighbours[slice][s] += (reached & 1) && square < reach * reach;
-      *nearest = square > 0 ? fmin(*nearest, square) : *nearest;
+      square[i] = square[i] > 0 ? square[i] : DBL_MAX;
     }
+    watch->neighbours[slice][s] += neighbours;
+    mcor_widen_range(square, count, &watch->nearest[slice][s], &unused);
   }
 }
 
@@ -161,13 +129,12 @@ static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int 
 {
   mcor_measure* m = &context->measure;
   const mcor_space* space = &context->space;
-  int64_t neighbours[MCOR_WATCHED] = { 0 };
-  double nearest[MCOR_WATCHED], count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED],
-    h[MCOR_WATCHED], *beyond = watch->beyond[0];
-  for (int s = 0; s < watch->count; ++s)
+  int64_t* neighbours = watch->neighbours[0];
+  double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED],
+    *nearest = watch->nearest[0], *beyond = watch->beyond[0];
+  for (int slice = 1; slice < slices; ++slice)
   {
-    nearest[s] = DBL_MAX;
-    for (int slice = 0; slice < slices; ++slice)
+    for (int s = 0; s < watch->count; ++s)
     {
       neighbours[s] += watch->neighbours[slice][s];
       nearest[s] = fmin(nearest[s], watch->nearest[slice][s]);
@@ -211,28 +178,6 @@ static void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
   *watch = (mcor_watch){ .sample = fluid->of,
     .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
     .support = mcor_support_factor(context->run.options->sph_kernel) };
-  for (int a = 0; a < 3; ++a)
-  {
-    double low = DBL_MAX, high = -DBL_MAX;
-    for (int s = 0; s < watch->count; ++s)
-    {
-      const double reach = watch->support * watch->sample[s].h;
-      low = fmin(low, watch->sample[s].x[a] - reach);
-      high = fmax(high, watch->sample[s].x[a] + reach);
-    }
-    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
-    watch->low[a] = low - cell;
-    watch->per_length[a] = cell > 0 ? 1 / cell : 0;
-    for (int s = 0; s < watch->count; ++s)
-    {
-      const double x = watch->sample[s].x[a], reach = watch->support * watch->sample[s].h;
-      const int last = mcor_watch_cell(watch, a, x + reach);
-      for (int c = mcor_watch_cell(watch, a, x - reach); c <= last; ++c)
-      {
-        watch->reached[a][c] |= UINT32_C(1) << s;
-      }
-    }
-  }
   for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
   {
     watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;

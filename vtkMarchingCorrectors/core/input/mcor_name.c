@@ -143,43 +143,39 @@ static bool mcor_are_periods(const double bounds[6])
   return some;
 }
 
-/* Reads the lengths of BoxSize: one for all axes, or one for each axis. */
-static bool mcor_find_box_size(
-  const mcor_field_data* arrays, int count, int edges, double period[6], int* which)
+/* The arrays that give a period, the first of them first, and how many values they have. */
+static const struct
 {
-  const double* found = mcor_find_values(arrays, count, "boxsize", edges, which);
-  double bounds[6] = { 0 };
-  for (int a = 0; found && a < 3; ++a)
-  {
-    bounds[2 * a + 1] = period[a] = found[edges == 1 ? 0 : a];
-  }
-  return mcor_are_periods(bounds);
-}
+  const char* name;
+  int values;
+} mcor_period_arrays[] = { { "periodicbounds", 6 }, { "boxsize", 3 }, { "boxsize", 1 },
+  { "box", 6 }, { "boundarytype", 3 } };
 
 int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which)
 {
   int found, type_at;
   which = which ? which : &found;
-  const double* bounds = mcor_find_values(arrays, count, "periodicbounds", 6, which);
-  if (bounds && mcor_are_periods(bounds))
-  {
-    memcpy(period, bounds, 6 * sizeof *period);
-    return 6;
-  }
-  if (mcor_find_box_size(arrays, count, 3, period, which) ||
-    mcor_find_box_size(arrays, count, 1, period, which))
-  {
-    return 3;
-  }
+  /* SPH-EXA's types of the sides of `box`; 0: open, 1: periodic, 2: fixed */
   const double* type = mcor_find_values(arrays, count, "boundarytype", 3, &type_at);
-  bounds = mcor_find_values(arrays, count, "box", 6, which);
-  for (int side = 0; side < 6; ++side) /* SPH-EXA's boundary types; 0: open, 1: periodic, 2: fixed */
+  for (int u = 0; u < 4; ++u)
   {
-    period[side] = bounds && type && type[side / 2] == 1 ? bounds[side] : 0;
-  }
-  if (mcor_are_periods(period))
-  {
-    return 6;
+    const int values = mcor_period_arrays[u].values;
+    const double* of = mcor_find_values(arrays, count, mcor_period_arrays[u].name, values, which);
+    double bounds[6] = { 0 };
+    for (int a = 0; a < 3 && of; ++a)
+    {
+      const bool open = u == 3 && !(type && type[a] == 1);
+      bounds[2 * a] = values == 6 && !open ? of[2 * a] : 0;
+      bounds[2 * a + 1] = open ? 0 : values == 6 ? of[2 * a + 1] : of[values == 1 ? 0 : a];
+    }
+    if (mcor_are_periods(bounds))
+    {
+      for (int i = 0; i < 6; ++i)
+      {
+        period[i] = values == 6 ? bounds[i] : i < 3 ? bounds[2 * i + 1] : 0;
+      }
+      return values == 6 ? 6 : 3;
+    }
   }
   *which = -1;
   memset(period, 0, 6 * sizeof *period);
@@ -206,10 +202,9 @@ void mcor_place_period(const double lengths[3], const double extent[6], double b
 
 int mcor_tells_of_period(const char* name)
 {
-  static const char* const usual[] = { "periodicbounds", "boxsize", "box", "boundarytype" };
-  for (int i = 0; name && i < 4; ++i)
+  for (size_t i = 0; i < sizeof mcor_period_arrays / sizeof mcor_period_arrays[0]; ++i)
   {
-    if (mcor_is_usual_name(name, usual[i]))
+    if (mcor_is_usual_name(name, mcor_period_arrays[i].name))
     {
       return 1;
     }

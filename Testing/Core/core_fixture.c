@@ -259,7 +259,7 @@ void core_check_flags(const mcor_surface* surface)
   for (int64_t s = 0; s < report.side_count; ++s)
   {
     const mesh_edge* e = report.side + s;
-    if (mesh_count_sides(&report, e->a, e->b) == 1)
+    if (e->sharing == 1)
     {
       on_boundary[e->a] = on_boundary[e->b] = 1;
     }

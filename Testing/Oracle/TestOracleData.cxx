@@ -4,8 +4,8 @@
 // Compares the library with the oracle on particles of real simulations. VTK only reads the files,
 // because the core is called directly.
 //
-// --data DIR: where the shipped sets are. --large: the sets in the directory that the environment
-// variable MCOR_DATA_DIR names, instead; exit status 77 (skipped) if it is not set.
+// TestOracleData DIR [--case NAME]: with the shipped sets, which lie in DIR. TestOracleData --large: with the sets in the
+// directory that the environment variable MCOR_DATA_DIR names; exit status 77 (skipped) if it is not set.
 
 #include "oracle_case.h"
 
@@ -101,46 +101,35 @@ const DataCase LargeCases[] = {
   { "dam_break_467k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 0, 0, 0, false },
 };
 
-// Lends a VTK array to the core; float and double are used as they are.
-mcor_array BorrowArray(vtkDataArray* array)
+// Lends the array to the core; returns false if it is missing or holds no floating-point numbers.
+bool Borrow(vtkDataArray* array, mcor_array& result)
 {
-  mcor_array result = {};
-  std::memset(&result, 0, sizeof(result));
-  result.data = array->GetVoidPointer(0);
-  result.type = array->GetDataType() == VTK_DOUBLE ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  result.components = array->GetNumberOfComponents();
-  return result;
-}
-
-// Lends the array with this name to the core; returns false if the file lacks it.
-bool FindArray(vtkPolyData* particles, const char* name, mcor_array& array)
-{
-  vtkDataArray* found = particles->GetPointData()->GetArray(name);
-  if (!found || (found->GetDataType() != VTK_FLOAT && found->GetDataType() != VTK_DOUBLE))
+  if (!array || (array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE))
   {
     return false;
   }
-  array = BorrowArray(found);
+  result.data = array->GetVoidPointer(0);
+  result.type = array->GetDataType() == VTK_DOUBLE ? MCOR_FLOAT64 : MCOR_FLOAT32;
+  result.components = array->GetNumberOfComponents();
   return true;
 }
 
 bool FillInput(
   const DataCase& one, vtkPolyData* particles, std::vector<uint8_t>& solid, mcor_input& input)
 {
-  std::memset(&input, 0, sizeof(input));
+  vtkPointData* arrays = particles->GetPointData();
   input.count = particles->GetNumberOfPoints();
-  input.positions = BorrowArray(particles->GetPoints()->GetData());
-  FindArray(particles, "Volume", input.volume);
-  FindArray(particles, "Mass", input.mass);
-  FindArray(particles, "Density", input.density);
-  input.scalar_component = MCOR_MAGNITUDE;
-  if (!FindArray(particles, one.SmoothingLength, input.smoothing_length) ||
-    (one.Scalar && !FindArray(particles, one.Scalar, input.scalar)))
+  Borrow(particles->GetPoints()->GetData(), input.positions);
+  Borrow(arrays->GetArray("Volume"), input.volume);
+  Borrow(arrays->GetArray("Mass"), input.mass);
+  Borrow(arrays->GetArray("Density"), input.density);
+  if (!Borrow(arrays->GetArray(one.SmoothingLength), input.smoothing_length) ||
+    (one.Scalar && !Borrow(arrays->GetArray(one.Scalar), input.scalar)))
   {
     return false;
   }
   input.scalar_component = input.scalar.components > 1 ? MCOR_MAGNITUDE : 0;
-  if (vtkDataArray* type = particles->GetPointData()->GetArray("ParticleType"))
+  if (vtkDataArray* type = arrays->GetArray("ParticleType"))
   {
     solid.resize(static_cast<size_t>(input.count));
     for (int64_t j = 0; j < input.count; ++j)
@@ -152,27 +141,7 @@ bool FillInput(
   return true;
 }
 
-void NameCase(const DataCase& one, oracle_case& at)
-{
-  char eigenvalue[32] = "";
-  if (one.Eigenvalue > 0.0)
-  {
-    std::snprintf(eigenvalue, sizeof(eigenvalue), "/eigenvalue%g", one.Eigenvalue);
-  }
-  char period[16] = "";
-  if (one.PeriodAxis)
-  {
-    std::snprintf(period, sizeof(period), "/period-%c", one.PeriodAxis);
-  }
-  static const char* const fields[] = { "shepard", "sum", "weight" };
-  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s%s%s", one.File,
-    one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
-    one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
-    std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
-    eigenvalue, one.Adaptive ? "/adaptive" : "", period);
-}
-
-void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)
+void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one, int number)
 {
   oracle_case at;
   std::memset(&at, 0, sizeof(at));
@@ -191,12 +160,12 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   }
   at.options.level_limit = one.Adaptive ? MCOR_CUBE_LEVELS - 1 : 0;
   at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
-  at.no_table = one.Adaptive;
   if (one.PeriodAxis)
   {
     at.options.periodic[2 * (one.PeriodAxis - 'x') + 1] = one.Period;
   }
-  NameCase(one, at);
+  std::snprintf(
+    at.name, sizeof(at.name), "%s/%d/%s", one.File, number, one.Scalar ? one.Scalar : "free");
   if (!oracle_wants_case(&suite, at.name))
   {
     return;
@@ -220,41 +189,23 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
 
 int main(int argc, char** argv)
 {
-  std::string directory;
-  bool large = false;
-  std::vector<char*> others;
-  for (int n = 0; n < argc; ++n)
+  const bool large = argc > 1 && std::strcmp(argv[1], "--large") == 0;
+  const char* directory = large ? std::getenv("MCOR_DATA_DIR") : argc > 1 ? argv[1] : ".";
+  if (!directory || !*directory)
   {
-    if (std::strcmp(argv[n], "--large") == 0)
-    {
-      large = true;
-    }
-    else if (std::strcmp(argv[n], "--data") == 0 && n + 1 < argc)
-    {
-      directory = argv[++n];
-    }
-    else
-    {
-      others.push_back(argv[n]);
-    }
-  }
-  if (large)
-  {
-    const char* from = std::getenv("MCOR_DATA_DIR");
-    if (!from || !*from)
-    {
-      std::printf("skipped: MCOR_DATA_DIR is not set\n");
-      return 77;
-    }
-    directory = from;
+    std::printf("skipped: MCOR_DATA_DIR is not set\n");
+    return 77;
   }
   oracle_suite suite;
-  if (!oracle_begin_suite(&suite, static_cast<int>(others.size()), others.data()))
+  if (!oracle_begin_suite(&suite, std::max(argc - 1, 1), argv + (argc > 1)))
   {
     return 1;
   }
   const DataCase* begin = large ? std::begin(LargeCases) : std::begin(ShippedCases);
   const DataCase* end = large ? std::end(LargeCases) : std::end(ShippedCases);
-  std::for_each(begin, end, [&](const DataCase& one) { RunCase(suite, directory, one); });
+  for (const DataCase* one = begin; one != end; ++one)
+  {
+    RunCase(suite, directory, *one, static_cast<int>(one - begin));
+  }
   return oracle_end_suite(&suite);
 }

@@ -24,7 +24,7 @@ typedef struct lattice_descent
   const oracle_field* field;
   int* level; /* [particle count]; -1: the particle does not count */
   int listing;
-  int64_t node_limit;
+  int with_nodes;
 } lattice_descent;
 
 static int lattice_counts(const particle_set* p, int64_t j)
@@ -236,7 +236,7 @@ static void lattice_add_brick(
   lattice->bricks = oracle_grow(
     lattice->bricks, lattice->brick_count, &lattice->brick_capacity, sizeof(lattice_brick));
   lattice->bricks[lattice->brick_count++] = *brick;
-  if (first > descent->node_limit)
+  if (!descent->with_nodes)
   {
     return;
   }
@@ -369,11 +369,11 @@ static void lattice_balance(oracle_lattice* lattice)
   }
 }
 
-int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field, const double edge[3],
-  int level_limit, int64_t node_limit)
+void oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field, const double edge[3],
+  int level_limit, int with_nodes)
 {
   lattice_descent descent = { lattice, field, oracle_allocate(field->particles->count, sizeof(int)),
-    0, node_limit };
+    0, with_nodes };
   memset(lattice, 0, sizeof(*lattice));
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -388,7 +388,6 @@ int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field, co
   descent.listing = 1;
   lattice_descend_all(&descent);
   free(descent.level);
-  return lattice->node_count <= node_limit;
 }
 
 void oracle_free_lattice(oracle_lattice* lattice)

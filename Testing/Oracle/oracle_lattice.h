@@ -124,10 +124,10 @@ extern "C"
     double unit; /* roundoff of the working precision */
   } oracle_decider;
 
-  /* Lists the leaves that particles reach, and evaluates all their nodes. level_limit: no level is higher. If there
-   * would be more than node_limit nodes, stops and returns 0. */
-  int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field,
-    const double edge[3], int level_limit, int64_t node_limit);
+  /* Lists the leaves that particles reach and, if with_nodes, evaluates all their nodes. level_limit: no level is
+   * higher. */
+  void oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field,
+    const double edge[3], int level_limit, int with_nodes);
   /* Classifies the nodes, and finds cells, edges and segments for an iso value. by_field: topology is by the field. */
   void oracle_march(oracle_lattice* lattice, const oracle_field* field, const oracle_limits* limits,
     int by_field, double unit);

@@ -245,7 +245,7 @@ oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
   for (int64_t s = 0; s < mesh->side_count; ++s)
   {
     const mesh_edge* side = &mesh->side[s];
-    if (mesh_count_sides(mesh, side->a, side->b) == 1)
+    if (side->sharing == 1)
     {
       const uint8_t* flag = surface->boundary_flag;
       edges[count] =

@@ -141,62 +141,44 @@ static void reference_particles(
   free(source);
 }
 
-/* Evaluates all nodes. */
-static int reference_lattice(
-  oracle_reference* reference, const mcor_options* options, int64_t node_limit)
+void oracle_create_reference(
+  oracle_reference* reference, const mcor_input* input, const mcor_options* options)
 {
-  double edge[3];
+  const int of_weight = options->field == MCOR_WEIGHT_SUM;
+  const int single = options->precision == MCOR_FLOAT32;
   oracle_lattice* lattice = &reference->lattice;
-  reference_edges(&reference->particles, options, edge);
-  const int enough =
-    oracle_create_lattice(lattice, &reference->field, edge, options->level_limit, node_limit);
-  oracle_own_period(options, edge, lattice->first, lattice->end);
-  reference->greatest_weight = 1.0;
-  for (int64_t n = 0; enough && n < lattice->node_count; ++n)
-  {
-    reference->greatest_weight = fmax(reference->greatest_weight, lattice->nodes[n].trim_weight);
-  }
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    reference->range = reference->greatest_weight;
-  }
-  return enough;
-}
-
-int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
-  const mcor_options* options, int64_t node_limit)
-{
+  double edge[3];
   memset(reference, 0, sizeof(*reference));
-  reference->unit =
-    options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON : 0.5 * DBL_EPSILON;
-  reference->by_field = options->topology == MCOR_TOPOLOGY_FIELD;
-  reference->limits.node_threshold = options->node_threshold;
-  reference->limits.least_weight = 1e-3;
-  reference->limits.least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3;
+  reference->unit = 0.5 * (single ? (double)FLT_EPSILON : DBL_EPSILON);
   reference_particles(&reference->particles, input, options);
   reference->field = oracle_make_field(&reference->particles, (oracle_kernel)options->sph_kernel,
     (oracle_kind)options->field, options->h_scale);
+  reference_edges(&reference->particles, options, edge);
+  oracle_create_lattice(lattice, &reference->field, edge, options->level_limit, 1);
+  oracle_own_period(options, edge, lattice->first, lattice->end);
+  reference->greatest_weight = 1.0;
+  for (int64_t n = 0; n < lattice->node_count; ++n)
+  {
+    reference->greatest_weight = fmax(reference->greatest_weight, lattice->nodes[n].trim_weight);
+  }
   reference->range =
-    options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
+    of_weight ? reference->greatest_weight : oracle_scalar_range(&reference->particles);
   if (!(reference->range > 0.0))
   {
     const double any = reference->particles.count > 0 ? reference->particles.scalar[0] : 0.0;
     reference->range = any != 0.0 ? fabs(any) : 1.0;
   }
-  if (!reference_lattice(reference, options, node_limit))
-  {
-    oracle_free_reference(reference);
-    return 0;
-  }
   /* In single precision rounding may change the side of a node whose value is this close to iso. */
-  const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
-  reference->limits.iso = options->iso_count > 0 ? options->iso_values[0] : 0.5;
+  const double relative = single ? 2e-6 : 1e-13;
+  reference->limits = (oracle_limits){ .iso = options->iso_count > 0 ? options->iso_values[0] : 0.5,
+    .node_threshold = options->node_threshold,
+    .least_weight = 1e-3,
+    .least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3,
+    .close = relative * reference->range,
+    .margin = relative };
   reference->field.center = reference->limits.iso;
-  reference->limits.close = relative * reference->range;
-  reference->limits.margin = relative;
-  oracle_march(&reference->lattice, &reference->field, &reference->limits, reference->by_field,
-    reference->unit);
-  return 1;
+  oracle_march(lattice, &reference->field, &reference->limits,
+    options->topology == MCOR_TOPOLOGY_FIELD, reference->unit);
 }
 
 void oracle_free_reference(oracle_reference* reference)

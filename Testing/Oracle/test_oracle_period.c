@@ -65,6 +65,7 @@ static const period_case cases[] = {
   { "wendland", MCOR_WENDLAND_C2, MCOR_SHEPARD, 1.5, 0.7, 1.0, "x", 1, 0 },
   { "quintic", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, 1.0, 0.9, 0.75, "", 1, 0 },
   { "mprime4", MCOR_M_PRIME_4, MCOR_SHEPARD, 1.2, 0.9, 1.0, "y", 1, 1 },
+  { "mprime4-volumes", MCOR_M_PRIME_4, MCOR_SHEPARD, 1.2, 0.9, 1.0, "", 0, 0 },
 };
 
 /* unequal: cubes have a different edge along each axis. */

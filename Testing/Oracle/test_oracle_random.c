@@ -3,8 +3,7 @@
 
 /* Compares the library with the oracle on particles and options without any plan.
  *
- *   test_oracle_random --results FILE [--first SEED] [--count N] [--adaptive]     (the table is not
- *   used)
+ *   test_oracle_random FIRST_SEED COUNT [--adaptive]
  */
 
 #include "oracle_case.h"
@@ -47,7 +46,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
   }
   at->options.topology = random_bits(state) % 2 == 0 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   at->skip_pairs = at->options.field == MCOR_WEIGHT_SUM;
-  at->rough = at->no_table = 1;
+  at->rough = at->random = 1;
   if (random_bits(state) % 3 == 0)
   {
     static const double thresholds[] = { 0.2, 0.3, 0.5, 0.75 };
@@ -99,38 +98,15 @@ static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
 
 int main(int argc, char** argv)
 {
-  uint64_t first = 1;
-  uint64_t count = 60;
-  char* others[16];
-  int other_count = 0;
-  int adaptive = 0;
-  for (int n = 0; n < argc && other_count < 16; ++n)
-  {
-    if (n + 1 < argc && strcmp(argv[n], "--first") == 0)
-    {
-      first = strtoull(argv[++n], NULL, 10);
-    }
-    else if (n + 1 < argc && strcmp(argv[n], "--count") == 0)
-    {
-      count = strtoull(argv[++n], NULL, 10);
-    }
-    else if (strcmp(argv[n], "--adaptive") == 0)
-    {
-      adaptive = 1;
-    }
-    else
-    {
-      others[other_count++] = argv[n];
-    }
-  }
   oracle_suite suite;
-  if (!oracle_begin_suite(&suite, other_count, others))
+  if (argc < 3 || !oracle_begin_suite(&suite, 1, argv))
   {
     return 1;
   }
+  const uint64_t first = strtoull(argv[1], NULL, 10), count = strtoull(argv[2], NULL, 10);
   for (uint64_t seed = first; seed < first + count; ++seed)
   {
-    run_seed(&suite, seed, adaptive);
+    run_seed(&suite, seed, argc > 3);
   }
   return oracle_end_suite(&suite);
 }

@@ -173,7 +173,7 @@ static void plane_add_squares(plane_squares* s)
   const oracle_field reach = { .particles = &flat,
     .kernel = (oracle_kernel)f->options->sph_kernel,
     .h_scale = f->options->h_scale };
-  oracle_create_lattice(&s->lattice, &reach, edge, f->options->level_limit, -1); /* no nodes */
+  oracle_create_lattice(&s->lattice, &reach, edge, f->options->level_limit, 0);
   for (int64_t b = 0; b < s->lattice.brick_count; ++b)
   {
     if (s->lattice.bricks[b].at[2] == 0)

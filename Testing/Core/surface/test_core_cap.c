@@ -152,8 +152,7 @@ static void check_caps(
   for (int64_t i = 0; i < report.side_count; ++i)
   {
     const mesh_edge* side = report.side + i;
-    CORE_CHECK(mesh_count_sides(&report, side->a, side->b) == 2 ||
-        (ends_at(&closed, side->a) && ends_at(&closed, side->b)),
+    CORE_CHECK(side->sharing == 2 || (ends_at(&closed, side->a) && ends_at(&closed, side->b)),
       side->a, side->b);
   }
   CORE_CHECK(

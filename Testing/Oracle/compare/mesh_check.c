@@ -5,7 +5,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,14 +17,13 @@ const char* mesh_fault_name(mesh_fault fault)
   return fault < MESH_FAULT_COUNT ? names[fault] : "unknown";
 }
 
-static void mesh_add_fault(mesh_report* report, mesh_fault fault, const char* format, ...)
+/* Counts a fault, and names the first one of its kind by numbers of points or triangles. */
+static void mesh_add_fault(mesh_report* report, mesh_fault fault, int64_t one, int64_t other)
 {
   if (report->faults[fault]++ == 0)
   {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(report->first[fault], sizeof(report->first[fault]), format, arguments);
-    va_end(arguments);
+    snprintf(
+      report->first[fault], sizeof(report->first[fault]), "%" PRId64 ", %" PRId64, one, other);
   }
 }
 
@@ -41,46 +39,36 @@ void mesh_free_report(mesh_report* report)
 static void mesh_measure_triangle(
   const double* points, const int32_t* triangle, int64_t t, mesh_report* report)
 {
+  const double *a = &points[3 * triangle[0]], *b = &points[3 * triangle[1]],
+               *c = &points[3 * triangle[2]];
+  double u[3], v[3], uu = 0.0, vv = 0.0, ww = 0.0;
   if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
   {
-    mesh_add_fault(report, MESH_REPEATED_INDEX, "triangle %" PRId64 " (%d, %d, %d)", t,
-      (int)triangle[0], (int)triangle[1], (int)triangle[2]);
+    mesh_add_fault(report, MESH_REPEATED_INDEX, t, triangle[0]);
     return;
   }
-  /* Coordinates are taken relative to one point of the mesh, so that a large offset does not cost
-   * digits. */
-  double corner[3][3];
-  for (int c = 0; c < 3; ++c)
+  for (int axis = 0; axis < 3; ++axis)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      corner[c][axis] = points[3 * triangle[c] + axis] - points[axis];
-    }
-  }
-  double u[3];
-  double v[3];
-  double longest = 0.0;
-  for (int c = 0; c < 3; ++c)
-  {
-    double square = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      square += pow(corner[c][axis] - corner[(c + 1) % 3][axis], 2.0);
-      u[axis] = corner[1][axis] - corner[0][axis];
-      v[axis] = corner[2][axis] - corner[0][axis];
-    }
-    longest = fmax(longest, square);
+    u[axis] = b[axis] - a[axis];
+    v[axis] = c[axis] - a[axis];
+    uu += u[axis] * u[axis];
+    vv += v[axis] * v[axis];
+    ww += pow(u[axis] - v[axis], 2.0);
   }
   const double n[3] = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
     u[0] * v[1] - u[1] * v[0] };
   const double area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  const double share = area / fmax(uu, fmax(vv, ww));
   report->area += area;
-  report->volume += (corner[0][0] * n[0] + corner[0][1] * n[1] + corner[0][2] * n[2]) / 6.0;
-  report->slimmest = t == 0 ? area / longest : fmin(report->slimmest, area / longest);
-  if (!(area > 1e-12 * longest))
+  for (int axis = 0; axis < 3; ++axis)
   {
-    mesh_add_fault(report, MESH_ZERO_AREA, "triangle %" PRId64 " (%d, %d, %d)", t, (int)triangle[0],
-      (int)triangle[1], (int)triangle[2]);
+    /* Relative to one point of the mesh, a large offset does not cost digits. */
+    report->volume += (a[axis] - points[axis]) * n[axis] / 6.0;
+  }
+  report->slimmest = t == 0 ? share : fmin(report->slimmest, share);
+  if (!(share > 1e-12))
+  {
+    mesh_add_fault(report, MESH_ZERO_AREA, t, triangle[0]);
   }
 }
 
@@ -99,44 +87,6 @@ static int mesh_compare_sides(const void* x, const void* y)
     return p->b < q->b ? -1 : 1;
   }
   return (p->triangle > q->triangle) - (p->triangle < q->triangle);
-}
-
-static int64_t mesh_first_side(const mesh_report* report, int32_t a, int32_t b)
-{
-  int64_t low = 0;
-  int64_t high = report->side_count;
-  while (low < high)
-  {
-    const int64_t middle = low + (high - low) / 2;
-    const mesh_edge* side = &report->side[middle];
-    if (side->a < a || (side->a == a && side->b < b))
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
-  return low;
-}
-
-int64_t mesh_count_directed(const mesh_report* report, int32_t from, int32_t to)
-{
-  const int32_t low = from < to ? from : to;
-  const int32_t high = from < to ? to : from;
-  int64_t count = 0;
-  for (int64_t n = mesh_first_side(report, low, high);
-       n < report->side_count && report->side[n].a == low && report->side[n].b == high; ++n)
-  {
-    count += (from < to) == report->side[n].forward;
-  }
-  return count;
-}
-
-int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
-{
-  return mesh_count_directed(report, a, b) + mesh_count_directed(report, b, a);
 }
 
 /* ---- union of corners (fans) and triangles (components) ---- */
@@ -167,37 +117,34 @@ static int64_t mesh_corner(const int32_t* triangles, int64_t t, int32_t point)
 static void mesh_check_edges(
   const int32_t* triangles, mesh_report* report, int64_t* corner_parent, int64_t* parent)
 {
-  for (int64_t s = 0; s < report->side_count;)
+  mesh_edge* const end = report->side + report->side_count;
+  for (mesh_edge *first = report->side, *next = first; first < end; first = next)
   {
-    const mesh_edge* first = &report->side[s];
-    int64_t count = 1;
-    int64_t forward = first->forward;
-    for (;
-         s + count < report->side_count && first[count].a == first->a && first[count].b == first->b;
-         ++count)
+    int forward = 0;
+    for (; next < end && next->a == first->a && next->b == first->b; ++next)
     {
-      forward += first[count].forward;
-      mesh_unite(parent, first->triangle, first[count].triangle);
+      forward += next->forward;
+      mesh_unite(parent, first->triangle, next->triangle);
       mesh_unite(corner_parent, mesh_corner(triangles, first->triangle, first->a),
-        mesh_corner(triangles, first[count].triangle, first->a));
+        mesh_corner(triangles, next->triangle, first->a));
       mesh_unite(corner_parent, mesh_corner(triangles, first->triangle, first->b),
-        mesh_corner(triangles, first[count].triangle, first->b));
+        mesh_corner(triangles, next->triangle, first->b));
+    }
+    const int64_t count = next - first;
+    for (mesh_edge* side = first; side < next; ++side)
+    {
+      side->sharing = count;
     }
     ++report->edges;
     report->boundary_edges += count == 1;
     if (count > 2)
     {
-      mesh_add_fault(report, MESH_NON_MANIFOLD_EDGE,
-        "edge (%d, %d) has %" PRId64 " triangles, one is %" PRId64, (int)first->a, (int)first->b,
-        count, first->triangle);
+      mesh_add_fault(report, MESH_NON_MANIFOLD_EDGE, first->a, first->b);
     }
     else if (count == 2 && forward != 1)
     {
-      mesh_add_fault(report, MESH_ORIENTATION_CLASH,
-        "edge (%d, %d), triangles %" PRId64 " and %" PRId64, (int)first->a, (int)first->b,
-        first->triangle, first[1].triangle);
+      mesh_add_fault(report, MESH_ORIENTATION_CLASH, first->a, first->b);
     }
-    s += count;
   }
 }
 
@@ -216,8 +163,7 @@ static void mesh_check_fans(
     used += *at == -1;
     if (*at >= 0 && *at != root)
     {
-      mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX,
-        "point %d, triangles %" PRId64 " and %" PRId64, (int)triangles[c], *at / 3, c / 3);
+      mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX, triangles[c], c / 3);
       *at = -2; /* marks the point as counted */
     }
     else if (*at == -1)
@@ -229,7 +175,7 @@ static void mesh_check_fans(
   {
     if (fan[p] == -1)
     {
-      mesh_add_fault(report, MESH_ISOLATED_POINT, "point %" PRId64, p);
+      mesh_add_fault(report, MESH_ISOLATED_POINT, p, p);
     }
   }
   report->euler = used - report->edges + report->triangles;
@@ -260,8 +206,7 @@ static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, m
     const double* p = &quads[4 * n - 4];
     if (p[0] == p[4] && p[1] == p[5] && p[2] == p[6])
     {
-      mesh_add_fault(report, fault, "%s %.0f and %.0f",
-        fault == MESH_COINCIDENT_POINT ? "points" : "triangles", p[3], p[7]);
+      mesh_add_fault(report, fault, (int64_t)p[3], (int64_t)p[7]);
     }
   }
 }
@@ -301,15 +246,14 @@ void mesh_check(const double* points, int64_t point_count, const int32_t* triang
   {
     if (!isfinite(points[3 * p]) || !isfinite(points[3 * p + 1]) || !isfinite(points[3 * p + 2]))
     {
-      mesh_add_fault(report, MESH_BAD_COORDINATE, "point %" PRId64, p);
+      mesh_add_fault(report, MESH_BAD_COORDINATE, p, p);
     }
   }
   for (int64_t c = 0; c < 3 * triangle_count; ++c)
   {
     if (triangles[c] < 0 || triangles[c] >= point_count)
     {
-      mesh_add_fault(
-        report, MESH_BAD_INDEX, "triangle %" PRId64 " names point %" PRId32, c / 3, triangles[c]);
+      mesh_add_fault(report, MESH_BAD_INDEX, c / 3, triangles[c]);
     }
   }
   if (report->faults[MESH_BAD_COORDINATE] + report->faults[MESH_BAD_INDEX] > 0)
@@ -331,7 +275,7 @@ void mesh_check(const double* points, int64_t point_count, const int32_t* triang
     {
       const int32_t from = triangles[c], to = triangles[c == 3 * t + 2 ? 3 * t : c + 1];
       const int forward = from < to;
-      report->side[c] = (mesh_edge){ forward ? from : to, forward ? to : from, t, forward };
+      report->side[c] = (mesh_edge){ forward ? from : to, forward ? to : from, t, forward, 0 };
       corner_parent[c] = c;
     }
   }

@@ -18,6 +18,7 @@ extern "C"
     int32_t a, b;     /* point indices, a < b */
     int64_t triangle; /* the triangle that has this edge */
     int forward;      /* 1 if the triangle goes from a to b */
+    int64_t sharing;  /* how many triangles have this edge */
   } mesh_edge;
 
   typedef enum mesh_fault
@@ -38,7 +39,8 @@ extern "C"
   typedef struct mesh_report
   {
     int64_t faults[MESH_FAULT_COUNT];
-    char first[MESH_FAULT_COUNT][96]; /* "" or a description of the first fault of the kind */
+    /* Numbers of points and triangles of the first fault of each kind. */
+    char first[MESH_FAULT_COUNT][48];
     int64_t points, triangles, edges; /* edges: each undirected edge counts once */
     int64_t boundary_edges;           /* edges with one triangle */
     int64_t components;               /* parts of triangles that are connected over edges */
@@ -58,10 +60,6 @@ extern "C"
   void mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
     int64_t triangle_count, mesh_report* report);
   void mesh_free_report(mesh_report* report);
-
-  /* Returns how many triangles have the edge; how many have it in this direction. */
-  int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b);
-  int64_t mesh_count_directed(const mesh_report* report, int32_t from, int32_t to);
 
   const char* mesh_fault_name(mesh_fault fault);
 

@@ -24,7 +24,6 @@ extern "C"
     particle_set particles;
     oracle_field field;
     oracle_lattice lattice;
-    int by_field; /* whether ambiguous faces are decided by the field */
     oracle_limits limits;
     /* The range of the scalar over fluid particles, or its largest magnitude if all are equal; for a weight its largest
      * value, at least 1. */
@@ -33,10 +32,9 @@ extern "C"
     double unit;            /* roundoff of the working precision */
   } oracle_reference;
 
-  /* Reads input and options as mcor.h describes them, and evaluates the whole lattice. Returns 0 if that has more than
-   * node_limit nodes. */
-  int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
-    const mcor_options* options, int64_t node_limit);
+  /* Reads input and options as mcor.h describes them, and evaluates the whole lattice. */
+  void oracle_create_reference(
+    oracle_reference* reference, const mcor_input* input, const mcor_options* options);
   void oracle_free_reference(oracle_reference* reference);
 
   typedef struct oracle_comparison

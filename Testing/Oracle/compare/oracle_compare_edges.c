@@ -372,10 +372,7 @@ static void compare_boundary(compare_state* state, oracle_map* wanted)
   for (int64_t s = 0; s < mesh->side_count; ++s)
   {
     const mesh_edge* side = &mesh->side[s];
-    const mesh_edge* before = s > 0 ? side - 1 : side + 1;
-    const mesh_edge* after = s + 1 < mesh->side_count ? side + 1 : before;
-    if ((before->a == side->a && before->b == side->b) ||
-      (after->a == side->a && after->b == side->b))
+    if (side->sharing != 1)
     {
       continue;
     }

@@ -74,7 +74,7 @@ class CommandLineTest(unittest.TestCase):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
     def run_good(self, *arguments, says="^$", **options):
-        """Runs the program, which must succeed. By default stderr must be empty; otherwise it matches `says`."""
+        """Runs the program, which must succeed. Its stderr must match the last argument, by default nothing."""
         result = self.run_program(*arguments, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stderr, says)
@@ -91,7 +91,7 @@ class CommandLineTest(unittest.TestCase):
         return json.loads(statistics.read_text())
 
     def refuse(self, result, status, sentence):
-        """Checks that the run failed, with one line on stderr, which matches, and without any output file."""
+        """Expects a run that failed, with one line on stderr, which matches, and without any output file."""
         self.one_sentence(result, status, sentence)
         left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
         self.assertEqual(left, [])

@@ -53,11 +53,6 @@ class Components(CommandLineTest):
         self.assertEqual(len(self.pieces("--least-particles", "117", "--least-volume", "0.05")), 2)
         self.assertEqual(self.output.read_bytes(), before)
 
-    def test_without_the_table_nothing_changes(self):
-        self.pieces()
-        self.succeed(*FREE)
-        self.assertNotIn("ComponentId", self.output.read_text())
-
     def test_film(self):
         """Several files give one table, with the times."""
         files.write_vtp(self.directory / "later.vtp", self.points, self.arrays)
@@ -92,44 +87,25 @@ class Components(CommandLineTest):
             self.assertLess(int(one["triangles"]), int(both["triangles"]))
 
     def test_iso_values(self):
-        """Each iso value has its own rows, the same as in a run with this value alone, in space and in a plane."""
-        height = [0.6 - r for r in self.arrays["Radius"]]
-        files.write_vtp(self.input, self.points, {**self.arrays, "Height": height})
+        """Each iso value has its own rows, the same as in a run with this value alone."""
+        files.write_vtp(self.input, self.points, {**self.arrays, "Height": [0.6 - r for r in self.arrays["Radius"]]})
         numbers = self.directory / "numbers.csv"
 
-        def tables(iso, *options):
-            self.run_good(self.input, "film.pvd", "--scalar", "Height", "--iso", iso, "--numbers", numbers, "--quiet", *options)
-            return read_table(numbers), read_table(self.table) if options else []
+        def tables(iso):
+            self.run_good(self.input, "film.pvd", "--scalar", "Height", "--iso", iso, "--numbers", numbers, "--components", self.table)
+            return read_table(numbers), read_table(self.table)
 
-        for flat in (False, True):
-            if flat:
-                plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
-                arrays = {name: [values[i] for i in plane] for name, values in {**self.arrays, "Height": height}.items()}
-                files.write_vtp(self.input, [self.points[i] for i in plane], {**arrays, "Mass": [10.0] * 100, "Height": [h + 0.3 for h in arrays["Height"]]})
-            components = [] if flat else ["--components", self.table]
-            (first, second), pieces = tables("0.4,0.3", *components)
-            self.assertEqual([first["iso"], second["iso"]], ["0.3", "0.4"])
-            self.assertGreater(float(first["area"]), 1.2 * float(second["area"]))
-            for row, number in ((first, 0), (second, 1)):
-                (alone,), own = tables(row["iso"], *components)
-                self.assertEqual(alone["triangles"], row["triangles"])
-                for name in ("area",) if flat else ("area", "volume"):
-                    self.assertAlmostEqual(float(alone[name]) / float(row[name]), 1, delta=1e-5)
-                for name in () if flat else ("particles", "mass", "iso", "parent", "closed"):
-                    self.assertEqual([own[0][name]], [piece[name] for piece in pieces if piece["iso"] == row["iso"]])
-            if not flat:
-                self.assertAlmostEqual(float(first["between"]), float(first["volume"]) - float(second["volume"]), delta=1e-12)
-                self.assertEqual(second["between"], second["volume"])
-                self.assertGreater(float(first["between"]), 0.05)
-                self.run_good(self.input, "film.pvd", "--scalar", "Height", "--iso", "0.4,0.3", "--numbers", numbers, "--quiet")
-                self.assertEqual([row["volume"] for row in read_table(numbers)], [first["volume"], second["volume"]])
-
-    def test_area_is_that_of_what_stays(self):
-        statistics = self.succeed(*FREE, "--components", self.table, "--least-volume", "0.3", "--quiet")["statistics"]
-        row, = self.rows(COLUMNS)
-        self.assertEqual(statistics["pieces"], 1)
-        self.assertAlmostEqual(statistics["area"] / float(row["area"]), 1, delta=1e-6)
-        self.assertAlmostEqual(statistics["volume"] / float(row["volume"]), 1, delta=1e-6)
+        (first, second), pieces = tables("0.4,0.3")
+        self.assertEqual([first["iso"], second["iso"]], ["0.3", "0.4"])
+        for row in (first, second):
+            (alone,), own = tables(row["iso"])
+            self.assertEqual(alone["triangles"], row["triangles"])
+            for name in ("area", "volume"):
+                self.assertAlmostEqual(float(alone[name]) / float(row[name]), 1, delta=1e-5)
+            for name in ("particles", "mass", "iso", "parent", "closed"):
+                self.assertEqual([own[0][name]], [piece[name] for piece in pieces if piece["iso"] == row["iso"]])
+        self.assertAlmostEqual(float(first["between"]), float(first["volume"]) - float(second["volume"]), delta=1e-12)
+        self.assertEqual(second["between"], second["volume"])
 
     def test_period(self):
         """A block that crosses a side of the period counts as one piece."""
@@ -137,17 +113,6 @@ class Components(CommandLineTest):
         block, = self.pieces("--periodic", "0,2,0,0,0,0")
         self.assertEqual((block["closed"], block["particles"]), ("1", "992"))
         self.assertAlmostEqual(float(block["xmax"]) - float(block["xmin"]), 1, delta=0.02)
-
-    def test_caps_of_a_period(self):
-        """With caps, too, particles count where their images are: the bounds of the period need not hold them."""
-        for begin, count in ((1, 1), (0.13, 2), (-3.87, 2)):
-            files.write_vtp(self.input, self.points, self.arrays)
-            rows = self.pieces("--periodic", f"{begin},{begin + 2},0,0,0,0", "--capping")
-            self.assertEqual(column(rows, "closed"), ["1"] * count)
-            self.assertEqual(sum(int(row["particles"]) for row in rows), 992)
-            self.assertTrue(all(int(row["particles"]) > 200 and float(row["mass"]) > 200 for row in rows), rows)
-            for axis in "xyz":
-                self.assertAlmostEqual(sum(float(row["v" + axis]) * float(row["mass"]) for row in rows), 0, delta=1e-9)
 
     def test_wrong_usage(self):
         self.refuse_all(2, [(["--components", "pieces.txt"], "writes a .csv file"), (["--components", self.output], "a .csv file"),

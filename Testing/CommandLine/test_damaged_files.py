@@ -89,7 +89,7 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """If the program did not check these files first, the readers of VTK 9.1 and 9.3 would crash."""
+        """If the program did not look at these files first, the readers of VTK 9.1 and 9.3 would crash."""
         for name in ("inline.vtp", "appended.vtu"):
             with self.subTest(name):
                 data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')

@@ -228,7 +228,7 @@ class Modes(CommandLineTest):
         self.assertEqual(said, listed)
 
     def test_what_options_need(self):
-        """Without anything that Options.def says an option needs, the sentence names what is needed."""
+        """Without what an option needs by its row in Options.def, the sentence names what is needed."""
         text = (pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options" / "Options.def").read_text(encoding="utf-8")
         rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
         self.assertGreater(len(rows), 15)

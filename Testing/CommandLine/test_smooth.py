@@ -42,7 +42,6 @@ class Smooth(CommandLineTest):
                 self.run_good(source, source, "film.pvd", "--time-step", "1", "--free-surface", "--numbers", "n.csv", "--gauge", "a=0,0,-1:0,0,1", *options)
                 self.assertEqual(float(read_table(self.directory / "n.csv")[1]["a.last"]), level)
                 self.run_good(source, "s.vtp", "--free-surface", "--no-attributes", "--box=-0.2,0.2,-0.2,0.2,0,1", *options)
-                text = (self.directory / "s.vtp").read_text()
                 self.run_good(source, "p.vtp", "--probe", "s.vtp", "--attributes", "SmoothingLength", *options)
                 low, high = re.search('Name="WeightSum"[^>]*RangeMin="(.*?)"[^>]*RangeMax="(.*?)"', (self.directory / "p.vtp").read_text()).groups()
                 self.assertAlmostEqual(float(low), 0.5, places=4)

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkPartitionedDataSetCollection, vtkPolyData, vtkTable)
 
 from vtk_test import (
-    POINTS, add, blocks_of, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take,
+    add, blocks_of, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take,
     values_of)
 
 APART = {"BlocksToApart": ()}

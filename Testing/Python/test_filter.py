@@ -8,7 +8,8 @@ import unittest
 import numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkMassProperties
+from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkMassProperties
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 from marchingcorrectors import vtkMarchingCorrectors
 from vtk_test import (
@@ -18,7 +19,6 @@ from vtk_test import (
 X = lattice(11, 11, 11, around_origin=True)
 RADIUS = numpy.linalg.norm(X, axis=1)
 CELLS = 1331 * (SPACING / 0.065) ** 3  # On this lattice a particle takes 0.1^3.
-DOUBLE = vtkMarchingCorrectors.DOUBLE_PRECISION
 
 
 def make_particles(chosen=slice(None), **arrays):
@@ -72,17 +72,6 @@ class TestPoints(FilterTest):
         extract.ShepardNormalizationOff()
         self.assertLess(self.residual(extract, 13, mean=False), 1e-5 * math.sqrt(3))
 
-    def test_tolerance(self):
-        """The tolerance, the limit of iterations and the precision reach the core; core_correct tests what they do."""
-        extract = sphere()
-        extract.SetPrecision(DOUBLE)
-        extract.SetTolerance(1e-12)
-        self.assertLess(self.residual(extract, 7), 2e-12)
-        self.assertEqual((statistic(extract, "IterationsMax") > 1, statistic(extract, "VerticesAboveTolerance")), (True, 0))
-        extract.SetIterationLimit(1)
-        self.assertGreater(self.residual(extract, 7), 2e-11)
-        self.assertEqual((statistic(extract, "IterationsMax"), statistic(extract, "VerticesAboveTolerance") > 0), (1, True))
-
     def test_several_values(self):
         extract = sphere()
         extract.GenerateValues(3, 0.3, 0.7)
@@ -128,12 +117,6 @@ class TestPoints(FilterTest):
         least = [values_of(self.good(extract, Trim=trim, ComputeWeightSum=1), "WeightSum").min() for trim in (1, 0)]
         self.assertAlmostEqual(least[0], 0.5, 3)
         self.assertTrue(0.05 < least[1] < 0.4, least)
-
-    def test_compact(self):
-        extract = sphere()
-        every = self.good(extract).GetNumberOfPolys()
-        self.assertTrue(every / 2 < self.good(extract, Compact=1).GetNumberOfPolys() < 0.8 * every)
-        self.assertIn("Compact: 1", str(extract))
 
     def make_plane(self):
         """Makes a filter on 21^2 particles in the plane y = 0.5, with two isolines and a least value below all values."""
@@ -314,6 +297,16 @@ class TestArrays(FilterTest):
         run(extract, vtkPolyData())
         self.assertEqual(extract.GetRunStatistics().GetNumberOfArrays(), 0)
         self.assertGreater(kept.GetNumberOfComponents(), 2)
+
+    def test_cells_are_those_of_contour(self):
+        contour, image = vtkContourFilter(), vtkRTAnalyticSource()
+        image.SetWholeExtent(-5, 5, -5, 5, -5, 5)
+        contour.SetInputConnection(image.GetOutputPort())
+        contour.SetValue(0, 150.0)
+        contour.Update()
+        wanted, ours = contour.GetOutput().GetPolys(), self.good(sphere()).GetPolys()
+        self.assertGreater(wanted.GetNumberOfCells(), 0)
+        self.assertEqual(*((cells.IsStorage64Bit(), cells.GetConnectivityArray().GetDataType()) for cells in (ours, wanted)))
 
     def test_active_scalars(self):
         self.assertIsNone(self.good(make_filter()).GetPointData().GetScalars())  # No array varies: there is one iso value and one smoothing length.

@@ -3,7 +3,6 @@
 """Tests input of all kinds. Odd input comes first: it gives an empty output and one sentence, and the filter works again afterwards. Then arrays and
 point sets of any kind, and what is found where nothing is named."""
 import math
-import re
 import unittest
 
 import numpy
@@ -240,22 +239,6 @@ class TestKinds(unittest.TestCase):
 
 class TestFound(unittest.TestCase):
     """Settings reach the core; core_find tests what the core finds, and wheel.both compares the interfaces."""
-
-    def test_volumes(self):
-        volume = SPACING ** 3
-        extract = sphere(cube(**{"my masses": numpy.full(COUNT, 4 * volume), "RHO": numpy.full(COUNT, 4.0)}))
-        surfaces = []
-        for settings, used, code in (
-                ({}, ("SmoothingLength", "Volume", "", ""), []),
-                ({"MassArrayName": "my masses"}, ("SmoothingLength", "Volume", "", ""), ["SIZE_BESIDE_ARRAY"]),
-                ({"DensityArrayName": "RHO"}, ("SmoothingLength", "", "my masses", "RHO"), []),
-                ({"MassArrayName": "", "DensityArrayName": "", "Density": 4, "Mass": 4 * volume}, ("SmoothingLength", "", "", ""), []),
-                ({"SmoothingLength": 2 * H, "SmoothingLengthIsSupportRadius": 1}, ("", "", "", ""), [])):
-            surface, told = run(extract, **BARE, **settings)
-            surfaces.append(surface_of(surface))
-            self.assertEqual(tuple(getattr(extract, f"GetUsed{name}ArrayName")() for name in ("SmoothingLength", "Volume", "Mass", "Density")), used)
-            self.assertTrue(surfaces[-1] == surfaces[0] and len(told) == len(code), (settings, told))
-            self.assertTrue(all(map(re.search, map(says, code), told)))
 
     def test_named(self):
         """Fluid that is detected gives the same surface as fluid that is named, and a named array wins."""

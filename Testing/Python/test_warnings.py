@@ -11,7 +11,7 @@ from vtk_test import blocks_of, run, says
 
 class TestWarnings(unittest.TestCase):
     def check(self, words, extract, **settings):
-        """Checks that a run gives one sentence, which matches, or none if words is None."""
+        """Expects a run that gives one sentence, which matches, or none if words is None."""
         told = run(extract, **settings)[1]
         self.assertEqual(len(told), 1 if words else 0, told)
         if words:

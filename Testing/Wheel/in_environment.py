@@ -10,6 +10,6 @@ from pathlib import Path
 
 python = Path(sys.argv[1]) / "venv" / "bin" / "python"
 if not list((Path(sys.argv[1])).glob("dist/*.whl")):
-    print("Skipped: no wheel was built; wheel.build says why.")
+    print("Skipped: no wheel was built; wheel.build tells why.")
     sys.exit(77)
 sys.exit(subprocess.run([python, *sys.argv[2:]], cwd=sys.argv[1]).returncode)

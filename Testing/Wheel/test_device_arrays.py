@@ -38,7 +38,7 @@ class OnCuda:
 
 
 class OnlyDlpack:
-    """Has DLPack's methods alone, of a CUDA device. The tensor in NumPy's own capsule says that it is on the host, which the package need not ask."""
+    """Has DLPack's methods alone, of a CUDA device. The tensor in NumPy's own capsule tells that it is on the host, which the package need not ask."""
 
     def __init__(self, array):
         self.array, self.streams = array, []

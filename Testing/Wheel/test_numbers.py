@@ -78,20 +78,12 @@ class Flux(unittest.TestCase):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
                 mc.flux(X, UNIFORM, sections, **WORDS, **more)
 
-    def test_plane(self):
-        flat = X[np.isclose(X[:, 2], 0.5)] * [1, 1, 0]
-        for velocity in (UNIFORM[:len(flat)], UNIFORM[:len(flat), :2]):
-            found = mc.flux(flat, velocity, {"up": [(0.5, 0.3, 0), (0.5, 0.7, 0)]}, smoothing_length=H, volume=0.01)
-            np.testing.assert_allclose([found.area[0], found.volume_flux[0]], 0.4, rtol=1e-6)
-
 
 class Project(unittest.TestCase):
-    def test_small_particles_are_counted(self):
-        for direction, (u, v) in (("x", (1, 2)), ((0, -2, 0), (0, 2)), (None, (0, 1))):
+    def test_directions(self):
+        """core_project compares the pixels."""
+        for direction in ("x", (0, -2, 0), None):
             image = mc.project(POINTS, direction=direction, **WHOLE)
-            expected, _, _ = np.histogram2d(POINTS[:, v], POINTS[:, u], 16, [[0, 1], [0, 1]], weights=M)
-            split = np.abs(image.values * image.pixel_area - expected) > 1e-12  # Particles on the sides of pixels are split.
-            self.assertLess(split.sum(), 20)
             self.assertAlmostEqual(image.values.sum() * image.pixel_area, M.sum(), delta=0.1)
             self.assertEqual((image.extent.tolist(), image.values.shape), ([0, 1, 0, 1], (16, 16)))
         self.assertEqual(repr(image), "<Projection: 16 x 16 pixels>")

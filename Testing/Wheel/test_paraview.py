@@ -21,7 +21,7 @@ if not hasattr(inspect, "getargspec"):  # Debian 12's ParaView 5.11 cannot load 
 
 plugins = glob.glob(sys.argv[1] + "/venv/lib/python3*/site-packages/marchingcorrectors/MarchingCorrectorsFilter.py")
 if not plugins:
-    print("Skipped: no wheel was built; wheel.build says why.")
+    print("Skipped: no wheel was built; wheel.build tells why.")
     sys.exit(77)
 
 from paraview import servermanager

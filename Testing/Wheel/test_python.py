@@ -224,20 +224,6 @@ class Warned(unittest.TestCase):
                 sphere(iso=99.0)
         self.assertGreater(len(sphere().triangles), 500)
 
-    def test_where_there_is_no_surface(self):
-        box = np.stack(np.meshgrid(*[np.arange(10)] * 3), -1).reshape(-1, 3) / 10
-        full = {"periodic": (1, 1, 1), "smoothing_length": H, "volume": V}
-        for call, sentence in (
-                (lambda: mc.free_surface(POSITIONS, 20.0, smoothing_length=H), "sum of the weights crosses 20 nowhere"),
-                (lambda: mc.free_surface(POSITIONS, [], smoothing_length=H), "list of iso values is empty"),
-                (lambda: mc.free_surface(POSITIONS + 1, smoothing_length=H, cube_size=50), "cubes of 50 may be too large"),
-                (lambda: mc.free_surface(box, **full), "A periodic box full of fluid has no free surface"),
-                (lambda: mc.isosurface(POSITIONS, np.full(COUNT, 3.0), 3.0, smoothing_length=H), "is 3 at all")):
-            found = caught(call)
-            self.assertEqual(len(found), 1, [str(each.message) for each in found])
-            self.assertRegex(str(found[0].message), sentence)
-        self.assertEqual(caught(sphere, box=(9, 10) * 3), [])
-
     def test_calls_without_a_surface(self):
         words = {"periodic": (1.1, 0, 0), "smoothing_length": H}
         for call in (lambda: mc.probe(POSITIONS, POSITIONS[:9], **words), lambda: mc.derivatives(POSITIONS, {"x": POSITIONS[:, 0]}, **words),
@@ -266,11 +252,6 @@ class Warned(unittest.TestCase):
 
 
 class Inputs(unittest.TestCase):
-    def test_iso_value_about_the_median(self):
-        particles = pyvista.PolyData(POSITIONS)
-        particles["a"] = DISTANCE
-        words = {"smoothing_length": H, "volume": V}
-        self.assertEqual(len(particles.sph.isosurface("a", **words).points), len(mc.isosurface(POSITIONS, DISTANCE, **words).points))
 
     def test_data_frames(self):
         frame = pandas.DataFrame(POSITIONS, columns=list("xyz"))

@@ -339,7 +339,7 @@ VECTORS = "20 0 0 1\n4 20 0 2\n2 3 20 3\n"
 XYZ = 'Properties=species:S:1:pos:R:3 Lattice="{}" pbc="{}"'
 TWO = 'A 1 2 3\nB 4 5 6\n'
 
-# Each case has a file's name, its text, and what both readers must do: give a sentence with these words, or read it with this period.
+# Each case has a file's name, its text, and what both readers must do: give a sentence with these words (the program's|Python's, if they differ), or read it with this period.
 CASES = {
     "columns": ("a.csv", "x,y,z,Rhop,Vel:0,Vel:1,Vel:2\n1,2,3,1000,1,2,3\n4,5,6,1001,4,5,6\n", None),
     "names that stand twice": ("a.csv", "x,y,z,a,a,a_\n1,2,3,4,5,6\n4,5,6,7,8,9\n", None),
@@ -350,6 +350,15 @@ CASES = {
     "two columns": ("a.csv", "x,y\n1,2\n3,4\n", None),
     "thousands": ("a.csv", 'x,y,z,a\n1,2,3,"1,234"\n', "has '1,234' in a table with commas between columns"),
     "millions": ("a.csv", 'x,y,z,a\n1,2,3,5\n"1,234,567.5",2,3,4\n', "has '1,234,567.5' in a table"),
+    "spaces and line ends": ("a.csv", "x, y , z, rho\r\n1, 2, 3, 1e3\r\n", None),
+    "units of columns": ("a.csv", "x (m),y (m),z (m),v (x),v (y)\n1,2,3,4,5\n", None),
+    "another separator": ("a.csv", "x|y|z\n1|2|3\n", "no columns of positions, which"),
+    "no positions": ("a.csv", "a,b\n1,2\n", "there are a, b"), "no rows": ("a.csv", "", "no row of values|is empty"),
+    "a short row": ("a.csv", "x,y,z\n1,2\n", "2 values for 3 columns"),
+    "no text": ("a.csv", "x\0y,z\n1,2,3\n", "is no text"),
+    "bare tabs": ("a.tsv", "1\t2\t3\n4\t5\t6\n", None), "bare commas": ("a.txt", "1, 2, 3\n4, 5, 6\n", None), "two bare columns": ("a.txt", "1 2\n3 4\n", None),
+    "a header above": ("a.txt", "# a header\n# x y z rho id\n 1.5E+00  2e1\t+3.5 1.0D3 7\n1 2 3 4 8\n# the end\n", None),
+    "numbered names": ("a.dat", "# [01  x] [02  y] [03  z] [04 rho] [05 id]\n1 2 3 4 5\n", None),
     "quoted text": ("a.csv", 'x,y,z,who\n1,2,3,"a, b"\n', None),
     "decimal commas": ("a.csv", "x;y;z;a\n1,5;2,25;3;1,234\n", None),
     "large identifiers": ("a.csv", "x,y,z,id\n1,2,3,9007199254740993\n1,2,4,9007199254740992\n", None),
@@ -374,6 +383,8 @@ CASES = {
     "a tilted lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 1 3 0 0 0 4", "T T T") + "\n" + TWO, None),
     "a short lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0", "T T T") + "\n" + TWO, "line 2 has 6 values as its lattice"),
     "one row more": ("a.xyz", "1\n\n" + TWO, "line 4 is one more than the 1 particles"),
+    "fewer rows": ("a.xyz", "5\nx\nA 1 2 3\n", "it ends before all particles|claims 5 particles"),
+    "no properties": ("a.xyz", "1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns|Properties give 'pos' x columns"),
     "no count": ("a.xyz", "1 2 3\n4 5 6\n", None),
 }
 PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is tilted", "vectors": "none, as its cell is tilted",
@@ -555,8 +566,9 @@ class AsTheProgram(Case):
                     continue
                 done = self.list_arrays(self.at(name))
                 self.assertEqual(done.returncode, 1)
-                self.assertIn(words, done.stderr)
-                self.assert_refused(words, self.at(name))
+                theirs, _, mine = words.partition("|")
+                self.assertIn(theirs, done.stderr)
+                self.assert_refused(mine or theirs, self.at(name))
         self.at("a.csv").write_text(CASES["large identifiers"][1])
         self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
 

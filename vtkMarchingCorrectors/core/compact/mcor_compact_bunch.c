@@ -1,66 +1,66 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bunches of a marched mesh, and which of them may be merged.
+/* Bunches of a marched mesh, and which of them are merged.
  *
  * Merging must leave a manifold with the same pieces. It does if each merged bunch can be
  * contracted to a point, and if any two vertices of the result are joined by one edge at most. This
  * edge replaces edges beside each other and the triangles between them. The second condition is
- * tested for pairs of two bunches, or of a bunch and a vertex. A bunch is
- *   - sure, if its triangles are one closed fan of three or more different vertices, both if all
- *     other bunches are merged and if none is;
- *   - leaning, if this holds if only sure bunches are merged. If a sure bunch beside it is taken
- *     apart, so is the leaning bunch.
- * Of two bunches that must not both be merged, the first is merged. A bunch therefore depends only
- * on the cells near it, whatever part of the surface a call makes, and may be taken apart at any
- * time. A closed piece that would keep fewer than 8 triangles stays as it is. */
+ * tested for pairs of two bunches, or of a bunch and a vertex: a bunch is merged if its triangles
+ * are one closed fan of three or more different vertices, both if all other bunches are merged and
+ * if none is. A bunch therefore depends only on the cells near it, whatever part of the surface a
+ * call makes, and may be taken apart at any time. A closed piece that would keep fewer than 8
+ * triangles stays as it is. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Most edges of a fan; a bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
 
-/* A closed piece keeps at least this number of triangles, or lines. */
-#define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 8 : 4)
+/* A closed piece keeps at least this number of vertices: 6 of 8 triangles, or 4 of 4 lines. */
+#define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 6 : 4)
 
 /* ---- Nodes ---- */
 
-/* Vertices on these sides, of periods or caps, stay. node: the side's coordinate along its axis. */
-typedef struct mcor_frozen
+/* Vertices on these sides, of caps and of periods, stay. side: coordinates of nodes, or -1. */
+typedef struct mcor_keying
 {
   const mcor_bunches* bunches;
-  int count, axis[12], node[12];
-} mcor_frozen;
+  const void* ends;
+  int side[3][4];
+} mcor_keying;
 
 /* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer by
  * linear interpolation; if both are equally near, to the lower end. Neighbouring levels differ by
- * one, so the level's last bit distinguishes them. Vertices on a side, or on the border that the
- * node threshold leaves, stay. */
+ * one, so the level's last bit distinguishes them. Vertices on a side, on the border that the node
+ * threshold leaves, of cuts, and of caps stay. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_frozen* frozen = data;
-  const mcor_bunches* bunches = frozen->bunches;
+  const mcor_keying* keying = data;
+  const mcor_bunches* bunches = keying->bunches;
   const mcor_context* context = bunches->context;
   for (int64_t v = first; v < last; ++v)
   {
-    const cl_int* node = mcor_marched_node(bunches, (int32_t)v);
+    const cl_int* node = bunches->points[v].node;
     const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
-    const bool is_upper = fabs(mcor_get_real(context, bunches->ends, 2 * v)) >
-      fabs(mcor_get_real(context, bunches->ends, 2 * v + 1));
-    bool stays = node[3] >> 2 & 1;
-    for (int i = 0; i < frozen->count; ++i)
+    bool stays = v >= bunches->march_count || (node[3] >> 2 & 1);
+    for (int i = 0; i < 12 && !stays; ++i)
     {
-      const int a = frozen->axis[i];
-      stays = stays || (a != axis && node[a] << level == frozen->node[i]);
+      stays = i / 4 != axis && node[i / 4] << level == keying->side[i / 4][i % 4];
     }
-    cl_int at[3] = { node[0], node[1], node[2] };
-    at[axis] += is_upper;
-    bunches->key[v] = stays ? MCOR_FROZEN : mcor_cap_key(at) ^ (uint64_t)(level & 1) << 63;
+    uint64_t key = MCOR_FROZEN;
+    if (!stays)
+    {
+      cl_int at[3] = { node[0], node[1], node[2] };
+      at[axis] += fabs(mcor_get_real(context, keying->ends, 2 * v)) >
+        fabs(mcor_get_real(context, keying->ends, 2 * v + 1));
+      key = mcor_cap_key(at) ^ (uint64_t)(level & 1) << 63;
+    }
+    bunches->of[v] = (mcor_bunch_vertex){
+      .key = key, .first = (int32_t)v, .next = -1, .star = -1, .now = (int32_t)v
+    };
   }
   (void)slice;
 }
@@ -68,91 +68,95 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
-  const mcor_mesh* mesh = &context->mesh;
   const mcor_lattice* lattice = &context->lattice;
-  mcor_frozen frozen = { .bunches = bunches };
+  const mcor_mesh* mesh = &context->mesh;
+  mcor_keying keying = { .bunches = bunches };
+  void* ends;
   for (int i = 0; i < 12; ++i)
   {
-    const int axis = i % 6 / 2, upper = i % 2, period = lattice->period[axis];
-    const int node = i < 6 ? mcor_cap_plane(context, axis, upper)
-      : period > 0         ? lattice->period_first[axis] + upper * period
-                           : -1;
-    if (node >= 0)
-    {
-      frozen.axis[frozen.count] = axis;
-      frozen.node[frozen.count++] = node;
-    }
+    const int axis = i / 4, upper = i % 2, period = lattice->period[axis];
+    keying.side[axis][i % 4] = i % 4 < 2 ? mcor_cap_plane(context, axis, upper)
+      : period > 0                       ? lattice->period_first[axis] + upper * period
+                                         : -1;
   }
-  MCOR_TRY(mcor_parallel_run(
-    context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
-  /* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
-  for (int v = mesh->march_count; v < mesh->vertex_count; ++v)
-  {
-    bunches->key[v] = MCOR_FROZEN;
-  }
+  MCOR_TRY(mcor_map(
+    context, &mesh->ends, 2 * (size_t)bunches->march_count * context->cl.real_size, false, &ends));
+  keying.ends = ends;
+  const mcor_status status = mcor_parallel_run(
+    context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL);
+  /* Freezes vertices beside caps, and holds vertices beside cuts. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
-    bunches->key[bunches->triangles[c]] = MCOR_FROZEN;
+    bunches->of[bunches->triangles[c]].key = MCOR_FROZEN;
   }
-  for (int i = 0; i < bunches->cut_count; ++i)
+  for (size_t i = 0; i < bunches->cut_count; ++i)
   {
-    bunches->held[bunches->cut[i] >> 32] = bunches->held[bunches->cut[i] & UINT32_MAX] = 1;
+    bunches->of[bunches->cuts[i] >> 32].held = true;
+    bunches->of[bunches->cuts[i] & UINT32_MAX].held = true;
   }
-  return MCOR_OK;
+  const mcor_mapping mapped = { &mesh->ends, 0, &ends };
+  return mcor_unmap_all(context, &mapped, 1, status);
 }
 
 /* ---- Bunches ---- */
 
-/* Finds the corners of a triangle, as the first vertices of their bunches. */
-static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
-{
-  const cl_int* corner = bunches->triangles + 3 * t;
-  for (int c = 0; c < 3; ++c)
-  {
-    of[c] = bunches->first[corner[c]];
-  }
-}
-
 /* Returns the first vertex to which v is joined so far. */
-static int32_t mcor_first_of(int32_t* first, int32_t v)
+static int32_t mcor_first_of(mcor_bunch_vertex* of, int32_t v)
 {
-  while (first[v] != v)
+  while (of[v].first != v)
   {
-    first[v] = first[first[v]];
-    v = first[v];
+    of[v].first = of[of[v].first].first;
+    v = of[v].first;
   }
   return v;
 }
 
 static void mcor_join_vertices(mcor_bunches* bunches)
 {
-  const cl_int* corner = bunches->triangles;
-  int32_t* first = bunches->first;
-  for (int64_t t = 0; t < bunches->triangle_count; ++t, corner += 3)
+  mcor_bunch_vertex* of = bunches->of;
+  for (int64_t t = 0; t < bunches->triangle_count; ++t)
   {
-    const int32_t v[3] = { corner[0], corner[1], corner[2] };
-    const uint64_t key[3] = { bunches->key[v[0]], bunches->key[v[1]], bunches->key[v[2]] };
+    const cl_int* corner = bunches->triangles + 3 * t;
+    const uint64_t key[3] = { of[corner[0]].key, of[corner[1]].key, of[corner[2]].key };
     for (int c = 0; c < 3; ++c)
     {
       const int d = c < 2 ? c + 1 : 0;
       if (key[c] == key[d] && key[c] != MCOR_FROZEN)
       {
-        const int32_t p = mcor_first_of(first, v[c]), q = mcor_first_of(first, v[d]);
-        first[p > q ? p : q] = p > q ? q : p;
+        const int32_t p = mcor_first_of(of, corner[c]), q = mcor_first_of(of, corner[d]);
+        of[p > q ? p : q].first = p > q ? q : p;
       }
     }
   }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    first[v] = first[first[v]]; /* first[v] already has its bunch's first vertex */
+    of[v].first = of[of[v].first].first; /* that vertex already has its bunch's first vertex */
   }
   for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
   {
-    if (first[v] != v)
+    if (of[v].first != v)
     {
-      bunches->next[v] = bunches->next[first[v]];
-      bunches->next[first[v]] = v;
+      of[v].next = of[of[v].first].next;
+      of[of[v].first].next = v;
+    }
+  }
+}
+
+/* Lists the triangles of each bunch, each once, by its first corner in the bunch. */
+static void mcor_list_triangles(mcor_bunches* bunches)
+{
+  for (int64_t t = 0; t < bunches->triangle_count; ++t)
+  {
+    int32_t bunch[3];
+    for (int c = 0; c < bunches->corners; ++c)
+    {
+      bunch[c] = bunches->of[bunches->triangles[3 * t + c]].first;
+      if ((c < 1 || bunch[c] != bunch[0]) && (c < 2 || bunch[2] != bunch[1]))
+      {
+        bunches->before[3 * t + c] = bunches->of[bunch[c]].star;
+        bunches->of[bunch[c]].star = (int32_t)(3 * t + c);
+      }
     }
   }
 }
@@ -167,80 +171,54 @@ typedef struct mcor_fan
   int32_t from[MCOR_FAN_LIMIT], to[MCOR_FAN_LIMIT];
 } mcor_fan;
 
-static int mcor_size_of(const mcor_bunches* bunches, int32_t bunch)
-{
-  int size = 1;
-  for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
-  {
-    ++size;
-  }
-  return size;
-}
-
 /* Finds the fan around a bunch. Returns false if the bunch cannot be contracted to a point, or has
  * no fan. */
 static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
-  int within = 0; /* triangles with two or three corners in the bunch; lines with two */
-  if (bunches->corners == 2)
+  const mcor_bunch_vertex* of = bunches->of;
+  const bool lines = bunches->corners == 2;
+  int size = 0, within = 0; /* triangles with two or three corners in the bunch; lines with two */
+  int ends[2] = { 0, 0 };   /* lines that begin, and that end, in the bunch */
+  for (int32_t v = bunch; v >= 0; v = of[v].next)
   {
-    int before = 0, behind = 0;
-    for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
-    {
-      const cl_int* corner = bunches->triangles + e / 3 * 3;
-      const int c = e % 3;
-      const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
-      within += joins && c == 0;
-      before += !joins && c == 1;
-      behind += !joins && c == 0;
-      fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
-      fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
-    }
-    fan->count = 1;
-    return mcor_size_of(bunches, bunch) - within == 1 && before == 1 && behind == 1;
+    ++size;
   }
   fan->count = 0;
-  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
+  for (int32_t e = of[bunch].star; e >= 0; e = bunches->before[e])
   {
     const cl_int* corner = bunches->triangles + e / 3 * 3;
     const int c = e % 3;
-    const int32_t next = corner[c < 2 ? c + 1 : 0], last = corner[c > 0 ? c - 1 : 2];
-    if (bunches->first[next] == bunch || bunches->first[last] == bunch)
+    const int32_t next = corner[lines ? 1 - c
+                      : c < 2         ? c + 1
+                                      : 0],
+                  last = corner[lines ? 1 - c
+                      : c > 0         ? c - 1
+                                      : 2];
+    if (of[next].first == bunch || of[last].first == bunch)
     {
       ++within;
-      continue;
     }
-    if (fan->count == MCOR_FAN_LIMIT)
+    else if (lines)
+    {
+      (c == 0 ? fan->to : fan->from)[0] = next;
+      ++ends[c];
+    }
+    else if (fan->count == MCOR_FAN_LIMIT)
     {
       return false;
     }
-    fan->from[fan->count] = next;
-    fan->to[fan->count++] = last;
-  }
-  return 2 * mcor_size_of(bunches, bunch) - within == 2;
-}
-
-/* Replaces vertices around a bunch by their bunches: by all bunches, or only by sure ones. Edges
- * within a bunch vanish. */
-static void mcor_merge_fan(
-  const mcor_bunches* bunches, bool all, const mcor_fan* from, mcor_fan* to)
-{
-  to->count = 0;
-  for (int i = 0; i < from->count; ++i)
-  {
-    const int32_t v = from->from[i], w = from->to[i], p = bunches->first[v], q = bunches->first[w];
-    const int32_t begin = all || mcor_state_of(bunches, p) == MCOR_BUNCH_MERGED ? p : v;
-    const int32_t end = all || mcor_state_of(bunches, q) == MCOR_BUNCH_MERGED ? q : w;
-    if (begin != end)
+    else
     {
-      to->from[to->count] = begin;
-      to->to[to->count++] = end;
+      fan->from[fan->count] = next;
+      fan->to[fan->count++] = last;
     }
   }
+  fan->count += lines;
+  return lines ? size - within == 1 && ends[0] == 1 && ends[1] == 1 : 2 * size - within == 2;
 }
 
-/* Whether the edges form one closed ring through different vertices; for lines, whether the two
- * ends differ. Sorts the edges along the ring. */
+/* Whether the edges of a fan form one closed ring through different vertices; for lines, whether
+ * the two ends differ. Sorts the edges along the ring. */
 static bool mcor_is_ring(mcor_fan* fan, int corners)
 {
   const int count = fan->count;
@@ -270,87 +248,118 @@ static bool mcor_is_ring(mcor_fan* fan, int corners)
   return count >= 3 && fan->to[count - 1] == fan->from[0];
 }
 
-/* Whether a closed piece would keep enough triangles: counts the triangles of a bunch and of the
- * bunches around it, as if all were merged. */
-static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
+/* Whether a closed piece would keep enough vertices: counts the bunches in triangles around a bunch
+ * and around its ring, as if all were merged. */
+static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
-  const bool lines = bunches->corners == 2;
   const int least = MCOR_LEAST_PIECE(bunches->corners);
-  int32_t near[MCOR_LEAST_PIECE(3) + 2];
-  int count = 1, triangles = lines ? 2 : fan->count;
-  if (triangles >= least)
+  int32_t seen[MCOR_FAN_LIMIT + 4];
+  int count = 0;
+  seen[count++] = bunch;
+  for (int i = 0; i < ring->count; ++i)
   {
-    return true;
+    seen[count++] = ring->from[i];
   }
-  near[0] = bunch;
-  for (int i = 0; i < fan->count; ++i)
+  if (bunches->corners == 2)
   {
-    near[count++] = fan->from[i];
+    seen[count++] = ring->to[0];
   }
-  if (lines && fan->count == 1)
+  for (int i = 1, of_ring = count; i < of_ring && count < least; ++i)
   {
-    near[count++] = fan->to[0];
-  }
-  for (int i = 1; i < count; ++i)
-  {
-    for (int32_t e = bunches->star[near[i]]; e >= 0 && triangles < least; e = bunches->before[e])
+    for (int32_t e = bunches->of[seen[i]].star; e >= 0 && count < least; e = bunches->before[e])
     {
-      int32_t of[3];
-      mcor_bunches_of(bunches, e / 3, of);
-      bool counts = mcor_is_left(of, bunches->corners);
-      for (int j = 0; j < i; ++j)
+      for (int c = 0; c < bunches->corners && count < least; ++c)
       {
-        counts = counts && of[0] != near[j] && of[1] != near[j] && of[2] != near[j];
+        const int32_t other = bunches->of[bunches->triangles[e / 3 * 3 + c]].first;
+        int k = 0;
+        while (k < count && seen[k] != other)
+        {
+          ++k;
+        }
+        seen[k] = other;
+        count += k == count;
       }
-      triangles += counts;
     }
   }
-  return triangles >= least;
+  return count >= least;
 }
 
-/* Finds which bunches are sure, and which of the others may be leaning, or clash with a bunch
- * beside them. */
-static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
+/* Whether a bunch can be merged, both if no other bunch is merged, and if all others (`all`) or
+ * those that are merged so far are. */
+static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
+{
+  mcor_fan fan, merged = { 0 };
+  if (!mcor_read_fan(bunches, bunch, &fan))
+  {
+    return false;
+  }
+  for (int i = 0; i < fan.count; ++i)
+  {
+    const int32_t v = fan.from[i], w = fan.to[i];
+    const int32_t from = all || mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
+    const int32_t to = all || mcor_is_merged(bunches, w) ? bunches->of[w].first : w;
+    merged.from[merged.count] = from;
+    merged.to[merged.count] = to;
+    merged.count += from != to; /* edges within a bunch vanish */
+  }
+  return mcor_is_ring(&merged, bunches->corners) &&
+    (!all || mcor_is_ring(&fan, bunches->corners)) && mcor_is_large(bunches, bunch, &merged);
+}
+
+/* Finds the bunches that are merged whatever happens to the others. */
+static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
   for (int32_t v = (int32_t)first; v < last; ++v)
   {
-    mcor_fan fan, merged;
-    if (bunches->first[v] != v || bunches->next[v] < 0 || !mcor_read_fan(bunches, v, &fan))
+    if (bunches->of[v].first == v && bunches->of[v].next >= 0)
     {
-      continue; /* this bunch stays apart */
+      mcor_set_state(
+        bunches, v, mcor_can_merge(bunches, v, true) ? MCOR_BUNCH_MERGED : MCOR_BUNCH_UNSURE);
     }
-    mcor_merge_fan(bunches, true, &fan, &merged);
-    mcor_set_state(bunches, v,
-      !mcor_is_large(bunches, v, &merged)          ? MCOR_BUNCH_APART
-        : !mcor_is_ring(&merged, bunches->corners) ? MCOR_BUNCH_CLASHES
-        : mcor_is_ring(&fan, bunches->corners)     ? MCOR_BUNCH_MERGED
-                                                   : MCOR_BUNCH_LEANING);
   }
   (void)slice;
 }
 
-/* Finds which bunches that are not sure can be merged. */
-static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
+/* Chooses bunches that clash: of two beside each other, only the first. */
+static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
   for (int32_t v = (int32_t)first; v < last; ++v)
   {
-    const int state = bunches->first[v] == v ? mcor_state_of(bunches, v) : MCOR_BUNCH_APART;
-    if (state != MCOR_BUNCH_CLASHES && state != MCOR_BUNCH_LEANING)
+    bool chosen = bunches->of[v].state == MCOR_BUNCH_UNSURE;
+    for (int32_t e = chosen ? bunches->of[v].star : -1; e >= 0; e = bunches->before[e])
     {
-      continue;
+      for (int c = 0; c < bunches->corners; ++c)
+      {
+        const int32_t other = bunches->of[bunches->triangles[e / 3 * 3 + c]].first;
+        chosen = chosen && (other >= v || bunches->of[other].state != MCOR_BUNCH_UNSURE);
+      }
     }
-    mcor_fan fan, merged;
-    bool merges = mcor_read_fan(bunches, v, &fan);
-    for (int i = 0; i < fan.count && state == MCOR_BUNCH_CLASHES; ++i)
+    bunches->of[v].leans = chosen && mcor_can_merge(bunches, v, false);
+  }
+  (void)slice;
+}
+
+/* Finds the means of merged bunches. */
+static void mcor_mean_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_bunches* bunches = data;
+  for (int64_t i = first; i < last; ++i)
+  {
+    mcor_start* start = &bunches->starts.of[i];
+    int64_t count = 0;
+    for (int32_t v = start->vertex; v >= 0; v = bunches->of[v].next, ++count)
     {
-      const int32_t p = bunches->first[fan.from[i]], q = bunches->first[fan.to[i]];
-      merges = merges && (p > v || mcor_state_of(bunches, p) != MCOR_BUNCH_CLASHES) &&
-        (q > v || mcor_state_of(bunches, q) != MCOR_BUNCH_CLASHES);
+      for (int a = 0; a < 3; ++a)
+      {
+        start->at[a] += bunches->points[v].at[a];
+      }
     }
-    mcor_merge_fan(bunches, false, &fan, &merged);
-    bunches->leans[v] = merges && mcor_is_ring(&merged, bunches->corners);
+    for (int a = 0; a < 3; ++a)
+    {
+      start->at[a] /= count;
+    }
   }
   (void)slice;
 }
@@ -358,42 +367,23 @@ static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
 mcor_status mcor_find_bunches(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
-  const size_t n = (size_t)bunches->vertex_count;
+  mcor_bunch_vertex* of = bunches->of;
+  const int count = bunches->vertex_count;
   MCOR_TRY(mcor_key_vertices(bunches));
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
-  {
-    bunches->first[v] = v;
-  }
-  memset(bunches->next, 0xff, n * sizeof *bunches->next);
-  memset(bunches->star, 0xff, n * sizeof *bunches->star);
   mcor_join_vertices(bunches);
   MCOR_TRY(mcor_report_launch(context));
-  /* Lists the triangles of each bunch, each once, by its first corner in the bunch. */
-  for (int64_t t = 0; t < bunches->triangle_count; ++t)
-  {
-    int32_t of[3];
-    mcor_bunches_of(bunches, t, of);
-    for (int c = 0; c < bunches->corners; ++c)
-    {
-      if ((c < 1 || of[c] != of[0]) && (c < 2 || of[2] != of[1]))
-      {
-        bunches->before[3 * t + c] = bunches->star[of[c]];
-        bunches->star[of[c]] = (int32_t)(3 * t + c);
-      }
-    }
-  }
+  mcor_list_triangles(bunches);
   MCOR_TRY(mcor_report_launch(context));
-  MCOR_TRY(mcor_parallel_run(
-    context, bunches->vertex_count, MCOR_HEAVY_GRAIN, mcor_test_slice, bunches, NULL));
-  MCOR_TRY(mcor_parallel_run(
-    context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_lean_slice, bunches, NULL));
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  MCOR_TRY(mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_merge_slice, bunches, NULL));
+  MCOR_TRY(mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_choose_slice, bunches, NULL));
+  for (int32_t v = 0; v < count; ++v)
   {
-    const int state = mcor_state_of(bunches, v);
-    if (state == MCOR_BUNCH_CLASHES || state == MCOR_BUNCH_LEANING)
+    if (of[v].first == v && (of[v].leans || mcor_is_merged(bunches, v)))
     {
-      mcor_set_state(bunches, v, bunches->leans[v] ? MCOR_BUNCH_LEANING : MCOR_BUNCH_APART);
+      mcor_set_state(bunches, v, MCOR_BUNCH_MERGED);
+      MCOR_APPEND(context, &bunches->starts, (mcor_start){ .vertex = v });
     }
   }
-  return MCOR_OK;
+  return mcor_parallel_run(
+    context, bunches->starts.count, MCOR_HEAVY_GRAIN, mcor_mean_slice, bunches, NULL);
 }

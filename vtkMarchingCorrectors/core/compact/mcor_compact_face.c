@@ -1,305 +1,193 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: finds merged bunches that turn triangles over, and moves vertices of slivers. */
+/* Compact contours: takes apart merged bunches that turn triangles over, and moves vertices of
+ * slivers. */
 
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
 #include "mcor_vector.h"
 
-#include <stdlib.h>
+/* Badness of a triangle, or line, that is turned over: its normal and the sum of its corners' unit
+ * gradients point to the same side, or are at a right angle. */
+#define MCOR_TURNED 8.0
+/* A triangle with a larger badness is a sliver: its least angle is below 20 degrees. */
+#define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
-/* ---- Points ---- */
-
-/* A vertex of the mesh. */
-struct mcor_point
+/* Returns a triangle's badness: four times the squared cosine of its least angle, which is opposite
+ * to the shortest side; 4 if it has no area. Lines have none unless they are turned over. widest:
+ * the corner opposite to the longest side. */
+static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], int* widest)
 {
-  double at[3], uphill[3]; /* uphill: unit gradient, or 0 without a gradient */
-  double linear;           /* above 0: the vertex did not reach the surface */
-};
-
-typedef struct mcor_placing
-{
-  mcor_bunches* bunches;
-  void *node, *offset, *linear, *gradient;
-} mcor_placing;
-
-static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_placing* from = data;
-  const mcor_bunches* bunches = from->bunches;
-  const mcor_context* context = bunches->context;
-  for (int64_t i = bunches->point_count + first; i < bunches->point_count + last; ++i)
+  double side[3][3], square[3], normal[3], uphill[3] = { 0 };
+  for (int c = 0; c < 3; ++c)
   {
-    mcor_point* point = &bunches->points[i];
-    const cl_int* node = (const cl_int*)from->node + 4 * i;
-    const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
+    const mcor_point *p = &bunches->points[place[(c + 1) % 3]],
+                     *q = &bunches->points[place[(c + 2) % 3]];
     for (int a = 0; a < 3; ++a)
     {
-      point->at[a] = (node[a] + mcor_get_real(context, from->offset, 4 * i + a)) * size *
-        mcor_edge_of(&context->lattice, a);
-      point->uphill[a] = mcor_get_real(context, from->gradient, 4 * i + a);
+      side[c][a] = (double)(q->at[a] - p->at[a]) * bunches->edge[a];
+      uphill[a] += c == 0 && bunches->corners == 2 ? 0 : p->uphill[a];
     }
-    mcor_normalise(point->uphill);
-    point->linear = mcor_get_real(context, from->linear, i);
+    square[c] = mcor_dot(side[c], side[c]);
   }
-  (void)slice;
+  mcor_cross(side[0], side[1], normal);
+  if (bunches->corners == 2) /* from corner 0 to corners 1 and 2, which are the same */
+  {
+    normal[0] = -side[1][1];
+    normal[1] = side[1][0];
+  }
+  *widest = square[2] > fmax(square[0], square[1]) ? 2 : square[1] > square[0];
+  if (!(mcor_dot(normal, uphill) < 0))
+  {
+    return MCOR_TURNED;
+  }
+  const double low = fmin(square[0], square[1]), high = fmax(square[0], square[1]),
+               least = fmin(low, square[2]), rest = fmax(low, square[2]),
+               along = high + rest - least;
+  return bunches->corners == 2 ? 0 : high * rest > 0 ? along * along / (high * rest) : 4;
 }
 
-static void mcor_now_slice(void* data, int slice, int64_t first, int64_t last)
+/* ---- Bunches that are taken apart ---- */
+
+/* Marks a triangle's merged bunches as bad: those that did not reach the surface, else all if the
+ * triangle is turned over. Marks the widest corner of a sliver. */
+static void mcor_judge_triangle(const mcor_bunches* bunches, int64_t t)
 {
-  const mcor_bunches* bunches = data;
-  for (int64_t v = first; v < last; ++v)
+  const cl_int* corner = bunches->triangles + 3 * t;
+  int32_t place[3];
+  int widest;
+  bool missed = false;
+  if (!mcor_places_of(bunches, t, place))
   {
-    bunches->now[v] = mcor_place_of(bunches, (int32_t)v);
+    return;
   }
-  (void)slice;
-}
-
-mcor_status mcor_find_places(mcor_bunches* bunches)
-{
-  return mcor_parallel_run(
-    bunches->context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_now_slice, bunches, NULL);
-}
-
-/* Reads the vertices that were added to the mesh since the last call. */
-static mcor_status mcor_update_points(mcor_bunches* bunches)
-{
-  mcor_context* context = bunches->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  if (bunches->point_count == mesh->vertex_count)
+  for (int c = 0; c < bunches->corners; ++c)
   {
-    return MCOR_OK;
+    missed = missed || (bunches->points[place[c]].missed && mcor_is_merged(bunches, corner[c]));
   }
-  if (mesh->vertex_count > bunches->point_room)
+  const double badness = missed ? 0 : mcor_badness(bunches, place, &widest);
+  for (int c = 0; c < bunches->corners && (missed || badness == MCOR_TURNED); ++c)
   {
-    const size_t room = n + n / 4;
-    mcor_point* points = realloc(bunches->points, room * sizeof *points);
-    MCOR_TRY(mcor_allocated(context, points));
-    mcor_use_large_pages(
-      points + bunches->point_count, (room - (size_t)bunches->point_count) * sizeof *points);
-    bunches->points = points;
-    bunches->point_room = (int64_t)room;
+    if (mcor_is_merged(bunches, corner[c]) && (!missed || bunches->points[place[c]].missed))
+    {
+      mcor_set_state(bunches, corner[c], MCOR_BUNCH_BAD);
+    }
   }
-  mcor_placing from = { .bunches = bunches };
-  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &from.node },
-    { &mesh->offset, 4 * n * real, &from.offset }, { &mesh->linear, n * real, &from.linear },
-    { &mesh->gradient, 4 * n * real, &from.gradient } };
-  mcor_status status = mcor_map_all(context, views, 4);
-  MCOR_THEN(status,
-    mcor_parallel_run(context, mesh->vertex_count - bunches->point_count, MCOR_LIGHT_GRAIN,
-      mcor_place_slice, &from, NULL));
-  bunches->point_count = mesh->vertex_count;
-  return mcor_unmap_all(context, views, 4, status);
-}
-
-/* ---- Bunches to be taken apart ---- */
-
-static void mcor_make_bad(mcor_bunches* bunches, int32_t first)
-{
-  if (mcor_is_merged(bunches, first))
+  if (bunches->corners == 3 && badness > MCOR_SLIVER)
   {
-    mcor_set_state(bunches, first, MCOR_BUNCH_BAD);
-    atomic_store_explicit(&bunches->bad, 1, memory_order_relaxed);
+    const int32_t v = mcor_stand_in(bunches, corner[widest]);
+    const bool moves =
+      bunches->of[v].key != MCOR_FROZEN && (!bunches->of[v].held || mcor_is_merged(bunches, v));
+    atomic_store_explicit(&bunches->of[v].wide, moves, memory_order_relaxed);
   }
 }
 
-/* Whether a triangle, or line, is turned over: its normal and the sum of its corners' unit
- * gradients point to the same side, or are at a right angle. */
-static bool mcor_is_turned(const mcor_bunches* bunches, const int32_t place[3])
+static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_point *p = &bunches->points[place[0]], *q = &bunches->points[place[1]];
-  double u[3], v[3], against[3];
-  mcor_subtract(q->at, p->at, u);
-  double normal[3] = { u[1], -u[0], 0 };
-  for (int a = 0; a < 3; ++a)
-  {
-    against[a] = -p->uphill[a] - q->uphill[a];
-  }
-  if (bunches->corners == 3)
-  {
-    const mcor_point* r = &bunches->points[place[2]];
-    mcor_subtract(r->at, p->at, v);
-    mcor_cross(u, v, normal);
-    mcor_subtract(against, r->uphill, against);
-  }
-  return !(mcor_dot(normal, against) > 0);
-}
-
-static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_bunches* bunches = data;
-  const int corners = bunches->corners;
   for (int64_t t = first; t < last; ++t)
   {
-    int32_t place[3], of[3];
-    bool merged = false, fresh = bunches->round == 0, missed = false;
-    if (!mcor_places_of(bunches, t, place))
-    {
-      continue;
-    }
-    for (int c = 0; c < corners; ++c)
-    {
-      of[c] = bunches->first[bunches->triangles[3 * t + c]];
-      const int state = mcor_state_of(bunches, of[c]);
-      merged = merged || state >= MCOR_BUNCH_MERGED;
-      fresh = fresh || state == MCOR_BUNCH_FRESH;
-    }
-    if (!merged || !fresh)
-    {
-      continue;
-    }
-    for (int c = 0; c < corners; ++c)
-    {
-      if (bunches->points[place[c]].linear > 0 && mcor_is_merged(bunches, of[c]))
-      {
-        mcor_make_bad(bunches, of[c]);
-        missed = true;
-      }
-    }
-    if (!missed && mcor_is_turned(bunches, place))
-    {
-      for (int c = 0; c < corners; ++c)
-      {
-        mcor_make_bad(bunches, of[c]);
-      }
-    }
+    mcor_judge_triangle(data, t);
   }
   (void)slice;
 }
 
-mcor_status mcor_find_bad(mcor_bunches* bunches)
+/* Takes a bunch apart, and the bunches that lean on it. */
+static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
 {
-  atomic_store(&bunches->bad, 0);
-  MCOR_TRY(mcor_update_points(bunches));
-  MCOR_TRY(mcor_find_places(bunches));
-  return mcor_parallel_run(
-    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_face_slice, bunches, NULL);
+  const mcor_bunch_vertex* of = bunches->of;
+  mcor_set_state(bunches, first, MCOR_BUNCH_APART);
+  for (int32_t v = first; v >= 0; v = of[v].next)
+  {
+    mcor_set_place(bunches, v, v);
+  }
+  for (int32_t e = of[first].leans ? -1 : of[first].star; e >= 0; e = bunches->before[e])
+  {
+    for (int c = 0; c < bunches->corners; ++c)
+    {
+      const int32_t other = of[bunches->triangles[e / 3 * 3 + c]].first;
+      if (of[other].leans && mcor_is_merged(bunches, other))
+      {
+        mcor_split_bunch(bunches, other);
+      }
+    }
+  }
+}
+
+/* Only triangles around bunches that are taken apart can be turned over by this. */
+mcor_status mcor_take_apart(mcor_bunches* bunches)
+{
+  const mcor_bunch_vertex* of = bunches->of;
+  MCOR_TRY(mcor_parallel_run(
+    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_judge_slice, bunches, NULL));
+  for (int round = 0; round < MCOR_COMPACT_ROUNDS; ++round)
+  {
+    for (int64_t i = 0; i < bunches->starts.count; ++i)
+    {
+      const int32_t v = bunches->starts.of[i].vertex;
+      if (of[v].state == MCOR_BUNCH_BAD)
+      {
+        mcor_split_bunch(bunches, v);
+      }
+    }
+    for (int64_t i = 0; i < bunches->starts.count; ++i)
+    {
+      const int32_t v = bunches->starts.of[i].vertex;
+      for (int32_t e = mcor_is_merged(bunches, v) ? -1 : of[v].star; e >= 0; e = bunches->before[e])
+      {
+        mcor_judge_triangle(bunches, e / 3);
+      }
+    }
+  }
+  return MCOR_OK;
 }
 
 /* ---- Slivers ---- */
 
-/* A triangle with a larger mcor_sharpness is a sliver: its least angle is below 20 degrees. */
-#define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
-
 /* Farthest start from a vertex's node, in edges; a line from this start ends within
  * MCOR_POINT_EXTENT. */
-#define MCOR_FARTHEST_START 1.5
+#define MCOR_FARTHEST_START 2.5
 
-/* Returns vertex v, or the first vertex of the merged bunch that replaced it. */
-static int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
+/* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles
+ * there. Returns whether the vertex may start in the middle. Of two vertices beside each other,
+ * only the first moves. */
+static bool mcor_look_around(const mcor_bunches* bunches, mcor_start* start)
 {
-  return mcor_is_merged(bunches, bunches->first[v]) ? bunches->first[v] : v;
-}
-
-/* Finds the corners of a triangle, see mcor_stand_in. Returns whether the triangle is left and has
- * the corner v. */
-static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, int32_t of[3])
-{
-  const cl_int* corner = bunches->triangles + 3 * t;
-  for (int c = 0; c < 3; ++c)
-  {
-    of[c] = mcor_stand_in(bunches, corner[c]);
-  }
-  return mcor_is_left(of, 3) && (of[0] == v || of[1] == v || of[2] == v);
-}
-
-/* Returns four times the squared cosine of a triangle's least angle, which is opposite to the
- * shortest side; 4 if it has no area. side: squared lengths, by the opposite corner. */
-static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3], double side[3])
-{
-  for (int c = 0; c < 3; ++c)
-  {
-    const double *q = bunches->points[place[c < 2 ? c + 1 : 0]].at,
-                 *r = bunches->points[place[c > 0 ? c - 1 : 2]].at;
-    double d[3];
-    mcor_subtract(r, q, d);
-    side[c] = mcor_dot(d, d);
-  }
-  const double low = side[0] < side[1] ? side[0] : side[1],
-               high = side[0] < side[1] ? side[1] : side[0], least = low < side[2] ? low : side[2],
-               rest = low < side[2] ? side[2] : low, along = high + rest - least;
-  return high * rest > 0 ? along * along / (high * rest) : 4;
-}
-
-static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_bunches* bunches = data;
-  for (int64_t t = first; t < last; ++t)
+  const mcor_bunch_vertex* of = bunches->of;
+  const int32_t own = of[start->vertex].now;
+  const mcor_point* point = &bunches->points[own];
+  const int fix = MCOR_POINT_FIX + (point->node[3] >> MCOR_LEVEL_SHIFT);
+  int64_t count = 0;
+  bool moves = true;
+  *start = (mcor_start){ .vertex = start->vertex, .last = start->last };
+  for (int32_t e = of[of[start->vertex].first].star; e >= 0; e = bunches->before[e])
   {
     int32_t place[3];
-    double side[3];
-    if (mcor_places_of(bunches, t, place) && mcor_sharpness(bunches, place, side) > MCOR_SLIVER)
+    int widest;
+    if (!mcor_places_of(bunches, e / 3, place) ||
+      (place[0] != own && place[1] != own && place[2] != own))
     {
-      const int widest = side[2] > fmax(side[0], side[1]) ? 2 : side[1] > side[0];
-      const int32_t v = mcor_stand_in(bunches, bunches->triangles[3 * t + widest]);
-      const bool moves =
-        bunches->key[v] != MCOR_FROZEN && (!bunches->held[v] || mcor_is_merged(bunches, v));
-      atomic_store_explicit(&bunches->wide[v], moves, memory_order_relaxed);
+      continue;
     }
-  }
-  (void)slice;
-}
-
-/* Finds the middle of the vertices around v, in edges from v's node. Adds whole numbers, so that
- * the order does not matter. Returns whether the vertex may start there. */
-static bool mcor_find_middle(const mcor_bunches* bunches, int32_t v, double start[3])
-{
-  cl_int node[4];
-  int64_t sum[3] = { 0 }, count = 0;
-  for (int32_t e = bunches->star[bunches->first[v]]; e >= 0; e = bunches->before[e])
-  {
-    int32_t of[3];
-    const bool is_around = mcor_is_around(bunches, e / 3, v, of);
-    for (int c = 0; c < 3 && is_around; ++c)
+    start->worst = fmax(start->worst, mcor_badness(bunches, place, &widest));
+    for (int c = 0; c < 3; ++c)
     {
-      const int32_t w = of[c];
-      if (w == v)
+      const int32_t other = mcor_stand_in(bunches, bunches->triangles[e / 3 * 3 + c]);
+      moves = moves && (other >= start->vertex || !of[other].wide);
+      count += place[c] != own;
+      for (int a = 0; a < 3 && place[c] != own; ++a)
       {
-        continue;
-      }
-      ++count;
-      if (w < v && atomic_load_explicit(&bunches->wide[w], memory_order_relaxed))
-      {
-        return false; /* of two vertices beside each other, only the first moves */
-      }
-      for (int a = 0; a < 3; ++a)
-      {
-        const double at = bunches->points[bunches->now[w]].at[a];
-        sum[a] += llround(ldexp(at / mcor_edge_of(&bunches->context->lattice, a), 20));
+        start->at[a] += bunches->points[place[c]].at[a];
       }
     }
   }
-  mcor_entry_node(bunches, mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v, node);
-  bool is_near = count > 0;
-  for (int a = 0; a < 3 && is_near; ++a)
+  for (int a = 0; a < 3 && count > 0; ++a)
   {
-    start[a] = ldexp((double)sum[a] / (double)count, -20 - (node[3] >> MCOR_LEVEL_SHIFT)) - node[a];
-    is_near = fabs(start[a]) <= MCOR_FARTHEST_START;
+    start->at[a] /= count;
+    moves = moves &&
+      fabs((double)start->at[a] - ldexp(point->node[a], fix)) <= ldexp(MCOR_FARTHEST_START, fix);
   }
-  return is_near;
-}
-
-/* Returns the greatest mcor_sharpness of triangles around a vertex; 8 if one is turned over. */
-static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
-{
-  double worst = -1;
-  for (int32_t e = bunches->star[bunches->first[v]]; e >= 0; e = bunches->before[e])
-  {
-    int32_t of[3], place[3];
-    double side[3];
-    if (mcor_is_around(bunches, e / 3, v, of))
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        place[c] = mcor_place_of(bunches, of[c]);
-      }
-      worst =
-        fmax(worst, mcor_is_turned(bunches, place) ? 8 : mcor_sharpness(bunches, place, side));
-    }
-  }
-  return worst;
+  return moves && count > 0;
 }
 
 /* Moves each vertex at the widest angle of a sliver to the middle of the vertices around it, and
@@ -307,45 +195,25 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
  * around it gets no better. */
 mcor_status mcor_move_slivers(mcor_bunches* bunches)
 {
-  if (bunches->corners == 2)
+  bunches->starts.count = 0;
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    return MCOR_OK;
-  }
-  double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
-  int32_t* before = bunches->order + bunches->vertex_count; /* uses the second half of `order` */
-  int count = 0;
-  mcor_status status = mcor_allocated(bunches->context, starts);
-  MCOR_THEN(status, mcor_update_points(bunches));
-  MCOR_THEN(status, mcor_find_places(bunches));
-  MCOR_THEN(status,
-    mcor_parallel_run(bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
-      mcor_sliver_slice, bunches, NULL));
-  for (int32_t v = 0; v < bunches->vertex_count && status == MCOR_OK; ++v)
-  {
-    if (bunches->wide[v] && mcor_find_middle(bunches, v, starts[count]))
+    mcor_start start = { .vertex = v };
+    if (bunches->of[v].wide && mcor_look_around(bunches, &start))
     {
-      bunches->order[count] = mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v;
-      before[count] = *mcor_place_in(bunches, bunches->order[count]);
-      ++count;
+      MCOR_APPEND(bunches->context, &bunches->starts, start);
     }
   }
-  if (count > 0)
+  MCOR_TRY(mcor_add_vertices(bunches));
+  for (int64_t i = 0; i < bunches->starts.count; ++i)
   {
-    MCOR_THEN(status, mcor_add_vertices(bunches, starts, count));
-    MCOR_THEN(status, mcor_update_points(bunches));
-  }
-  free(starts);
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    const int32_t v = mcor_vertex_of(bunches->order[i]);
-    int32_t* place = mcor_place_in(bunches, bunches->order[i]);
-    const int32_t now = *place;
-    const double worst = mcor_worst_around(bunches, v);
-    *place = before[i];
-    if (bunches->points[now].linear <= 0 && worst < mcor_worst_around(bunches, v))
+    mcor_start* start = &bunches->starts.of[i];
+    const double worst = start->worst;
+    mcor_look_around(bunches, start);
+    if (bunches->points[bunches->of[start->vertex].now].missed || start->worst >= worst)
     {
-      *place = now;
+      mcor_set_place(bunches, start->vertex, start->last);
     }
   }
-  return status;
+  return MCOR_OK;
 }

@@ -12,7 +12,6 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 {
   mcor_mesh* mesh = &context->mesh;
   MCOR_TRY(mcor_extend_vertices(context, 0, count));
-  MCOR_TRY(mcor_reserve(context, &mesh->linear, (size_t)count * context->cl.real_size));
   return mcor_reserve(context, &mesh->evaluations, (size_t)count);
 }
 

@@ -132,7 +132,7 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
   const mcor_lattice* lattice = &d->context->lattice;
   const int axis = mcor_node_of(d, v)[3] & 3;
   return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
-      mcor_length_of(d, v, axis < 3 ? lattice->edge[axis] : lattice->cube)
+      mcor_length_of(d, v, lattice->edge[axis])
                                           : 0;
 }
 

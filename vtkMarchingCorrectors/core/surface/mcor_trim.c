@@ -116,6 +116,7 @@ mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
   const size_t reals = o * real, new_reals = n * real;
   MCOR_TRY(mcor_extend(context, &mesh->node, o * 16, n * 16));
   MCOR_TRY(mcor_extend(context, &mesh->offset, 4 * reals, 4 * new_reals));
+  MCOR_TRY(mcor_extend(context, &mesh->linear, reals, new_reals));
   MCOR_TRY(mcor_extend(context, &mesh->field_value, reals, new_reals));
   MCOR_TRY(mcor_extend(context, &mesh->gradient, 4 * reals, 4 * new_reals));
   MCOR_TRY(mcor_extend(context, &mesh->vertex_weight, reals, new_reals));

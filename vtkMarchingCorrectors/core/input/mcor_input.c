@@ -105,6 +105,16 @@ MCOR_VECTOR_LOOPS void mcor_widen_range(const double* x, int count, double* low,
   }
 }
 
+MCOR_VECTOR_LOOPS bool mcor_is_all_within(const double* x, int count, double least, double most)
+{
+  int64_t beyond = 0; /* as wide as the numbers, so that compilers vectorise the loop */
+  for (int i = 0; i < count; ++i)
+  {
+    beyond |= (x[i] >= least) & (x[i] <= most) ? 0 : 1;
+  }
+  return !beyond;
+}
+
 mcor_findings mcor_no_findings(void)
 {
   mcor_findings found = { .first = INT64_MAX };

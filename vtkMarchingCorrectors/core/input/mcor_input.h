@@ -78,6 +78,9 @@ static inline double mcor_most(double a, double b)
   return b > a ? b : a;
 }
 
+/* Whether all numbers are in a range. */
+bool mcor_is_all_within(const double* x, int count, double least, double most);
+
 /* mcor_check.c. Fails and says that two sides of a box are not an interval. */
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
 
@@ -186,9 +189,21 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 /* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, one axis' factor. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
-/* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
- * most samples of fluid; fewer take less time. */
+/* mcor_measure_sample.c. Samples this rank's particles, into context->samples, and looks whether
+ * all positions are finite, those of absent particles, too. most_fluid: the most samples of fluid;
+ * fewer take less time. */
+mcor_status mcor_sample_own(
+  mcor_context* context, const mcor_input* input, int most_fluid, bool* all_finite);
+/* Joins the samples of all ranks. Samples this rank's particles first, unless this call has done
+ * so. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
+/* The fluid particles whose neighbours are watched while particles are measured: bits of a mask. */
+#define MCOR_WATCHED 32
+/* Returns the usual `most_fluid`. */
+static inline int mcor_most_samples(const mcor_input* input)
+{
+  return input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED;
+}
 
 /* Hashes a position: particles with the least hashes stand for all. The second function adds one to
  * the samples if its hash is among the least. */

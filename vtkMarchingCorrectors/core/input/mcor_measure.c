@@ -18,7 +18,6 @@
  * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
  * h_median. If the watched particles lie in a tilted plane, it also finds whether all others do. */
 
-#define MCOR_WATCHED 32
 typedef struct mcor_watch
 {
   int count;
@@ -417,8 +416,7 @@ mcor_status mcor_measure_input(
     *m = options->globals->measured;
     return mcor_measure_lattice(context, options);
   }
-  MCOR_TRY(mcor_choose_samples(
-    context, input, input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED));
+  MCOR_TRY(mcor_choose_samples(context, input, mcor_most_samples(input)));
   if (input->estimate_smoothing_length)
   {
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));

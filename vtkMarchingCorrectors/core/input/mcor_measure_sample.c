@@ -3,10 +3,13 @@
 
 /* Chooses a few particles that stand for all: the particles whose positions have the least hashes.
  * So it does not matter in which order they come, or how ranks share them. From such a sample one
- * smoothing length is estimated for particles that have none. */
+ * smoothing length is estimated for particles that have none. The pass that samples also looks for
+ * positions that are not finite, so that it is the first of three passes: the particles are then
+ * measured, and staged. */
 
 #include "mcor_input.h"
 
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -53,6 +56,7 @@ typedef struct mcor_sampling
   const mcor_context* context;
   const mcor_input* input;
   mcor_sample_list found[MCOR_SLICES][2]; /* as in the context's samples */
+  bool not_finite[MCOR_SLICES];           /* whether any position is not finite */
 } mcor_sampling;
 
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
@@ -64,6 +68,10 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
     mcor_read_positions(input, first, count, x);
+    for (int a = 0; a < 3; ++a)
+    {
+      job->not_finite[slice] |= !mcor_is_all_within(x[a], count, -DBL_MAX, DBL_MAX);
+    }
     for (int i = 0; i < count; ++i) /* a loop of its own, so that processors hash several at once */
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
@@ -91,7 +99,8 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
+mcor_status mcor_sample_own(
+  mcor_context* context, const mcor_input* input, int most_fluid, bool* all_finite)
 {
   mcor_sampling* job = calloc(1, sizeof *job);
   MCOR_TRY(mcor_allocated(context, job));
@@ -106,27 +115,46 @@ mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, 
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, job, &slices);
   for (int k = 0; k < 2; ++k)
   {
-    mcor_sample_list *own = &job->found[0][k], *chosen = &context->samples[k];
-    const void* all = NULL;
-    int64_t count = 0;
+    context->samples[k] = job->found[0][k];
     for (int s = 1; s < slices; ++s)
     {
       for (int i = 0; i < job->found[s][k].count; ++i)
       {
-        mcor_add_sample(own, &job->found[s][k].of[i]);
+        mcor_add_sample(&context->samples[k], &job->found[s][k].of[i]);
       }
     }
-    MCOR_THEN(
-      status, mcor_gather_records(context, own->of, own->count, sizeof *own->of, &all, &count));
-    chosen->count = 0;
-    chosen->most = own->most;
-    for (int64_t i = 0; i < count; ++i)
-    {
-      mcor_add_sample(chosen, (const mcor_sample*)all + i);
-    }
   }
+  *all_finite = true;
+  for (int s = 0; s < slices; ++s)
+  {
+    *all_finite = *all_finite && !job->not_finite[s];
+  }
+  context->run.is_sampled = status == MCOR_OK;
   free(job);
   return status;
+}
+
+mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
+{
+  if (!context->run.is_sampled)
+  {
+    bool unused;
+    MCOR_TRY(mcor_sample_own(context, input, most_fluid, &unused));
+  }
+  context->run.is_sampled = false;
+  for (int k = 0; k < 2; ++k)
+  {
+    const mcor_sample_list own = context->samples[k];
+    const void* all = NULL;
+    int64_t count = 0;
+    MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
+    context->samples[k].count = 0;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      mcor_add_sample(&context->samples[k], (const mcor_sample*)all + i);
+    }
+  }
+  return MCOR_OK;
 }
 
 /* ---- One smoothing length for all ---- */

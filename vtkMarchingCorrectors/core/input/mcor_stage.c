@@ -231,18 +231,6 @@ MCOR_VECTOR_LOOPS static bool mcor_is_all_one(const double* x, int count, double
   return !differ;
 }
 
-/* Whether all numbers are in a range. */
-MCOR_VECTOR_LOOPS static bool mcor_is_all_within(
-  const double* x, int count, double least, double most)
-{
-  int64_t beyond = 0;
-  for (int i = 0; i < count; ++i)
-  {
-    beyond |= (x[i] >= least) & (x[i] <= most) ? 0 : 1;
-  }
-  return !beyond;
-}
-
 /* Writes the inverse scaled lengths of a chunk's kernels, in cubes. */
 MCOR_VECTOR_LOOPS static void mcor_invert_lengths(
   const mcor_context* context, const mcor_stage_chunk* chunk, double* inv_h)

@@ -13,7 +13,6 @@ least of three. Distances of vertices from the surface are |f - 0.5| / |grad f| 
 """
 import argparse
 import hashlib
-import json
 import resource
 import statistics
 import subprocess
@@ -24,10 +23,6 @@ import numpy
 from devices import make_tank
 
 ISO = 0.5
-
-
-def take(arrays):
-    return [numpy.ascontiguousarray(array) for array in arrays]
 
 
 def by_marching_correctors(x, sizes, cube, device):
@@ -71,23 +66,23 @@ def by_warp(x, sizes, cube, device):
     return run
 
 
-def measure(make, count, device):
-    """Prints what one tool does, as JSON."""
+def measure(tool, count, device):
+    """Prints the row of one tool."""
     import marchingcorrectors
     x, _, sizes = make_tank(count)
     cube = 0.5 * float(sizes["smoothing_length"][0])
-    run, seconds, busy, hashes = make(x, sizes, cube, device), [], [], set()
+    run, seconds, busy, hashes = TOOLS[tool](x, sizes, cube, device), [], [], set()
     for _ in range(4):
         begin, used = time.perf_counter(), time.process_time()
-        points, triangles = take(run())
+        points, triangles = map(numpy.ascontiguousarray, run())
         seconds.append(time.perf_counter() - begin)
         busy.append(time.process_time() - used)
         hashes.add(hashlib.sha256(points.tobytes() + triangles.tobytes()).hexdigest())
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     found = marchingcorrectors.probe(x, points.astype(float), gradients=True, **sizes)
-    distance = numpy.abs(found.weight_sum - ISO) / numpy.linalg.norm(found.weight_gradient, axis=1)
-    print(json.dumps({"triangles": len(triangles), "first": seconds[0], "seconds": statistics.median(seconds[1:]), "busy": min(busy[1:]), "memory": memory,
-                      "largest": float(distance.max() / cube), "mean": float(distance.mean() / cube), "same": len(hashes) == 1}), flush=True)
+    distance = numpy.abs(found.weight_sum - ISO) / numpy.linalg.norm(found.weight_gradient, axis=1) / cube
+    print(f"| {len(x):,} | {tool} | {len(triangles):,} | {seconds[0]:.1f} | {statistics.median(seconds[1:]):.2f} | {min(busy[1:]):.2f} | {memory:.0f} | "
+          f"{distance.max():.1e} ({distance.mean():.1e}) | {'yes' if len(hashes) == 1 else 'no'} |", flush=True)
 
 
 TOOLS = {"marching-correctors": by_marching_correctors, "newton": by_newton, "Warp, on a full grid": by_warp}
@@ -100,18 +95,15 @@ def main():
     parser.add_argument("--tool", choices=TOOLS, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.tool:
-        measure(TOOLS[arguments.tool], float(arguments.sizes), arguments.device)
+        measure(arguments.tool, float(arguments.sizes), arguments.device)
         return
     print("| particles | | triangles | first, s | again, s | of a processor, s | memory, MiB | vertices off the surface, cubes: most (mean) | "
-          "same mesh each time |\n|---|---|---|---|---|---|---|---|---|")
+          "same mesh each time |\n|---|---|---|---|---|---|---|---|---|", flush=True)
     for size in arguments.sizes.split(","):
         count = float(size.replace("k", "e3").replace("M", "e6"))
         for tool in TOOLS:
             command = [sys.executable, __file__, "--tool", tool, "--sizes", str(count), "--device", arguments.device]
-            lines = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
-            found = json.loads(lines[-1])
-            print(f"| {size} | {tool} | {found['triangles']:,} | {found['first']:.1f} | {found['seconds']:.2f} | {found['busy']:.2f} | {found['memory']:.0f} | "
-                  f"{found['largest']:.1e} ({found['mean']:.1e}) | {'yes' if found['same'] else 'no'} |", flush=True)
+            subprocess.run(command, check=True)
 
 
 if __name__ == "__main__":

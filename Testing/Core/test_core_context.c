@@ -6,6 +6,8 @@
 #include "core_parts.h"
 
 #include <ctype.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 /* Several iso values in one call give the surfaces of single calls. */
 static void test_several_iso_values(void** state)
@@ -460,6 +462,22 @@ static void test_profile(void** state)
   CORE_CONTEXT refused = NULL;
   assert_int_equal(mcor_create_context(NULL, &refused), MCOR_INVALID_ARGUMENT);
   assert_true(core_told(refused, "PROFILE_FILE|core_context_profile.csv|it holds something else"));
+  remove(path);
+  /* A call whose costs do not fit on the disk fails. */
+  CORE_CONTEXT full = NULL;
+  CORE_OK(full, mcor_create_context(NULL, &full));
+  struct rlimit limit, small = { .rlim_cur = 200 };
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  small.rlim_max = limit.rlim_max;
+  signal(SIGXFSZ, SIG_IGN);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+  mcor_surface lost;
+  const mcor_status not_written = mcor_extract(full, &input, &options, &lost);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  assert_int_equal(not_written, MCOR_INVALID_ARGUMENT);
+  assert_true(core_told(full, "PROFILE_FILE|core_context_profile.csv") && lost.point_count == 0);
+  CORE_SURFACE kept = core_extract(full, &input, &options);
+  assert_true(core_hash(&kept) == expected);
   remove(path);
   setenv("MCOR_PROFILE", "/nonexistent/profile.csv", 1);
   CORE_CONTEXT none = NULL;

@@ -23,7 +23,7 @@
  * context may be used by one thread at a time; several contexts by several threads at once. A call
  * starts helper threads on the processors that its thread may use. On the built-in device, these
  * wait for the context's next call, and end with the context. On other devices there are up to 15,
- * which end before the call returns.
+ * and up to 12 that build programs; they end before the call returns, even if it is cancelled.
  *
  * Lengths are in the unit of the particle positions ("length unit L"). */
 

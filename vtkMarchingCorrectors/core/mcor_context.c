@@ -205,7 +205,9 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   {
     mcor_blame_outlier(context, &flat.input);
   }
-  mcor_write_profile(context, statistics);
+  mcor_end_building(&context->cl);
+  const mcor_status written = mcor_write_profile(context, statistics);
+  MCOR_THEN(status, written);
   const bool is_all = !far.solid;
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);

@@ -12,10 +12,63 @@
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
-/* Begins to build the programs that the surface needs. */
+/* Whether cubes may differ, judged by about a thousand particles. */
+static bool mcor_may_be_adaptive(const mcor_input* input, const mcor_options* options)
+{
+  double low = INFINITY, high = 0;
+  for (int64_t i = 0; i < input->count && options->level_limit > 0; i += 1 + input->count / 1024)
+  {
+    const double h = mcor_array_at(&input->smoothing_length, i, 0);
+    low = fmin(low, h);
+    high = fmax(high, h);
+  }
+  return low > 0 && high >= 2 * low;
+}
+
+int mcor_list_programs(const mcor_context* context, const mcor_input* input,
+  const mcor_options* options, bool has_solids)
+{
+  const bool pairs = mcor_wants_pairs(options);
+  bool has_sides = mcor_has_box(options);
+  for (int a = 0; a < 3; ++a)
+  {
+    has_sides = has_sides || options->periodic[2 * a] < options->periodic[2 * a + 1];
+  }
+  const unsigned shape =
+    MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE;
+  const struct
+  {
+    mcor_program program;
+    bool is_needed;
+  } rows[] = { { MCOR_PROGRAM_GRID, true }, { MCOR_PROGRAM_BRICKS, true },
+    { MCOR_PROGRAM_NODES, true }, { MCOR_PROGRAM_CELLS, true }, { MCOR_PROGRAM_VERTICES, true },
+    { MCOR_PROGRAM_TRIM, options->field != MCOR_WEIGHT_SUM || has_solids },
+    { MCOR_PROGRAM_DENSITY, mcor_needs_density(input) },
+    { MCOR_PROGRAM_ATTRIBUTES,
+      (options->outputs & MCOR_OUT_NEAREST_PARTICLE) != 0 ||
+        mcor_count_components(input) > MCOR_ATTRIBUTE_LIMIT },
+    { MCOR_PROGRAM_LEAVES, mcor_may_be_adaptive(input, options) },
+    { MCOR_PROGRAM_CHOICES, pairs || has_sides || options->topology == MCOR_TOPOLOGY_FIELD },
+    { MCOR_PROGRAM_RARE, pairs || mcor_is_plane(context) },
+    { MCOR_PROGRAM_SHAPE,
+      (options->outputs & shape) != 0 || options->capping ||
+        options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE } };
+  int programs = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
+  {
+    programs |= rows[i].is_needed << rows[i].program;
+  }
+  return programs;
+}
+
+/* Begins to build the programs that the surface needs, unless the built-in device has them. */
 static mcor_status mcor_begin_building(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
+  if (context->cl.pool)
+  {
+    return MCOR_OK;
+  }
   const bool may_have = input->solid && context->run.uses_solids;
   bool has_solids = false;
   for (int64_t i = 0; i < input->count && may_have && !has_solids; ++i)
@@ -23,20 +76,7 @@ static mcor_status mcor_begin_building(
     has_solids = input->solid[i] != 0 && input->solid[i] != MCOR_ABSENT;
   }
   const mcor_build build = mcor_build_of(options, has_solids);
-  const unsigned shape = MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE |
-    MCOR_OUT_GAUSS_CURVATURE;
-  int programs = 1 << MCOR_PROGRAM_GRID | 1 << MCOR_PROGRAM_BRICKS | 1 << MCOR_PROGRAM_NODES |
-    1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES;
-  programs |= options->field != MCOR_WEIGHT_SUM || has_solids ? 1 << MCOR_PROGRAM_TRIM : 0;
-  programs |= mcor_needs_density(input) ? 1 << MCOR_PROGRAM_DENSITY : 0;
-  programs |= input->attribute_count > 0 ? 1 << MCOR_PROGRAM_ATTRIBUTES : 0;
-  programs |= options->topology == MCOR_TOPOLOGY_FIELD ? 1 << MCOR_PROGRAM_CHOICES : 0;
-  programs |= mcor_is_plane(context) ? 1 << MCOR_PROGRAM_RARE : 0;
-  programs |= (options->outputs & shape) != 0 ||
-      options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE || options->capping
-    ? 1 << MCOR_PROGRAM_SHAPE
-    : 0;
-  return mcor_build_ahead(context, &build, programs);
+  return mcor_build_ahead(context, &build, mcor_list_programs(context, input, options, has_solids));
 }
 
 /* Appends the surface of one iso value. */

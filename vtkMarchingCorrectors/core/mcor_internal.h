@@ -293,6 +293,10 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift);
 
+/* mcor_extract.c. Returns the programs that a surface needs, for the plane that was found. */
+int mcor_list_programs(const mcor_context* context, const mcor_input* input,
+  const mcor_options* options, bool has_solids);
+
 /* The phases. */
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);

@@ -79,8 +79,50 @@ static int on_progress(void* user, double fraction, const char* phase)
   return is_building && b->cancels;
 }
 
-/* Programs that are built ahead serve the run, and it needs no others. A call may be cancelled, and a context freed, while they
- * are built. */
+/* Extracts in a new context, which then must have the programs that would have been built ahead. Only trimming may have been
+ * spared, as the surface may end nowhere. */
+static void check_programs(const mcor_input* input, const mcor_options* options, bool has_solids)
+{
+  CORE_CONTEXT context = NULL;
+  CORE_OK(context, mcor_create_context("pocl", &context));
+  CORE_SURFACE surface = core_extract(context, input, options);
+  assert_true(surface.triangle_count > 20);
+  const int wanted = mcor_list_programs(context, input, options, has_solids);
+  int built = 1 << MCOR_PROGRAM_TRIM;
+  for (int p = 0; p < MCOR_PROGRAM_COUNT; ++p)
+  {
+    built |= (context->cl.programs[p] != NULL) << p;
+  }
+  CORE_CHECK(built == (wanted | 1 << MCOR_PROGRAM_TRIM), "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
+}
+
+/* Runs with pairs, in a box, and with adaptive cubes have all of their programs built ahead. */
+static void test_programs_of_runs(void** state)
+{
+  CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
+  const double iso = 2;
+  const mcor_input input = core_input(&set);
+  const mcor_options plain = core_options(&iso);
+  mcor_options options = plain;
+  setenv("MCOR_THREADS", "1", 1); /* nothing is built ahead, so only what is used is built */
+  options.seeds = MCOR_PAIRS;
+  options.level_limit = 0;
+  check_programs(&input, &options, false);
+  options = plain;
+  for (int a = 0; a < 6; ++a)
+  {
+    options.box[a] = a % 2 ? 4 : a == 4 ? 0 : -4;
+  }
+  check_programs(&input, &options, false);
+  set.smoothing_length[0] *= 2;
+  const mcor_input adaptive = core_input(&set);
+  options = plain;
+  options.outputs |= MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_NEAREST_PARTICLE;
+  check_programs(&adaptive, &options, false);
+  unsetenv("MCOR_THREADS");
+}
+
+/* Programs that are built ahead serve the run. A call may be cancelled while they are built; no thread outlives it. */
 static void test_building_ahead(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
@@ -92,30 +134,16 @@ static void test_building_ahead(void** state)
   options.progress = on_progress;
   options.progress_user = &b;
   setenv("MCOR_THREADS", "2", 1); /* even if there is only one processor */
-  for (int turn = 0; turn < 2; ++turn)
-  {
-    CORE_CONTEXT context = NULL;
-    b = (building){ 0, true };
-    CORE_OK(context, mcor_create_context("pocl", &context));
-    mcor_surface none;
-    CORE_FAILS(context, MCOR_CANCELLED, mcor_extract(context, &input, &options, &none), "CANCELLED_BUILDING");
-    assert_int_equal(b.told, 1);
-    if (turn == 0)
-    {
-      continue; /* the context is freed while its programs are built */
-    }
-    b.cancels = false;
-    CORE_SURFACE surface = core_extract(context, &input, &options);
-    assert_true(core_hash(&surface) == core_hash(&expected));
-    const int wanted = 1 << MCOR_PROGRAM_GRID | 1 << MCOR_PROGRAM_BRICKS | 1 << MCOR_PROGRAM_NODES |
-      1 << MCOR_PROGRAM_CELLS | 1 << MCOR_PROGRAM_VERTICES;
-    int built = 0;
-    for (int p = 0; p < MCOR_PROGRAM_COUNT; ++p)
-    {
-      built |= (context->cl.programs[p] != NULL) << p;
-    }
-    CORE_CHECK(built == wanted, "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
-  }
+  CORE_CONTEXT context = NULL;
+  CORE_OK(context, mcor_create_context("pocl", &context));
+  mcor_surface none;
+  CORE_FAILS(context, MCOR_CANCELLED, mcor_extract(context, &input, &options, &none), "CANCELLED_BUILDING");
+  assert_int_equal(b.told, 1);
+  assert_null(context->cl.builder);
+  b.cancels = false;
+  CORE_SURFACE surface = core_extract(context, &input, &options);
+  assert_true(core_hash(&surface) == core_hash(&expected));
+  assert_null(context->cl.builder);
   unsetenv("MCOR_THREADS");
 }
 
@@ -124,6 +152,7 @@ int main(void)
   setenv("POCL_DEVICES", "pthread pthread", 1);
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_turns_and_shares),
     cmocka_unit_test(test_named_device), cmocka_unit_test(test_no_such_place),
+    cmocka_unit_test(test_programs_of_runs),
     cmocka_unit_test(test_building_ahead) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -61,8 +61,8 @@ typedef enum mcor_program
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
-/* Sets of programs: for the lattice, for a build's surfaces, for probes. On the built-in device
- * each set is one program. */
+/* Sets of programs: for the lattice, for a build's surfaces, for probes. If cl.builds_sets, each
+ * set is one program: MCOR_PROGRAM_GRID, _NODES, _PROBE. */
 #define MCOR_PARTS_LATTICE ((1 << MCOR_PROGRAM_ATTRIBUTES) - 1)
 #define MCOR_PARTS_PROBE (1 << MCOR_PROGRAM_PROBE)
 #define MCOR_PARTS_FIELD (MCOR_PARTS_PROBE - 1 - MCOR_PARTS_LATTICE)
@@ -102,6 +102,7 @@ typedef struct mcor_cl
                                    * devices */
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
+  bool builds_sets;               /* each set of programs is one program */
   bool is_apart;                  /* memory is not the host's, see mcor_locked */
   bool has_fp64, rounds_division; /* the latter: divisions and roots can be exact to the last bit */
   int lanes;              /* evaluation points that a work-item treats at once */
@@ -176,11 +177,13 @@ mcor_status mcor_settle_device(
 void mcor_close_device(mcor_context* context);
 /* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
-/* Begins to build a set of programs in threads of their own, in the order in which a run needs
- * them. Does nothing if no driver compiles them, or if this build has programs already. */
+/* Begins to build those programs of a set that are missing, in threads of their own, in the order
+ * in which a run needs them. Does nothing if no driver compiles them. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds the programs to come take; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
+/* Ends the threads that build, after the programs that are under way, and keeps these. */
+void mcor_end_building(mcor_cl* cl);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* Releases a buffer. A large one is kept for the next request of about its size: the first touch
  * of memory takes longer than most work in it, and successive phases and calls have arrays of
@@ -231,7 +234,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
 /* Appends what the call has cost to the profile, if there is one. */
-void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics);
+mcor_status mcor_write_profile(mcor_context* context, const mcor_statistics* statistics);
 void mcor_close_profile(mcor_context* context);
 
 #endif

@@ -9,13 +9,11 @@
 
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 /* A program that waits for a thread, is under way, or is done. */
 typedef struct mcor_build_job
 {
-  mcor_program number;
-  cl_program program;
+  cl_program program; /* NULL: it is not built ahead, or the run has taken it */
   char options[512];
   double size, seconds; /* length of the sources; how long building took */
   cl_int error;
@@ -29,10 +27,15 @@ struct mcor_builder
   pthread_cond_t done;
   pthread_t threads[MCOR_PROGRAM_COUNT];
   int thread_count;
-  long process; /* the process that the threads belong to */
-  int job_count;
   mcor_build_job jobs[MCOR_PROGRAM_COUNT];
 };
+
+/* The order in which a run needs programs. */
+static const mcor_program mcor_build_order[] = { MCOR_PROGRAM_GRID, MCOR_PROGRAM_DENSITY,
+  MCOR_PROGRAM_NODES, MCOR_PROGRAM_LEAVES, MCOR_PROGRAM_BRICKS, MCOR_PROGRAM_RARE,
+  MCOR_PROGRAM_CHOICES, MCOR_PROGRAM_CELLS, MCOR_PROGRAM_VERTICES, MCOR_PROGRAM_SHAPE,
+  MCOR_PROGRAM_TRIM, MCOR_PROGRAM_ATTRIBUTES };
+#define MCOR_BUILT_AHEAD (sizeof mcor_build_order / sizeof *mcor_build_order)
 
 /* Builds a job; the lock is held before and after it. */
 static void mcor_run_job(struct mcor_builder* builder, mcor_build_job* job)
@@ -52,41 +55,38 @@ static void* mcor_build_thread(void* data)
 {
   struct mcor_builder* builder = data;
   pthread_mutex_lock(&builder->lock);
-  for (int i = 0; i < builder->job_count; ++i)
+  for (size_t i = 0; i < MCOR_BUILT_AHEAD; ++i)
   {
-    if (!builder->jobs[i].is_begun)
+    mcor_build_job* job = &builder->jobs[mcor_build_order[i]];
+    if (job->program && !job->is_begun)
     {
-      mcor_run_job(builder, &builder->jobs[i]);
+      mcor_run_job(builder, job);
     }
   }
   pthread_mutex_unlock(&builder->lock);
   return NULL;
 }
 
-/* Lists the programs that are not built yet, in the order in which a run needs them. */
-static mcor_status mcor_list_jobs(mcor_context* context, struct mcor_builder* builder, int programs)
+static mcor_status mcor_list_jobs(
+  mcor_context* context, struct mcor_builder* builder, int programs, int* count)
 {
-  static const mcor_program order[] = { MCOR_PROGRAM_GRID, MCOR_PROGRAM_DENSITY,
-    MCOR_PROGRAM_BRICKS, MCOR_PROGRAM_NODES, MCOR_PROGRAM_RARE, MCOR_PROGRAM_CELLS,
-    MCOR_PROGRAM_CHOICES, MCOR_PROGRAM_VERTICES, MCOR_PROGRAM_SHAPE, MCOR_PROGRAM_TRIM,
-    MCOR_PROGRAM_ATTRIBUTES };
   mcor_cl* cl = &context->cl;
-  for (size_t i = 0; i < sizeof order / sizeof *order; ++i)
+  for (size_t i = 0; i < MCOR_BUILT_AHEAD; ++i)
   {
-    mcor_build_job* job = &builder->jobs[builder->job_count];
-    if (cl->programs[order[i]] || !(1 << order[i] & programs))
+    const mcor_program number = mcor_build_order[i];
+    mcor_build_job* job = &builder->jobs[number];
+    const char* sources[MCOR_SOURCE_LIMIT];
+    if (cl->programs[number] || !(mcor_parts_of(cl, number) & programs))
     {
       continue;
     }
-    *job = (mcor_build_job){ .number = order[i] };
-    const char* sources[MCOR_SOURCE_LIMIT];
-    for (int s = mcor_program_sources(cl, 1 << order[i], sources); s > 0; --s)
+    for (int s = mcor_program_sources(cl, mcor_parts_of(cl, number), sources); s > 0; --s)
     {
       job->size += (double)strlen(sources[s - 1]);
     }
-    mcor_program_options(cl, order[i], job->options, sizeof job->options);
-    MCOR_TRY(mcor_make_program(context, order[i], &job->program));
-    ++builder->job_count;
+    mcor_program_options(cl, number, job->options, sizeof job->options);
+    MCOR_TRY(mcor_make_program(context, number, &job->program));
+    ++*count;
   }
   return MCOR_OK;
 }
@@ -95,22 +95,20 @@ mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int
 {
   mcor_cl* cl = &context->cl;
   const int threads = mcor_limit_threads(mcor_processors(1));
-  const bool is_same = cl->lanes > 0 && cl->build.sph_kernel == build->sph_kernel &&
-    cl->build.field == build->field && cl->build.precision == build->precision;
-  if (mcor_is_native(cl) || threads < 2 || (is_same && cl->programs[MCOR_PROGRAM_NODES]))
+  if (mcor_is_native(cl) || threads < 2)
   {
     return MCOR_OK;
   }
+  mcor_end_building(cl);
   MCOR_TRY(mcor_choose_build(context, build));
-  mcor_end_builder(cl);
   struct mcor_builder* builder = cl->builder = calloc(1, sizeof *builder);
   MCOR_TRY(mcor_allocated(context, builder != NULL));
   builder->device = cl->device;
-  builder->process = (long)getpid();
   pthread_mutex_init(&builder->lock, NULL);
   pthread_cond_init(&builder->done, NULL);
-  MCOR_TRY(mcor_list_jobs(context, builder, programs));
-  while (builder->thread_count < threads && builder->thread_count < builder->job_count &&
+  int count = 0;
+  MCOR_TRY(mcor_list_jobs(context, builder, programs, &count));
+  while (builder->thread_count < threads && builder->thread_count < count &&
     pthread_create(&builder->threads[builder->thread_count], NULL, mcor_build_thread, builder) == 0)
   {
     ++builder->thread_count;
@@ -125,7 +123,7 @@ double mcor_build_rest(mcor_cl* cl)
   if (builder)
   {
     pthread_mutex_lock(&builder->lock);
-    for (int i = 0; i < builder->job_count; ++i)
+    for (int i = 0; i < MCOR_PROGRAM_COUNT; ++i)
     {
       const mcor_build_job* job = &builder->jobs[i];
       known += job->is_done ? job->size : 0;
@@ -142,12 +140,8 @@ mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error)
 {
   struct mcor_builder* builder = context->cl.builder;
-  mcor_build_job* job = NULL;
-  for (int i = 0; builder && i < builder->job_count; ++i)
-  {
-    job = builder->jobs[i].number == number && builder->jobs[i].program ? &builder->jobs[i] : job;
-  }
-  if (!job)
+  mcor_build_job* job = builder ? &builder->jobs[number] : NULL;
+  if (!job || !job->program)
   {
     return MCOR_OK;
   }
@@ -178,40 +172,37 @@ mcor_status mcor_await_program(
   return status;
 }
 
-void mcor_end_builder(mcor_cl* cl)
+void mcor_end_building(mcor_cl* cl)
 {
   struct mcor_builder* builder = cl->builder;
   if (!builder)
   {
     return;
   }
-  if (builder->process == (long)getpid())
+  pthread_mutex_lock(&builder->lock);
+  for (int i = 0; i < MCOR_PROGRAM_COUNT; ++i)
   {
-    pthread_mutex_lock(&builder->lock);
-    for (int i = 0; i < builder->job_count; ++i)
-    {
-      builder->jobs[i].is_begun = true; /* no thread begins it any more */
-    }
-    pthread_mutex_unlock(&builder->lock);
-    for (int t = 0; t < builder->thread_count; ++t)
-    {
-      pthread_join(builder->threads[t], NULL);
-    }
-    pthread_cond_destroy(&builder->done);
-    pthread_mutex_destroy(&builder->lock);
+    builder->jobs[i].is_begun = true; /* no thread begins it any more */
   }
-  for (int i = 0; i < builder->job_count; ++i)
+  pthread_mutex_unlock(&builder->lock);
+  for (int t = 0; t < builder->thread_count; ++t)
+  {
+    pthread_join(builder->threads[t], NULL);
+  }
+  for (int i = 0; i < MCOR_PROGRAM_COUNT; ++i)
   {
     mcor_build_job* job = &builder->jobs[i];
-    if (job->program && job->is_done && job->error == CL_SUCCESS && !cl->programs[job->number])
+    if (job->program && job->is_done && job->error == CL_SUCCESS)
     {
-      cl->programs[job->number] = job->program;
+      cl->programs[i] = job->program;
     }
     else if (job->program)
     {
       clReleaseProgram(job->program);
     }
   }
+  pthread_cond_destroy(&builder->done);
+  pthread_mutex_destroy(&builder->lock);
   free(builder);
   cl->builder = NULL;
 }

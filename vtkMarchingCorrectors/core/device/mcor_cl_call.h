@@ -42,9 +42,10 @@ mcor_status mcor_open_profile(mcor_context* context);
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes);
-/* Counts one more command, unless there is no profile. host, device: seconds. */
+/* Counts one more command, unless there is no profile. host, device: seconds. event: gives further
+ * seconds of the device later, and is released then; or NULL. */
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
-  int64_t bytes, double host, double device);
+  int64_t bytes, double host, double device, cl_event event);
 /* Returns the seconds between start and end of a command; -1: the driver does not tell. */
 double mcor_event_seconds(cl_event event);
 
@@ -73,8 +74,10 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 /* If the device is PoCL, adds to the error sentence which of its files may be the cause. */
 void mcor_blame_files(mcor_context* context);
 
-/* The name of PoCL's platform. */
-#define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
+static inline bool mcor_is_pocl(const char* platform_name)
+{
+  return strcmp(platform_name, "Portable Computing Language") == 0;
+}
 
 /* Returns a variable of the environment that only tests set; other builds do not read it. */
 static inline const char* mcor_test_setting(const char* name)
@@ -109,7 +112,5 @@ mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_pro
  * this one is not built ahead. */
 mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
-/* Ends the threads, and keeps the programs that they have built. */
-void mcor_end_builder(mcor_cl* cl);
 
 #endif

@@ -17,53 +17,44 @@ typedef struct mcor_device_list
 {
   int count;
   bool drivers_fail; /* drivers were not listed, because they would end the process */
-  cl_platform_id platforms[MCOR_DEVICE_LIMIT];
-  cl_device_id devices[MCOR_DEVICE_LIMIT];
+  struct mcor_listed
+  {
+    cl_platform_id platform;
+    cl_device_id device;
+    char device_name[128], platform_name[128];
+  } of[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
 
 /* Lists the devices, the built-in one first. Drivers are left out where listing them would end
  * the process, as PoCL does if it cannot start its threads. */
 static void mcor_find_devices(mcor_device_list* list, bool drivers)
 {
-  cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
-  cl_uint platform_count = 0;
+  cl_platform_id platforms[MCOR_PLATFORM_LIMIT] = { mcor_native_platform() };
+  cl_device_id devices[MCOR_DEVICE_LIMIT];
+  cl_uint platform_count = platforms[0] != NULL, found;
   list->count = 0;
   list->drivers_fail = drivers && !mcor_system_bears_drivers();
   if (drivers && !list->drivers_fail)
   {
-    if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
-    {
-      return;
-    }
+    clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count);
   }
-  else
+  for (cl_uint p = 0; p < platform_count && list->count < MCOR_DEVICE_LIMIT; ++p)
   {
-    platforms[0] = mcor_native_platform();
-    platform_count = platforms[0] != NULL;
-  }
-  for (cl_uint p = 0; p < platform_count && p < MCOR_PLATFORM_LIMIT; ++p)
-  {
-    const int room = MCOR_DEVICE_LIMIT - list->count;
-    cl_uint found = 0;
-    if (room <= 0 ||
-      clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, (cl_uint)room, list->devices + list->count,
-        &found) != CL_SUCCESS)
+    const cl_uint room = (cl_uint)(MCOR_DEVICE_LIMIT - list->count);
+    if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &found) != CL_SUCCESS)
     {
       continue;
     }
-    for (cl_uint d = 0; d < found && d < (cl_uint)room; ++d)
+    for (cl_uint d = 0; d < found && d < room; ++d)
     {
-      list->platforms[list->count++] = platforms[p];
+      struct mcor_listed* listed = &list->of[list->count++];
+      *listed = (struct mcor_listed){ .platform = platforms[p], .device = devices[d] };
+      clGetDeviceInfo(
+        devices[d], CL_DEVICE_NAME, sizeof listed->device_name, listed->device_name, NULL);
+      clGetPlatformInfo(
+        platforms[p], CL_PLATFORM_NAME, sizeof listed->platform_name, listed->platform_name, NULL);
     }
   }
-}
-
-static void mcor_device_names(
-  cl_platform_id platform, cl_device_id device, char* device_name, char* platform_name, size_t size)
-{
-  device_name[0] = platform_name[0] = '\0';
-  clGetDeviceInfo(device, CL_DEVICE_NAME, size, device_name, NULL);
-  clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, platform_name, NULL);
 }
 
 /* Writes the devices' numbers and names, as far as there is room. */
@@ -74,8 +65,7 @@ static void mcor_write_devices(
   text[0] = '\0';
   for (int i = 0; i < list->count && length < room; ++i)
   {
-    char device[128], platform[128];
-    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
+    const char *device = list->of[i].device_name, *platform = list->of[i].platform_name;
     const bool same =
       strncmp(device, platform, strlen(platform)) == 0; /* true for the built-in device */
     length += (size_t)snprintf(text + length, room - length, "%s%d: %s%s%s%s",
@@ -135,17 +125,14 @@ static int mcor_find_device(const mcor_device_list* list, const char* wanted, bo
   {
     return number >= 0 && number < list->count ? (int)number : -1;
   }
-  for (int i = 0; i < list->count; ++i)
+  int i = 0;
+  while (i < list->count && !mcor_contains(list->of[i].device_name, wanted) &&
+    !mcor_contains(list->of[i].platform_name, wanted) &&
+    !(mcor_contains("pocl", wanted) && mcor_is_pocl(list->of[i].platform_name)))
   {
-    char device[128], platform[128];
-    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
-    if (mcor_contains(device, wanted) || mcor_contains(platform, wanted) ||
-      (mcor_contains("pocl", wanted) && strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0))
-    {
-      return i;
-    }
+    ++i;
   }
-  return -1;
+  return i < list->count ? i : -1;
 }
 
 static cl_device_type mcor_type_of(cl_device_id device)
@@ -176,6 +163,9 @@ static void mcor_query_device(mcor_cl* cl)
   const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
   cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && width > 1;
+  /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
+   * when they are launched. So it gains nothing from parts. */
+  cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
   /* A CPU that is made to work as a GPU tests this, too. */
   cl->is_apart = !cl->is_cpu && (!unified || claims_cpu);
   cl->has_fp64 = fp64 != 0;
@@ -191,8 +181,8 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
   int like[MCOR_DEVICE_LIMIT], n = 0;
   for (int i = 0; i < list->count; ++i)
   {
-    if (list->platforms[i] == list->platforms[chosen] &&
-      mcor_type_of(list->devices[i]) == mcor_type_of(list->devices[chosen]))
+    if (list->of[i].platform == list->of[chosen].platform &&
+      mcor_type_of(list->of[i].device) == mcor_type_of(list->of[chosen].device))
     {
       like[n++] = i;
     }
@@ -254,14 +244,12 @@ static int mcor_choose_device(const mcor_device_list* list, const mcor_build* bu
   int best = -1, best_rank = 0;
   for (int i = 0; i < list->count; ++i)
   {
-    const cl_platform_id platform = list->platforms[i];
-    char device_name[128], name[128];
-    mcor_device_names(platform, list->devices[i], device_name, name, sizeof name);
-    const int rank = platform == mcor_native_platform()            ? 4
-      : (mcor_type_of(list->devices[i]) & CL_DEVICE_TYPE_GPU) != 0 ? 3
-      : strcmp(name, MCOR_DEFAULT_PLATFORM) == 0                   ? 2
-                                                                   : 1;
-    if (rank > best_rank && mcor_can_build(platform, list->devices[i], build))
+    const struct mcor_listed* listed = &list->of[i];
+    const int rank = listed->platform == mcor_native_platform()  ? 4
+      : (mcor_type_of(listed->device) & CL_DEVICE_TYPE_GPU) != 0 ? 3
+      : mcor_is_pocl(listed->platform_name)                      ? 2
+                                                                 : 1;
+    if (rank > best_rank && mcor_can_build(listed->platform, listed->device, build))
     {
       best = i;
       best_rank = rank;
@@ -274,11 +262,11 @@ static mcor_status mcor_start_device(
   mcor_context* context, const mcor_device_list* list, int chosen, int place, int count)
 {
   mcor_cl* cl = &context->cl;
-  cl->platform = list->platforms[chosen];
-  cl->device = list->devices[chosen];
+  cl->platform = list->of[chosen].platform;
+  cl->device = list->of[chosen].device;
   cl->device_number = chosen;
-  mcor_device_names(
-    cl->platform, cl->device, cl->device_name, cl->platform_name, sizeof cl->device_name);
+  memcpy(cl->device_name, list->of[chosen].device_name, sizeof cl->device_name);
+  memcpy(cl->platform_name, list->of[chosen].platform_name, sizeof cl->platform_name);
   mcor_take_share(cl, place, count);
   mcor_query_device(cl);
   cl_int error;
@@ -351,20 +339,16 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   cl->place = place;
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
-  mcor_find_devices(&list, false);
+  int chosen = -1;
+  for (int drivers = 0; drivers < 2 && chosen < 0; ++drivers) /* drivers take a while to start */
+  {
+    mcor_find_devices(&list, drivers);
+    chosen = cl->is_default ? mcor_choose_device(&list, &mcor_usual_build)
+                            : mcor_find_device(&list, wanted, &by_number);
+  }
   if (cl->is_default)
   {
-    if (mcor_choose_device(&list, &mcor_usual_build) < 0)
-    {
-      mcor_find_devices(&list, true);
-    }
     return mcor_start_default(context, &list, &mcor_usual_build);
-  }
-  int chosen = mcor_find_device(&list, wanted, &by_number);
-  if (chosen < 0)
-  {
-    mcor_find_devices(&list, true);
-    chosen = mcor_find_device(&list, wanted, &by_number);
   }
   if (chosen < 0)
   {
@@ -418,16 +402,17 @@ mcor_status mcor_settle_device(
   {
     return mcor_fail_without_device(context, &list, build);
   }
-  if (is_open && list.platforms[chosen] == cl->platform)
+  if (is_open && list.of[chosen].platform == cl->platform)
   {
     return MCOR_OK;
   }
   release(context);
   mcor_close_device(context);
-  *cl = (mcor_cl){
-    .is_default = true, .place = before.place, .count = before.count, .observer = before.observer,
-    .profile = before.profile
-  };
+  *cl = (mcor_cl){ .is_default = true,
+    .place = before.place,
+    .count = before.count,
+    .observer = before.observer,
+    .profile = before.profile };
   const mcor_status status = mcor_start_default(context, &list, build);
   cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
     ? before.memory_limit

@@ -11,27 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a program has a kernel. Asking OpenCL for a missing one is an error, at which PoCL
- * crashes while POCL_DEBUG is set. */
-static bool mcor_has_kernel(cl_program program, const char* name)
-{
-  size_t size = 0;
-  clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, 0, NULL, &size);
-  char* names = calloc(size + 1, 1);
-  bool has = false;
-  if (names && clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, size, names, NULL) == CL_SUCCESS)
-  {
-    for (const char* at = names; *at && !has; at += strspn(at, ";"))
-    {
-      const size_t length = strcspn(at, ";");
-      has = length == strlen(name) && memcmp(at, name, length) == 0;
-      at += length;
-    }
-  }
-  free(names);
-  return has;
-}
-
 /* Finds a kernel among those made so far, or makes it. */
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** found)
 {
@@ -47,14 +26,11 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   MCOR_TRY(mcor_make_room(
     context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
   mcor_kernel* kernel = *found = &cl->kernels[cl->kernel_count];
-  *kernel = (mcor_kernel){ .program = mcor_program_of(name) };
+  *kernel = (mcor_kernel){ .program = mcor_program_of(cl, name) };
   snprintf(kernel->name, sizeof kernel->name, "%s", name);
   MCOR_TRY(mcor_need_program(context, kernel->program));
-  cl_int error = CL_INVALID_KERNEL_NAME;
-  if (mcor_has_kernel(cl->programs[kernel->program], name))
-  {
-    kernel->kernel = clCreateKernel(cl->programs[kernel->program], name, &error);
-  }
+  cl_int error;
+  kernel->kernel = clCreateKernel(cl->programs[kernel->program], name, &error);
   MCOR_CL_TRY(context, error, name);
   ++cl->kernel_count;
   return MCOR_OK;
@@ -86,10 +62,10 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
     const double building = fmax(seconds - running, 0);
     cl->build_seconds += building;
     cl->compiles = building > MCOR_COMPILE_SECONDS;
-    MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, kernel->name, 0, building, 0));
+    MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, kernel->name, 0, building, 0, NULL));
   }
   return mcor_add_to_profile(
-    context, MCOR_COMMAND_LAUNCH, kernel->name, 0, fmax(running, 0), fmax(running, 0));
+    context, MCOR_COMMAND_LAUNCH, kernel->name, 0, fmax(running, 0), fmax(running, 0), NULL);
 }
 
 /* The time that a part of a heavy launch should take. Drivers of GPUs abort a launch that takes
@@ -124,8 +100,7 @@ static mcor_status mcor_enqueue_part(
     return MCOR_OK;
   }
   MCOR_CL_COMMAND(context, MCOR_COMMAND_LAUNCH, kernel->name, 0,
-    clEnqueueNDRangeKernel(
-      cl->queue, kernel->kernel, 1, from, &count, &group, 0, NULL, MCOR_EVENT),
+    clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, from, &count, &group, 0, NULL, MCOR_EVENT),
     kernel->name);
   return MCOR_OK;
 }
@@ -218,7 +193,6 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
 
 mcor_status mcor_finish(mcor_context* context)
 {
-  MCOR_CL_COMMAND(
-    context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
+  MCOR_CL_COMMAND(context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
   return MCOR_OK;
 }

@@ -12,7 +12,7 @@ typedef struct mcor_sight
 {
   mcor_input input;
   mcor_array* attributes; /* of this input, where some array is in a buffer; else NULL */
-  struct mcor_seen* seen; /* [count] */
+  void** copies;          /* [count], of the buffers' values */
   int count;
 } mcor_sight;
 

@@ -30,6 +30,7 @@ typedef struct mcor_profile_event
 struct mcor_profile
 {
   FILE* file;
+  char* path;
   int64_t call; /* counts the calls of this context */
   MCOR_LIST(mcor_profile_row) rows;
   MCOR_LIST(mcor_profile_event) pending;
@@ -40,6 +41,17 @@ struct mcor_profile
 static const char mcor_profile_head[] =
   "call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n";
 
+/* Fails unless all that was written since errno was 0 is in the file. */
+static mcor_status mcor_flush_profile(mcor_context* context)
+{
+  const struct mcor_profile* profile = context->cl.profile;
+  const bool failed = fflush(profile->file) != 0 || ferror(profile->file);
+  clearerr(profile->file);
+  MCOR_FAIL_IF(
+    failed, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), profile->path, strerror(errno));
+  return MCOR_OK;
+}
+
 mcor_status mcor_open_profile(mcor_context* context)
 {
   const char* path = getenv("MCOR_PROFILE");
@@ -48,7 +60,8 @@ mcor_status mcor_open_profile(mcor_context* context)
     return MCOR_OK;
   }
   struct mcor_profile* profile = context->cl.profile = calloc(1, sizeof *profile);
-  MCOR_TRY(mcor_allocated(context, profile != NULL));
+  MCOR_TRY(mcor_allocated(context, profile && (profile->path = malloc(strlen(path) + 1))));
+  strcpy(profile->path, path);
   profile->file = fopen(path, "a+");
   MCOR_FAIL_IF(
     !profile->file, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), path, strerror(errno));
@@ -58,11 +71,9 @@ mcor_status mcor_open_profile(mcor_context* context)
   MCOR_FAIL_IF(!is_new && strcmp(begin, mcor_profile_head) != 0, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(PROFILE_FILE), path, "it holds something else");
   fseek(profile->file, 0, SEEK_END);
-  if (is_new)
-  {
-    fputs(mcor_profile_head, profile->file);
-  }
-  return MCOR_OK;
+  errno = 0;
+  fputs(is_new ? mcor_profile_head : "", profile->file);
+  return mcor_flush_profile(context);
 }
 
 cl_event* mcor_begin_profiled(struct mcor_profile* profile)
@@ -79,31 +90,6 @@ double mcor_event_seconds(cl_event event)
                        &start, NULL) == CL_SUCCESS &&
     clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS;
   return known ? 1e-9 * (double)(end - start) : -1;
-}
-
-/* Returns the number of a row, which is made where there is none; -1: memory ran out. */
-static int64_t mcor_profile_row_of(mcor_context* context, mcor_command command, const char* name)
-{
-  struct mcor_profile* profile = context->cl.profile;
-  const mcor_phase phase = context->run.phase;
-  for (int64_t i = 0; i < profile->rows.count; ++i)
-  {
-    const mcor_profile_row* row = profile->rows.of + i;
-    if (row->phase == phase && row->command == command && strcmp(row->name, name) == 0)
-    {
-      return i;
-    }
-  }
-  if (profile->rows.count == profile->rows.room &&
-    mcor_make_room(context, (void**)&profile->rows.of, profile->rows.count, &profile->rows.room,
-      sizeof(mcor_profile_row)) != MCOR_OK)
-  {
-    return -1;
-  }
-  mcor_profile_row* row = profile->rows.of + profile->rows.count;
-  *row = (mcor_profile_row){ .phase = phase, .command = command };
-  snprintf(row->name, sizeof row->name, "%s", name);
-  return profile->rows.count++;
 }
 
 /* Takes the times of commands that are done. */
@@ -128,6 +114,7 @@ void mcor_close_profile(mcor_context* context)
     {
       fclose(profile->file);
     }
+    free(profile->path);
     free(profile->rows.of);
     free(profile->pending.of);
     free(profile);
@@ -136,32 +123,46 @@ void mcor_close_profile(mcor_context* context)
 }
 
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
-  int64_t bytes, double host, double device)
+  int64_t bytes, double host, double device, cl_event event)
 {
   struct mcor_profile* profile = context->cl.profile;
-  const int64_t row = profile ? mcor_profile_row_of(context, command, name) : -1;
-  if (row >= 0)
+  mcor_profile_row new = { .phase = context->run.phase, .command = command };
+  int64_t i = 0;
+  if (!profile)
   {
-    profile->rows.of[row].count += 1;
-    profile->rows.of[row].bytes += bytes;
-    profile->rows.of[row].host += host;
-    profile->rows.of[row].device += device;
+    return MCOR_OK;
   }
-  return !profile || row >= 0 ? MCOR_OK : mcor_allocated(context, false);
+  snprintf(new.name, sizeof new.name, "%s", name);
+  while (i < profile->rows.count &&
+    (profile->rows.of[i].phase != new.phase || profile->rows.of[i].command != command ||
+      strcmp(profile->rows.of[i].name, new.name) != 0))
+  {
+    ++i;
+  }
+  if (i == profile->rows.count)
+  {
+    MCOR_APPEND(context, &profile->rows, new);
+  }
+  mcor_profile_row* row = profile->rows.of + i;
+  row->count += 1;
+  row->bytes += bytes;
+  row->host += host;
+  row->device += device;
+  if (event)
+  {
+    MCOR_APPEND(context, &profile->pending, (mcor_profile_event){ event, i });
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes)
 {
   struct mcor_profile* profile = context->cl.profile;
-  const double seconds = mcor_seconds() - profile->begin;
-  MCOR_TRY(mcor_add_to_profile(
-    context, command, name, (int64_t)bytes, seconds, mcor_is_native(&context->cl) ? seconds : 0));
-  if (profile->event)
-  {
-    MCOR_APPEND(context, &profile->pending,
-      (mcor_profile_event){ profile->event, mcor_profile_row_of(context, command, name) });
-  }
+  const double host = mcor_seconds() - profile->begin;
+  const double device = mcor_is_native(&context->cl) ? host : 0;
+  MCOR_TRY(
+    mcor_add_to_profile(context, command, name, (int64_t)bytes, host, device, profile->event));
   if (command == MCOR_COMMAND_WAIT)
   {
     mcor_take_events(profile);
@@ -169,20 +170,21 @@ mcor_status mcor_end_profiled(
   return MCOR_OK;
 }
 
-void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics)
+mcor_status mcor_write_profile(mcor_context* context, const mcor_statistics* statistics)
 {
   static const char* const names[] = { "launch", "wait", "write", "read", "copy", "map", "lock",
     "build" };
   struct mcor_profile* profile = context->cl.profile;
   if (!profile)
   {
-    return;
+    return MCOR_OK;
   }
   if (context->cl.queue) /* NULL: no device could be started */
   {
     clFinish(context->cl.queue);
   }
   mcor_take_events(profile);
+  errno = 0;
   for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
   {
     fprintf(profile->file, "%lld,%s,phase,,1,0,%.9f,0\n", (long long)profile->call,
@@ -195,7 +197,7 @@ void mcor_write_profile(mcor_context* context, const mcor_statistics* statistics
       mcor_phase_name(row->phase), names[row->command], row->name, (long long)row->count,
       (long long)row->bytes, row->host, row->device);
   }
-  fflush(profile->file);
   profile->rows.count = 0;
   ++profile->call;
+  return mcor_flush_profile(context);
 }

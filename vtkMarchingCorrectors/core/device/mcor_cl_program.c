@@ -13,7 +13,7 @@
 void mcor_drop_programs(mcor_cl* cl, int programs)
 {
   int kept = 0;
-  mcor_end_builder(cl);
+  mcor_end_building(cl);
   for (int i = 0; i < cl->kernel_count; ++i)
   {
     if (1 << cl->kernels[i].program & programs)
@@ -40,7 +40,7 @@ mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_pro
 {
   const mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT];
-  const cl_uint count = (cl_uint)mcor_program_sources(cl, 1 << number, sources);
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, mcor_parts_of(cl, number), sources);
   cl_int error;
   *program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
@@ -68,7 +68,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   }
   const double seconds = mcor_seconds() - begin;
   cl->build_seconds += seconds;
-  MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, "", 0, seconds, 0));
+  MCOR_TRY(mcor_add_to_profile(context, MCOR_COMMAND_BUILD, "", 0, seconds, 0, NULL));
   if (error == CL_SUCCESS)
   {
     cl->programs[number] = program;

@@ -303,14 +303,6 @@ static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_dev
   return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
 }
 
-static cl_int mcor_program_info(
-  cl_program program, cl_program_info what, size_t room, void* to, size_t* needed)
-{
-  return what == CL_PROGRAM_KERNEL_NAMES
-    ? mcor_answer_text(program->program->kernels, room, to, needed)
-    : CL_INVALID_VALUE;
-}
-
 static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* error)
 {
   const size_t length = strlen(name);
@@ -420,7 +412,6 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clCreateProgramWithSource = mcor_make_program,
   .clBuildProgram = mcor_build_program,
   .clReleaseProgram = mcor_release_program,
-  .clGetProgramInfo = mcor_program_info,
   .clCreateKernel = mcor_make_kernel,
   .clReleaseKernel = mcor_release_kernel,
   .clSetKernelArg = mcor_set_argument,

@@ -20,6 +20,7 @@
 #define clEnqueueMapBuffer mcor_clEnqueueMapBuffer
 #define clEnqueueNDRangeKernel mcor_clEnqueueNDRangeKernel
 #define clEnqueueReadBuffer mcor_clEnqueueReadBuffer
+#define clEnqueueReadBufferRect mcor_clEnqueueReadBufferRect
 #define clEnqueueUnmapMemObject mcor_clEnqueueUnmapMemObject
 #define clEnqueueWriteBuffer mcor_clEnqueueWriteBuffer
 #define clEnqueueWriteBufferRect mcor_clEnqueueWriteBufferRect
@@ -33,7 +34,6 @@
 #define clGetPlatformIDs mcor_clGetPlatformIDs
 #define clGetPlatformInfo mcor_clGetPlatformInfo
 #define clGetProgramBuildInfo mcor_clGetProgramBuildInfo
-#define clGetProgramInfo mcor_clGetProgramInfo
 #define clReleaseCommandQueue mcor_clReleaseCommandQueue
 #define clReleaseContext mcor_clReleaseContext
 #define clReleaseDevice mcor_clReleaseDevice

@@ -175,10 +175,11 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
   }
 }
 
-/* asked: the context whose progress callback may cancel; NULL: none. */
-static mcor_status mcor_run_loop(mcor_pool* of_device, mcor_context* asked, int64_t count,
-  int64_t grain, mcor_slice_body body, void* data, int* slices)
+/* asks: whether the context's progress callback may cancel. */
+static mcor_status mcor_run_loop(mcor_context* context, bool asks, int64_t count, int64_t grain,
+  mcor_slice_body body, void* data, int* slices)
 {
+  mcor_pool* of_device = context ? context->cl.pool : NULL;
   const int64_t most = count / grain;
   mcor_loop loop = { count,
     most > MCOR_SLICES ? MCOR_SLICES
@@ -187,8 +188,8 @@ static mcor_status mcor_run_loop(mcor_pool* of_device, mcor_context* asked, int6
     body, data };
   const int usable = of_device || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
   mcor_pool own = { .threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS };
-  const mcor_status status = mcor_pool_run(
-    of_device ? of_device : &own, asked, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
+  const mcor_status status = mcor_pool_run(of_device ? of_device : &own, asks ? context : NULL, 0,
+    (size_t)loop.slices, 1, mcor_run_slices, &loop);
   mcor_end_pool(&own);
   if (slices)
   {
@@ -200,14 +201,13 @@ static mcor_status mcor_run_loop(mcor_pool* of_device, mcor_context* asked, int6
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices)
 {
-  return mcor_run_loop(
-    context ? context->cl.pool : NULL, context, count, grain, body, data, slices);
+  return mcor_run_loop(context, true, count, grain, body, data, slices);
 }
 
 int mcor_parallel_for(
   mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data)
 {
   int slices;
-  mcor_run_loop(context ? context->cl.pool : NULL, NULL, count, grain, body, data, &slices);
+  mcor_run_loop(context, false, count, grain, body, data, &slices);
   return slices;
 }

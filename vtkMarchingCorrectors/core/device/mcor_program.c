@@ -32,15 +32,28 @@ static const struct
   { "probe_", MCOR_PROGRAM_PROBE }, { "derive_", MCOR_PROGRAM_PROBE },
   { "widen_", MCOR_PROGRAM_PROBE }, { "", MCOR_PROGRAM_GRID } };
 
-mcor_program mcor_program_of(const char* kernel)
+int mcor_parts_of(const mcor_cl* cl, mcor_program program)
+{
+  return !cl->builds_sets           ? 1 << program
+    : program == MCOR_PROGRAM_GRID  ? MCOR_PARTS_LATTICE
+    : program == MCOR_PROGRAM_NODES ? MCOR_PARTS_FIELD
+    : program == MCOR_PROGRAM_PROBE ? MCOR_PARTS_PROBE
+                                    : 0;
+}
+
+mcor_program mcor_program_of(const mcor_cl* cl, const char* kernel)
 {
   const char* name = kernel + strlen("mcor_");
-  int i = 0;
+  int i = 0, program = 0;
   while (strncmp(name, mcor_kernel_programs[i].begin, strlen(mcor_kernel_programs[i].begin)) != 0)
   {
     ++i;
   }
-  return mcor_kernel_programs[i].program;
+  while (!(mcor_parts_of(cl, (mcor_program)program) >> mcor_kernel_programs[i].program & 1))
+  {
+    ++program;
+  }
+  return (mcor_program)program;
 }
 
 int mcor_program_sources(const mcor_cl* cl, int programs, const char* sources[MCOR_SOURCE_LIMIT])

@@ -24,8 +24,11 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
+/* Returns the parts that a program consists of: itself, all parts of its set, or none if its set is
+ * another program. */
+int mcor_parts_of(const mcor_cl* cl, mcor_program program);
 /* Returns the program that has a kernel; the beginning of the kernel's name tells which. */
-mcor_program mcor_program_of(const char* kernel);
+mcor_program mcor_program_of(const mcor_cl* cl, const char* kernel);
 /* Lists the sources of a set of programs, in order; returns their number. */
 int mcor_program_sources(const mcor_cl* cl, int programs, const char* sources[MCOR_SOURCE_LIMIT]);
 /* Names a build for an error sentence: "the SPH kernel sinc6". */

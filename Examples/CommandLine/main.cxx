@@ -8,12 +8,11 @@
 #include "Extra.h"
 #include "Job.h"
 #include "Messages.h"
-#include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Runs.h"
-#include "SafeText.h"
 #include "Sharing.h"
+#include "Text.h"
 
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
@@ -42,21 +41,11 @@ namespace
 bool Make(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  const bool isProjection = job.Has("--project");
-  if (job.IsFilm())
-  {
-    return MakeFilm(sharing);
-  }
-  if (job.Mode() & METER)
-  {
-    return MakeMeterTable(sharing);
-  }
-  if (job.IsPointTable())
-  {
-    return MakePointTable(sharing);
-  }
-  isProjection || job.IsProbe() ? MakeField(sharing) : MakeSurface(sharing);
-  return true;
+  return job.IsFilm()      ? MakeFilm(sharing)
+    : job.Mode() & METER   ? MakeMeterTable(sharing)
+    : job.IsPointTable()   ? MakePointTable(sharing)
+    : job.Mode() & SURFACE ? MakeSurface(sharing)
+                           : MakeField(sharing);
 }
 
 /// Returns the number of characters in a line of standard output.
@@ -81,8 +70,8 @@ bool Execute(int argc, char* argv[])
 {
   Job job;
   ParseCommandLine(argc, argv, job);
-  const bool isQuestion =
-    job.Has("--help") || job.Has("--version") || job.Has("--list-devices") || job.ListArrays;
+  const bool isQuestion = job.Has("--help") || job.Has("--version") || job.Has("--list-devices") ||
+    job.Has("--list-arrays");
   if (isQuestion && LaunchedRank() > 0)
   {
     return true;
@@ -101,7 +90,7 @@ bool Execute(int argc, char* argv[])
   const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
   Messages(); // keeps VTK's messages from here on
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  if (job.ListArrays)
+  if (job.Has("--list-arrays"))
   {
     std::cout << DescribeArrays(*ReadParticles({ job.Inputs.front() }));
     return true;
@@ -109,11 +98,8 @@ bool Execute(int argc, char* argv[])
   if (job.Has("--list-devices"))
   {
     const std::string devices = vtkMarchingCorrectors::ListDevices();
-    if (devices.empty())
-    {
-      throw std::runtime_error("there is no OpenCL device; a CPU becomes one with PoCL (Debian: "
-                               "pocl-opencl-icd)");
-    }
+    Require(!devices.empty(),
+      "there is no OpenCL device; a CPU becomes one with PoCL (Debian: pocl-opencl-icd)");
     std::istringstream lines(devices);
     for (std::string line; std::getline(lines, line);)
     {
@@ -131,12 +117,9 @@ bool Execute(int argc, char* argv[])
         session->OnAll(
           [&job]
           {
-            if (!job.Picture.File.empty() || job.Repeat > 1)
-            {
-              throw std::runtime_error("several processes share a surface, a film, a probe, a "
-                                       "projection, gauges or fluxes, but no --screenshot or "
-                                       "--repeat; run these without mpirun");
-            }
+            Require(job.Picture.File.empty() && job.Repeat == 1,
+              "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
+              "but no --screenshot or --repeat; run these without mpirun");
           });
         isGood = Make(*session);
       });
@@ -152,7 +135,7 @@ bool Execute(int argc, char* argv[])
 
 }
 
-void MakeSurface(Sharing& sharing)
+bool MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
   std::vector<std::string> outputs; // this process's files; on the first process, all files
@@ -166,7 +149,8 @@ void MakeSurface(Sharing& sharing)
   if (sharing.IsFirst())
   {
     outputs.insert(outputs.end(),
-      { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
+      { job.Output, job.Text("--stats"), job.Text("--components"), job.Picture.File,
+        job.Text("--widening") });
   }
   sharing.OnAll(
     [&]
@@ -188,16 +172,15 @@ void MakeSurface(Sharing& sharing)
     sharing.OnAll([&] { AddPieces(pieces, sharing, run, particles); });
     runs.emplace_back(run.Statistics);
     wallSeconds.push_back(run.WallSeconds);
-    if (!job.Quiet && sharing.IsFirst())
+    if (!job.Has("--quiet") && sharing.IsFirst())
     {
-      std::cout << (i == 0 ? DescribeRun(runs.back(), job.Verbose) : "")
-                << DescribeSeconds(runs.back(), job.Verbose) << std::flush;
+      std::cout << (i == 0 ? DescribeRun(runs.back(), job.Has("--verbose")) : "")
+                << DescribeSeconds(runs.back(), job.Has("--verbose")) << std::flush;
     }
   }
   const double peakResidentBytes = PeakResidentBytes();
   const bool isInPieces = IsInPieces(job.Output);
-  const vtkSmartPointer<vtkPolyData> part = run.Surface;
-  run.Surface = isInPieces ? part : sharing.Merge(part);
+  run.Surface = isInPieces ? run.Surface : sharing.Merge(run.Surface);
   ColorScale colors(job.Picture);
   OutputFiles files;
   sharing.OnAll(
@@ -206,7 +189,7 @@ void MakeSurface(Sharing& sharing)
       if (isInPieces)
       {
         const std::string piece = PieceName(job.Output, sharing.GetRank());
-        files.Write(piece, SurfaceBytes(piece, part, colors));
+        files.Write(piece, SurfaceBytes(piece, run.Surface, colors));
       }
       if (!sharing.IsFirst())
       {
@@ -221,37 +204,29 @@ void MakeSurface(Sharing& sharing)
         Say("warning: " + warning);
       }
       files.Write(job.Output,
-        isInPieces ? ListPieces(job.Output, sharing.GetCount(), part)
+        isInPieces ? ListPieces(job.Output, sharing.GetCount(), run.Surface)
                    : SurfaceBytes(job.Output, run.Surface, colors));
-      if (!job.ComponentFile.empty())
+      if (job.Has("--components"))
       {
-        files.Write(job.ComponentFile, pieces);
+        files.Write(job.Text("--components"), pieces);
       }
     });
   sharing.OnAll([&] { files.Commit(); }); // only if all processes have written all files
-  if (!job.WideningFile.empty())
+  if (job.Has("--widening"))
   {
-    auto widened = vtkSmartPointer<vtkPolyData>::New();
-    sharing.OnAll(
-      [&]
-      {
-        Messages() = {};
-        if (!job.Surface->Widen(vtkPointSet::SafeDownCast(job.Surface->GetInput()), widened))
-        {
-          Messages().Check();
-          throw std::runtime_error("the factors could not be found");
-        }
-      });
+    vtkSmartPointer<vtkPolyData> widened;
+    const vtkSmartPointer<vtkPointSet> used = vtkPointSet::SafeDownCast(job.Surface->GetInput());
+    sharing.OnAll([&] { widened = Widen(job, used); });
     widened = sharing.Append(widened);
-    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened); });
+    sharing.OnFirst([&] { WriteDataSet(job.Text("--widening"), widened); });
   }
   sharing.OnFirst(
     [&]
     {
-      if (!job.StatisticsFile.empty())
+      if (job.Has("--stats"))
       {
         std::cout.flush(); // the file may be /dev/stdout
-        WriteOutput(job.StatisticsFile,
+        WriteOutput(job.Text("--stats"),
           StatisticsAsJson(job, runs, wallSeconds, run.Warnings, peakResidentBytes));
       }
       if (!job.Picture.File.empty())
@@ -261,6 +236,7 @@ void MakeSurface(Sharing& sharing)
           DrawSurface(sharing, job.Picture.File, run.Surface, particles, *picture, colors));
       }
     });
+  return true;
 }
 
 const Extra& LoadExtra()
@@ -268,13 +244,10 @@ const Extra& LoadExtra()
   // A name without a folder is searched for in the folder of this program's other libraries.
   static void* const library = dlopen(MCOR_EXTRA_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
   static const void* const extra = library ? dlsym(library, "MarchingCorrectorsExtra") : nullptr;
-  if (!extra)
-  {
-    const char* why = dlerror();
-    throw std::runtime_error("the part of this program for pictures, .vtkhdf, .stl, .ply and .obj "
-                             "files cannot be loaded (" +
+  const char* why = extra ? nullptr : dlerror();
+  Require(extra,
+    "the part of this program for pictures, .vtkhdf, .stl, .ply and .obj files cannot be loaded (" +
       std::string(why ? why : MCOR_EXTRA_LIBRARY) + "); install it again");
-  }
   return *static_cast<const Extra*>(extra);
 }
 
@@ -304,10 +277,7 @@ int main(int argc, char* argv[])
         throw std::runtime_error(std::string(error.what()) + " (see --help)");
       }
       std::cout.flush();
-      if (!std::cout && !IsReaderGone())
-      {
-        throw std::runtime_error("standard output could not be written");
-      }
+      Require(std::cout || IsReaderGone(), "standard output could not be written");
     });
   // The first process reports wrong usage; the others are silent, and do not fail: a failure could
   // end the first process before it has reported.

@@ -175,6 +175,21 @@ class Plane(CommandLineTest):
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
 
+    def test_obj(self):
+        """The lines of an .obj file lead through the points that the table has in their order."""
+        files_of = {ending: self.directory / f"lines{ending}" for ending in (".csv", ".obj")}
+        for file in files_of.values():
+            self.run_good(self.input, file, "--free-surface", "--no-attributes", "--quiet")
+        words = [line.split() for line in files_of[".obj"].read_text().splitlines()]
+        points = [tuple(map(float, row[1:])) for row in words if row[0] == "v"]
+        found = [(i, *points[int(number) - 1]) for i, row in enumerate(row[1:] for row in words if row[0] == "l") for number in row]
+        rows = [(int(row["Line"]), *(float(row[axis]) for axis in "XYZ")) for row in read_table(files_of[".csv"])]
+        self.assertGreater(len(rows), 50)
+        self.assertEqual(len(found), len(rows))
+        for a, b in zip(found, rows):
+            for x, y in zip(a, b):
+                self.assertAlmostEqual(x, y, delta=1e-6)
+
     def test_particle_distance(self):
         """DualSPHysics' smoothing length depends on the number of dimensions."""
         del self.arrays["SmoothingLength"]

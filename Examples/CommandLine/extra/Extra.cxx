@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Extra.h"
 
-#include "FileName.h"
+#include "Text.h"
 
 #include "vtkNew.h"
 #include "vtkOBJReader.h"

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Extra.h"
 
-#include "SafeText.h"
+#include "Formats.h"
+#include "Text.h"
 
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkHDFReader.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTypeInt64Array.h"
 
@@ -80,14 +80,10 @@ void RefuseLinks(const std::string& file)
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   std::string found;
-  if (opened >= 0 && H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, &found) < 0)
-  {
-    found = "its groups cannot be listed; it may be damaged";
-  }
-  if (!found.empty())
-  {
-    FailToRead(file, found);
-  }
+  const bool isListed =
+    opened < 0 || H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, &found) >= 0;
+  RequireToRead(isListed, file, "its groups cannot be listed; it may be damaged");
+  RequireToRead(found.empty(), file, found);
 }
 
 struct Kind
@@ -127,7 +123,7 @@ public:
   {
   }
 
-  [[noreturn]] void Fail(const std::string& why) const { FailToRead(this->Name, why); }
+  void Check(bool isGood, const std::string& why) const { RequireToRead(isGood, this->Name, why); }
 
   bool IsGood() const { return this->Root >= 0; }
 
@@ -158,10 +154,7 @@ public:
     const std::string& name, long long first = 0, long long count = -1) const
   {
     const Handle data(this->Has(name) ? H5Dopen2(this->Root, name.c_str(), H5P_DEFAULT) : -1);
-    if (data < 0)
-    {
-      this->Fail("it has no data set '" + name + "'");
-    }
+    this->Check(data >= 0, "it has no data set '" + name + "'");
     const Kind kind = KindOf(data);
     const Handle space(H5Dget_space(data));
     hsize_t extent[2] = { 0, 1 };
@@ -173,29 +166,24 @@ public:
     }
     const auto rows = static_cast<long long>(extent[0]);
     const long long wanted = count < 0 ? rows : count;
-    if (first < 0 || wanted > rows || first > rows - wanted)
-    {
-      this->Fail("'" + name + "' has " + std::to_string(rows) + " values, not " +
-        std::to_string(wanted) + " from " + std::to_string(first) + " on");
-    }
+    this->Check(first >= 0 && wanted <= rows && first <= rows - wanted,
+      "'" + name + "' has " + std::to_string(rows) + " values, not " + std::to_string(wanted) +
+        " from " + std::to_string(first) + " on");
     // Chunks that were never written cost nothing in a file.
     const auto size = static_cast<double>(std::filesystem::file_size(this->Name));
-    if (static_cast<double>(wanted) * static_cast<double>(extent[1]) * 8 > 16e6 + 1000 * size)
-    {
-      this->Fail("'" + name + "' is larger than the file can hold; it may be damaged");
-    }
+    this->Check(
+      static_cast<double>(wanted) * static_cast<double>(extent[1]) * 8 <= 16e6 + 1000 * size,
+      "'" + name + "' is larger than the file can hold; it may be damaged");
     auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind.Vtk));
     array->SetNumberOfComponents(static_cast<int>(extent[1]));
     array->SetNumberOfTuples(wanted);
     const hsize_t start[2] = { static_cast<hsize_t>(first), 0 },
                   part[2] = { static_cast<hsize_t>(wanted), extent[1] };
     const Handle memory(H5Screate_simple(rank, part, nullptr));
-    if (wanted > 0 &&
-      (H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, part, nullptr) < 0 ||
-        H5Dread(data, kind.Hdf, memory, space, H5P_DEFAULT, array->GetVoidPointer(0)) < 0))
-    {
-      this->Fail("'" + name + "' is damaged");
-    }
+    this->Check(wanted == 0 ||
+        (H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, part, nullptr) >= 0 &&
+          H5Dread(data, kind.Hdf, memory, space, H5P_DEFAULT, array->GetVoidPointer(0)) >= 0),
+      "'" + name + "' is damaged");
     return array;
   }
 
@@ -206,10 +194,8 @@ public:
     const vtkSmartPointer<vtkDataArray> read = this->Read(name);
     const bool isWhole =
       read && read->GetDataType() != VTK_FLOAT && read->GetDataType() != VTK_DOUBLE;
-    if (!isWhole && !std::is_floating_point<typename ArrayT::ValueType>::value)
-    {
-      this->Fail("'" + name + "' does not hold whole numbers");
-    }
+    this->Check(isWhole || std::is_floating_point<typename ArrayT::ValueType>::value,
+      "'" + name + "' does not hold whole numbers");
     vtkNew<ArrayT> values;
     values->DeepCopy(read);
     return { values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues() };
@@ -257,19 +243,12 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   const HdfFile file(name);
   const std::string type = file.IsGood() ? file.Type() : "";
   const bool hasSteps = file.IsGood() && file.Has("Steps");
-  if (step > 0 && !hasSteps)
-  {
-    file.Fail("it has no step " + std::to_string(step));
-  }
-  if ((type != "PolyData" && type != "UnstructuredGrid") ||
-    (type == "UnstructuredGrid" && !hasSteps))
+  file.Check(step == 0 || hasSteps, "it has no step " + std::to_string(step));
+  if (type != "PolyData" && (type != "UnstructuredGrid" || !hasSteps))
   {
     vtkNew<vtkHDFReader> reader; // this reader reads cells, too
     reader->SetFileName(name.c_str());
-    if (!reader->CanReadFile(name.c_str()))
-    {
-      file.Fail("its reader does not know what it holds");
-    }
+    file.Check(reader->CanReadFile(name.c_str()) != 0, "its reader does not know what it holds");
     reader->Update();
     return reader->GetOutputDataObject(0);
   }
@@ -280,21 +259,16 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
     const auto of = [&file, step](const std::string& list)
     {
       const std::vector<vtkTypeInt64> numbers = file.Values<vtkTypeInt64Array>(list);
-      if (step >= numbers.size())
-      {
-        file.Fail("it has no step " + std::to_string(step));
-      }
+      file.Check(step < numbers.size(), "it has no step " + std::to_string(step));
       return numbers[step];
     };
     const long long first = of("Steps/PartOffsets");
     const long long count = file.Has("Steps/NumberOfParts") ? of("Steps/NumberOfParts") : 1;
     offset = of("Steps/PointOffsets");
     const auto all = static_cast<long long>(parts.size());
-    if (first < 0 || count < 0 || count > all || first > all - count)
-    {
-      file.Fail("it has no parts " + std::to_string(first) + " to " +
-        std::to_string(first + count) + " of step " + std::to_string(step));
-    }
+    file.Check(first >= 0 && count >= 0 && count <= all && first <= all - count,
+      "it has no parts " + std::to_string(first) + " to " + std::to_string(first + count) +
+        " of step " + std::to_string(step));
     parts = { parts.begin() + first, parts.begin() + first + count };
   }
   long long total = 0;
@@ -303,20 +277,13 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
     total = count < 0 || total > VTK_INT_MAX ? VTK_INT_MAX : total + count;
   }
   const vtkSmartPointer<vtkDataArray> places = file.Read("Points", offset, total);
-  if (!places || places->GetNumberOfComponents() != 3)
-  {
-    file.Fail("its 'Points' are no positions");
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetData(places);
-  data->SetPoints(points);
+  file.Check(places && places->GetNumberOfComponents() == 3, "its 'Points' are no positions");
+  const vtkSmartPointer<vtkPolyData> data = PointsAt(places);
   for (const std::string& array : file.Names("PointData"))
   {
     const std::string own = "Steps/PointDataOffsets/" + array;
-    const long long begin = hasSteps && file.Has("Steps/PointDataOffsets") && file.Has(own)
-      ? file.Values<vtkTypeInt64Array>(own).at(step)
-      : offset;
+    const long long begin =
+      hasSteps && file.Has(own) ? file.Values<vtkTypeInt64Array>(own).at(step) : offset;
     if (const vtkSmartPointer<vtkDataArray> values = file.Read("PointData/" + array, begin, total))
     {
       values->SetName(array.c_str());

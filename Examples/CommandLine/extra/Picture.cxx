@@ -6,13 +6,14 @@
 #include "Ending.h"
 #include "Job.h"
 #include "Messages.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataSetMapper.h"
 #include "vtkFieldData.h"
 #include "vtkLightKit.h"
@@ -58,11 +59,9 @@ std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)
   {
     return nullptr;
   }
-  if (void* display = open(nullptr))
-  {
-    return { display, close };
-  }
-  FailToWrite(file, "rendering needs a display; try xvfb-run -a -s -noreset");
+  void* const display = open(nullptr);
+  RequireToWrite(display, file, "rendering needs a display; try xvfb-run -a -s -noreset");
+  return { display, close };
 }
 
 const double WidthOfBar = 0.13; ///< the colour bar's share of the picture's width
@@ -226,10 +225,7 @@ public:
                      : ObliqueView(up),
       this->Seen, (this->HasBar ? 1.0 - WidthOfBar : 1.0) * Width / Height);
     std::string bytes = this->Render();
-    if (bytes.empty() || !Messages().Errors.empty())
-    {
-      FailToWrite(file, Messages().Errors.empty() ? "" : Messages().Errors.front());
-    }
+    RequireToWrite(!bytes.empty() && Messages().Errors.empty(), file, Messages().FirstError());
     return bytes;
   }
 
@@ -310,11 +306,8 @@ private:
     {
       return nullptr;
     }
-    std::set<double> begins;
-    for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i)
-    {
-      begins.insert(values->GetComponent(i, 0));
-    }
+    const auto range = vtk::DataArrayValueRange(values);
+    const std::set<double> begins(range.begin(), range.end());
     const auto text = [](double value) { return vtkVariant(value).ToString(); };
     auto steps = vtkSmartPointer<vtkLookupTable>::New();
     steps->SetNumberOfTableValues(static_cast<vtkIdType>(begins.size()));

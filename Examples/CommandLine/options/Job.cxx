@@ -3,13 +3,13 @@
 #include "Job.h"
 
 #include "DataFile.h"
-#include "FileName.h"
-#include "OptionValue.h"
 #include "ParticleFile.h"
 #include "Sharing.h"
+#include "Text.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <sstream>
 
 namespace
@@ -42,17 +42,6 @@ const ModeWords* FindMode(const std::string& word)
   return found == std::end(AllModes) ? nullptr : found;
 }
 
-/// Returns "a, b and c"; `last` is the word before the last item.
-std::string ListOf(const std::vector<std::string>& items, const std::string& last)
-{
-  std::string list;
-  for (std::size_t i = 0; i < items.size(); ++i)
-  {
-    list += (i == 0 ? "" : i + 1 < items.size() ? ", " : " " + last + " ") + items[i];
-  }
-  return list;
-}
-
 /// Returns the modes as "surfaces, films and slices".
 std::string PluralsOf(unsigned modes)
 {
@@ -61,7 +50,7 @@ std::string PluralsOf(unsigned modes)
   {
     plurals.insert(plurals.end(), (modes & mode.Mode) ? 1 : 0, mode.Plural);
   }
-  return ListOf(plurals, "and");
+  return Joined(plurals, ", ", " and ");
 }
 
 /// Two options of which only one can act.
@@ -112,14 +101,11 @@ bool UsesDerived(const Job& j)
   std::vector<std::string> asked = j.AttributeNames;
   asked.insert(asked.end(), { j.Scalar, j.Projection->GetWeightArrayName() });
   const bool areAll = (j.Mode() & (CONTOUR | POINTS)) && j.AttributeNames.empty() && !j.Has("--no-attributes");
+  const std::set<std::string> made = { "Gradients", "Divergence", "Vorticity", "Q-criterion",
+    "Lambda2", "StrainRate" };
   return areAll ||
     std::any_of(asked.begin(), asked.end(),
-      [](const std::string& name)
-      {
-        const auto made = { "Gradients", "Divergence", "Vorticity", "Q-criterion", "Lambda2",
-          "StrainRate" };
-        return std::find(made.begin(), made.end(), name) != made.end();
-      });
+      [&made](const std::string& name) { return made.count(name) > 0; });
 }
 
 const std::vector<Rule> Rules = {
@@ -139,11 +125,11 @@ const std::vector<Rule> Rules = {
     "--screenshot writes a .png file, not '{--screenshot}'" },
   { PICTURE, IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
     "a film has a picture of each step: --screenshot frame_%04d.png, not '{--screenshot}'" },
-  { SURFACE, IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
+  { SURFACE, IF(j.Has("--widening") && !EndsWith(j.Text("--widening"), ".vtp")),
     "--widening writes a .vtp file, not '{--widening}'" },
-  { CONTOUR, IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
+  { CONTOUR, IF(j.Has("--components") && !EndsWith(j.Text("--components"), ".csv")),
     "--components writes a .csv file, not '{--components}'" },
-  { FILM, IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
+  { FILM, IF(j.Has("--numbers") && !EndsWith(j.Text("--numbers"), ".csv")),
     "--numbers writes a .csv file, not '{--numbers}'" },
 
   { POINTS,
@@ -165,7 +151,8 @@ const std::vector<Rule> Rules = {
     "--times, --fps and --time-step need a film, whose OUTPUT is a .pvd file or has %04d in its "
     "name" },
   { PROJECT, IF(j.Has("--derive") && !UsesDerived(j)),
-    "--derive needs a --scalar that it makes, such as Divergence or Lambda2; give one, or leave out "
+    "--derive needs a --scalar that it makes, such as Divergence or Lambda2; give one, or leave "
+    "out "
     "--derive" },
   { PROJECT, IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
     "the output of --project is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
@@ -229,56 +216,44 @@ void CheckOption(const Job& job, const Option& option)
 {
   const std::string name = option.Name;
   const unsigned mode = job.Mode();
-  if (!(option.Modes & mode))
-  {
-    const bool isForFilm = mode == SURFACE && (option.Modes & FILM);
-    throw UsageError(name + " is for " + PluralsOf(option.Modes) + ", not for " + PluralsOf(mode) +
+  const bool isForFilm = mode == SURFACE && (option.Modes & FILM);
+  Need((option.Modes & mode) != 0,
+    name + " is for " + PluralsOf(option.Modes) + ", not for " + PluralsOf(mode) +
       "; leave it out" + (isForFilm ? ", or make a film (OUTPUT.pvd)" : ""));
-  }
   const std::vector<std::string> needs = ItemsOf(option.Needs, '|');
   const auto isMet = [&job, mode](const std::string& need)
   {
     const Option* other = FindOption(need);
     return other ? job.Has(other->Name) || !(other->Modes & mode) : IsTo(job, need.c_str());
   };
-  if (!option.Needs.empty() && std::none_of(needs.begin(), needs.end(), isMet))
-  {
-    throw UsageError(name + " needs " + ListOf(needs, "or") + "; add " +
-      (needs.size() > 1 ? "one" : "it") + ", or leave out " + name);
-  }
+  Need(option.Needs.empty() || std::any_of(needs.begin(), needs.end(), isMet),
+    name + " needs " + Joined(needs, ", ", " or ") + "; add " + (needs.size() > 1 ? "one" : "it") +
+      ", or leave out " + name);
 }
 
 /// Refuses a command line that is wrong whatever the input is.
 void Check(const Job& job)
 {
-  if (job.Inputs.empty())
-  {
-    throw UsageError("INPUT or OUTPUT is missing; give both");
-  }
+  Need(!job.Inputs.empty(), "INPUT or OUTPUT is missing; give both");
   for (const std::string& input : job.Inputs)
   {
     for (const char* ending :
       { ".bgeo", ".bi4", ".data", ".gro", ".gz", ".h5", ".h5part", ".hdf5", ".npy", ".npz" })
     {
-      if (EndsWith(input, ending))
-      {
-        throw UsageError(input +
-          " is read by the Python package: 'python -m marchingcorrectors convert " + input +
+      Need(!EndsWith(input, ending),
+        input + " is read by the Python package: 'python -m marchingcorrectors convert " + input +
           " particles.vtp' (particles.pvd, if it has several steps) makes one that is read here");
-      }
     }
   }
-  if (job.ListArrays)
+  if (job.Has("--list-arrays"))
   {
     return;
   }
   const unsigned mode = job.Mode();
   const ModeWords* asked = FindMode(job.Word);
-  if (asked && asked->Mode != mode)
-  {
-    throw UsageError(
-      job.Word + " needs " + asked->Needs + ", but this is a command line for " + PluralsOf(mode));
-  }
+  Need(!asked || asked->Mode == mode,
+    job.Word + " needs " + (asked ? asked->Needs : "") + ", but this is a command line for " +
+      PluralsOf(mode));
   for (const Option& option : AllOptions())
   {
     if (job.Has(option.Name))
@@ -288,19 +263,15 @@ void Check(const Job& job)
   }
   for (const Exclusion& pair : Exclusions)
   {
-    if (job.Has(pair.First) && job.Has(pair.Second))
-    {
-      throw UsageError(std::string(pair.First) + " and " + pair.Second +
-        " exclude each other: " + pair.Why + "; leave out one of them");
-    }
+    Need(!job.Has(pair.First) || !job.Has(pair.Second),
+      std::string(pair.First) + " and " + pair.Second + " exclude each other: " + pair.Why +
+        "; leave out one of them");
   }
   for (const std::string& walls : job.Walls)
   {
-    if (!(mode & METER) && !job.IsFilm() && (IsListOfSteps(walls) || HasStepNumber(walls)))
-    {
-      throw UsageError("--walls " + walls +
+    Need((mode & METER) || job.IsFilm() || !(IsListOfSteps(walls) || HasStepNumber(walls)),
+      "--walls " + walls +
         " has walls for each step, which only films, gauges and fluxes can use; give one file");
-    }
   }
   for (const Rule& rule : Rules)
   {
@@ -333,14 +304,8 @@ void TakeOption(const char* const*& next, const char* const* end, Job& job)
     throw UsageError("unknown option " + name + NearestOf(name, names));
   }
   const bool takesValue = option->Argument[0] != '\0';
-  if (isJoined && !takesValue)
-  {
-    throw UsageError(name + " takes no value");
-  }
-  if (takesValue && job.Has(option->Name) && !option->Repeats)
-  {
-    throw UsageError(name + " is given twice");
-  }
+  Need(takesValue || !isJoined, name + " takes no value");
+  Need(!takesValue || !job.Has(option->Name) || option->Repeats, name + " is given twice");
   if (takesValue && !isJoined && next < end)
   {
     // Words that begin with a dash are options, unless they are numbers (-1, -.5, -1,2, -inf) or
@@ -352,10 +317,7 @@ void TakeOption(const char* const*& next, const char* const* end, Job& job)
     next += isOption ? 0 : 1;
     value = isOption ? "" : word;
   }
-  if (takesValue && value.empty())
-  {
-    throw UsageError(name + " needs " + option->Argument);
-  }
+  Need(!takesValue || !value.empty(), name + " needs " + option->Argument);
   job.Given[option->Name] = value;
   option->Set(job, name, value);
 }
@@ -366,7 +328,8 @@ std::vector<std::string> Job::InputFiles() const
 {
   std::vector<std::string> files = this->Inputs;
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
-  files.insert(files.end(), { this->ProbeFile, this->GaugeFile, this->FluxFile });
+  files.insert(
+    files.end(), { this->Text("--probe"), this->Text("--gauges"), this->Text("--fluxes") });
   for (const Place& section : this->Fluxes)
   {
     files.push_back(section.File);
@@ -378,14 +341,14 @@ unsigned Job::Mode() const
 {
   const bool hasSteps = this->Inputs.size() > 1 || IsOfSteps(*this) ||
     (!this->Inputs.empty() && IsListOfSteps(this->Inputs.front()));
-  return this->Has("--project")                                     ? PROJECT
-    : this->IsFlux()                                                ? FLUX
-    : this->HasGauges() && (this->NumbersFile.empty() || !hasSteps) ? GAUGE
-    : !this->ProbeFile.empty()                                      ? PROBE
-    : this->Slice.Axis >= 0                                         ? SLICE
-    : !this->Slice.Line.empty()                                     ? LINE
-    : hasSteps                                                      ? FILM
-                                                                    : SURFACE;
+  return this->Has("--project")                                  ? PROJECT
+    : this->IsFlux()                                             ? FLUX
+    : this->HasGauges() && !(this->Has("--numbers") && hasSteps) ? GAUGE
+    : this->Has("--probe")                                       ? PROBE
+    : this->Has("--slice")                                       ? SLICE
+    : this->Has("--line")                                        ? LINE
+    : hasSteps                                                   ? FILM
+                                                                 : SURFACE;
 }
 
 bool Job::IsFilm() const
@@ -409,7 +372,7 @@ std::string WordOf(const std::string& member)
 
 bool Job::IsPointTable() const
 {
-  return !this->ProbeFile.empty() && EndsWith(this->Output, ".csv");
+  return this->Has("--probe") && EndsWith(this->Output, ".csv");
 }
 
 std::string CommandLineHelp(const std::string& word, std::size_t width)
@@ -420,10 +383,8 @@ std::string CommandLineHelp(const std::string& word, std::size_t width)
   {
     words.emplace_back(each.Word);
   }
-  if (!mode && !word.empty() && word != "all")
-  {
-    throw UsageError("there is no help on '" + word + "', but on " + ListOf(words, "and"));
-  }
+  Need(mode || word.empty() || word == "all",
+    "there is no help on '" + word + "', but on " + Joined(words, ", ", " and "));
   std::ostringstream help;
   const auto add = [&help, width](std::string left, const std::string& text)
   {
@@ -445,7 +406,7 @@ std::string CommandLineHelp(const std::string& word, std::size_t width)
   };
   help << "usage: marching-correctors [MODE] INPUT... OUTPUT [options]\n\n";
   add("",
-    "MODE is " + ListOf({ words.begin() + 1, words.end() }, "or") +
+    "MODE is " + Joined({ words.begin() + 1, words.end() }, ", ", " or ") +
       ", and may be left out, as the options tell it. INPUT is a " + ParticleFileEndings() +
       " file, OUTPUT a " + SurfaceFileEndings() +
       " file. OUTPUT.pvd makes a film: one surface per step, OUTPUT_0000.vtp and so on, at the "
@@ -516,19 +477,14 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
     {
       TakeOption(next, end, job);
     }
-    else if (word.empty() || word == "-")
-    {
-      throw UsageError("'" + word + "' is not the name of a file");
-    }
     else
     {
+      Need(!word.empty() && word != "-", "'" + word + "' is not the name of a file");
       files.push_back(word);
     }
   }
-  if (job.ListArrays && (argc > 3 || !files.empty()))
-  {
-    throw UsageError("--list-arrays FILE stands alone; leave out the rest");
-  }
+  Need(!job.Has("--list-arrays") || (argc <= 3 && files.empty()),
+    "--list-arrays FILE stands alone; leave out the rest");
   if (job.Has("--help"))
   {
     job.Word = files.empty() ? job.Word : files.front();

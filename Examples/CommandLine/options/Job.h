@@ -60,18 +60,11 @@ struct SliceOptions
 /// A place to measure at: the line of a gauge, or a section that fluid flows through.
 struct Place
 {
-  enum Kind
-  {
-    Line,      ///< two points
-    Rectangle, ///< a corner, and the ends of two edges
-    Disc,      ///< centre, normal, radius
-    Box,       ///< bounds
-    Surface    ///< name of a file
-  };
   std::string Name;
-  Kind Shape = Surface;
   std::vector<double> Numbers;
-  std::string File;
+  std::string File; ///< a section's triangles; empty: the numbers tell the section
+  /// Adds the section to the filter.
+  void (*Add)(vtkSPHFlux* flux, const char* name, const double* numbers) = nullptr;
 };
 
 /// Many upright gauges, over a rectangle.
@@ -102,14 +95,14 @@ struct Job
   }
   bool IsProbe() const
   {
-    return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
+    return this->Has("--probe") || this->Has("--slice") || this->Has("--line");
   }
   /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
-  bool IsFlux() const { return !this->Fluxes.empty() || !this->FluxFile.empty(); }
+  bool IsFlux() const { return this->Has("--flux") || this->Has("--fluxes"); }
   bool HasGauges() const
   {
-    return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
+    return this->Has("--gauge") || this->Has("--gauges") || this->Has("--gauge-grid");
   }
   /// Lists all files that the run reads, but not the files that these list.
   std::vector<std::string> InputFiles() const;
@@ -118,10 +111,13 @@ struct Job
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
-  /// The options that were given, with the text behind each, except options that only repeat a
-  /// default.
+  /// The options that were given, with the text behind each. Text() returns "" if there is none.
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
+  std::string Text(const char* option) const
+  {
+    return this->Has(option) ? this->Given.at(option) : "";
+  }
 
   std::string Word; ///< the mode in front of the files, or behind --help; empty: none
   std::vector<std::string> Inputs;
@@ -133,16 +129,12 @@ struct Job
   double SlowMotion = 1.0;      ///< how many times slower a film is than the simulation
   bool HasTimes() const { return !this->Times.empty() || this->FramesPerSecond > 0.0; }
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
-  std::string IdArray;   ///< array by which particles are matched between steps; empty: found
-  std::string ProbeFile;
   SliceOptions Slice;
   std::vector<Place> Gauges;
-  std::string GaugeFile; ///< file of further gauges
   GaugeGrid Grid;        ///< if it is given, there are no other gauges
   std::vector<Place> Fluxes;
-  std::string FluxFile; ///< file of further sections
-  std::string Derive;   ///< the array to derive: its gradient, and what follows from it, is
-                        ///< computed for the particles
+  std::string Derive; ///< the array to derive: its gradient, and what follows from it, is
+                      ///< computed for the particles
 
   std::string Scalar;
   /// A quantity is an array name or one value for all particles. If the input has an array "2", the
@@ -158,18 +150,11 @@ struct Job
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
   std::vector<std::string> AttributeNames; ///< names of arrays to carry; empty: all
 
-  std::string NumbersFile;   ///< file of the table of a film's numbers; empty: none
-  std::string ComponentFile; ///< file of the table of the surface's pieces; empty: none
-  double LeastVolume = 0.0;  ///< least volume of a piece
-  int LeastParticles = 0;    ///< least number of particles in a piece
+  double LeastVolume = 0.0; ///< least volume of a piece
+  int LeastParticles = 0;   ///< least number of particles in a piece
 
-  std::string StatisticsFile;
-  std::string WideningFile; ///< file of the particles with their factors; empty: none
   PictureOptions Picture;
   int Repeat = 1;
-  bool Quiet = false;
-  bool Verbose = false;
-  bool ListArrays = false; ///< whether to list the arrays of the only input
 };
 
 struct Option
@@ -201,7 +186,7 @@ Place ToFlux(const std::string& option, const std::string& text);
 std::vector<Place> ListGauges(const Job& job);
 std::vector<Place> ListSections(const Job& job);
 
-/// Reads the command line into the job. Throws UsageError, see OptionValue.h.
+/// Reads the command line into the job. Throws UsageError, see Text.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);
 
 /// Returns the text of --help WORD in lines of this width. The word is empty, "all", or a mode's.

@@ -4,17 +4,14 @@
 // Reads the values of options, and makes the list of all options from Options.def.
 #include "Job.h"
 
-#include "OptionValue.h"
 #include "ParticleFile.h"
-#include "SafeText.h"
+#include "Text.h"
 #include "mcor.h"
 
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -53,26 +50,21 @@ void AddOnly(Job& job, Text option, Text text)
 {
   const std::size_t equals = NameEnd(option, text, "NAME=VALUE or NAME=LOW:HIGH");
   const std::size_t colon = text.find(':', equals);
-  const std::string name = Printable(text.substr(0, equals));
-  double value = 0.0;
-  const std::string word = text.substr(equals + 1);
-  if (colon == std::string::npos && !ParseNumber(word, value) && word != "inf" && word != "-inf")
+  const std::string name = Printable(text.substr(0, equals)), word = text.substr(equals + 1);
+  double low = 0.0, high = 0.0;
+  if (colon == std::string::npos && !ParseNumber(word, low) && word != "inf" && word != "-inf")
   {
     Need(!word.empty(), option, "NAME=VALUE, NAME=LOW:HIGH or NAME=WORD", text);
     std::vector<std::string>& words = ChosenWords()[name];
     words.push_back(word);
-    const auto place = static_cast<double>(words.size());
-    SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), place, place);
-    return;
+    low = high = static_cast<double>(words.size());
   }
-  const auto toLimit = [&option](const std::string& number)
+  else
   {
-    const double infinity = std::numeric_limits<double>::infinity();
-    return number == "inf" ? infinity : number == "-inf" ? -infinity : ToNumber(option, number);
-  };
-  const double low = toLimit(text.substr(equals + 1, colon - equals - 1));
-  const double high = colon == std::string::npos ? low : toLimit(text.substr(colon + 1));
-  Need(low <= high, option, "the lower value first", text);
+    low = ToLimit(option, text.substr(equals + 1, colon - equals - 1));
+    high = colon == std::string::npos ? low : ToLimit(option, text.substr(colon + 1));
+    Need(low <= high, option, "the lower value first", text);
+  }
   SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
 }
 
@@ -93,10 +85,7 @@ std::vector<double> ToTimes(Text option, Text text)
       Need(count >= 0.0 && count < 1e6, option, "a range with 1 to 1,000,000 times", text);
       for (double i = 1.0; i <= count; ++i)
       {
-        char digits[32];
-        // 3 * 0.05 must be 0.15
-        std::snprintf(digits, sizeof(digits), "%.15g", begin + i * step);
-        times.insert(std::strtod(digits, nullptr));
+        times.insert(Rounded(begin + i * step));
       }
     }
   }
@@ -200,24 +189,22 @@ Choices ListKernels()
 
 std::string DescribeKernels()
 {
-  std::string text;
-  for (const auto& kernel : ListKernels())
+  std::vector<std::string> names;
+  for (const auto& [name, number] : ListKernels())
   {
-    text +=
-      text.empty() ? kernel.first + std::string(" (default)") : ", " + std::string(kernel.first);
+    names.push_back(name + std::string(number == 0 ? " (default)" : ""));
   }
-  return text;
+  return Joined(names);
 }
 
 void SetProjection(Job& job, Text option, Text text)
 {
-  static const std::map<std::string, std::string> axes = { { "x", "1,0,0" }, { "y", "0,1,0" },
-    { "z", "0,0,1" } };
-  const auto axis = axes.find(text);
-  Need(axis != axes.end() || text.find(',') != std::string::npos, option,
+  const std::size_t axis = text.size() == 1 ? std::string("xyz").find(text) : std::string::npos;
+  Need(axis != std::string::npos || text.find(',') != std::string::npos, option,
     "an axis, x, y or z, or a direction X,Y,Z", text);
+  const std::string axes[] = { "1,0,0", "0,1,0", "0,0,1" };
   job.Projection->SetDirection(
-    ToDirection(option, axis == axes.end() ? text : axis->second).data());
+    ToDirection(option, axis == std::string::npos ? text : axes[axis]).data());
 }
 
 void SetBoundary(Job& job, Text option, Text text)

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Job.h"
 
-#include "FileName.h"
 #include "Formats.h"
-#include "OptionValue.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include <algorithm>
 #include <fstream>
@@ -20,74 +18,59 @@ const char* const GaugeForm = "NAME=X,Y,Z:X,Y,Z";
 const char* const FluxForm = "NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:X,Y,Z:NX,NY,NZ:R, "
                              "NAME=box:X0,X1,Y0,Y1,Z0,Z1 or NAME=FILE";
 
-/// Appends the numbers of a text like X,Y,Z:X,Y,Z. Returns false unless each part has `count`
-/// numbers.
-bool ParsePlaces(Text text, const std::vector<std::size_t>& counts, std::vector<double>& numbers)
+/// Returns the numbers of a text like X,Y,Z:X,Y,Z; none unless each part has as many as `counts` says.
+std::vector<double> ParsePlaces(Text text, const std::vector<std::size_t>& counts)
 {
+  std::vector<double> numbers;
   const std::vector<std::string> parts = ItemsOf(text, ':');
   bool isGood = parts.size() == counts.size();
   for (std::size_t p = 0; isGood && p < parts.size(); ++p)
   {
-    const std::vector<std::string> items = ItemsOf(parts[p], ',');
-    isGood = items.size() == counts[p];
-    for (std::size_t i = 0; isGood && i < items.size(); ++i)
-    {
-      isGood = ParseNumber(items[i], numbers.emplace_back());
-    }
+    const std::vector<std::string> items = ItemsOf(parts[p]);
+    isGood = items.size() == counts[p] &&
+      std::all_of(items.begin(), items.end(),
+        [&numbers](Text item) { return ParseNumber(item, numbers.emplace_back()); });
   }
-  return isGood;
+  return isGood ? numbers : std::vector<double>();
 }
 
 /// Returns the name of a table's row. noun: the thing that has the name.
 std::string ToRowName(Text option, Text noun, Text text)
 {
   const std::string name = Printable(text);
-  if (std::string("=+-@").find(name[0]) != std::string::npos)
-  {
-    throw UsageError(option + ": the name of " + noun + " '" + name + "' begins with '" + name[0] +
+  Need(std::string("=+-@").find(name[0]) == std::string::npos,
+    option + ": the name of " + noun + " '" + name + "' begins with '" + name[0] +
       "', so that spreadsheets would take it for a formula; begin it with a letter");
-  }
   return name;
 }
 
-/// Adds the places of a file: one for each line that is not empty and does not begin with #.
-void AddOfFile(Text option, Text file, Text nouns, Text form,
-  Place (*parse)(Text option, Text text), std::vector<Place>& places)
+/// Returns the places, followed by those of the option's file, if it is given: one for each line that
+/// is not empty and does not begin with #.
+std::vector<Place> WithFile(std::vector<Place> places, const Job& job, const char* option,
+  Text nouns, Text form, Place (*parse)(Text option, Text text))
 {
-  CheckRegularFile(file); // /dev/zero and some pipes never end, so reading stops here
-  std::ifstream source(file, std::ios::binary);
-  const std::size_t before = places.size();
-  for (std::string line; std::getline(source, line);)
+  if (job.Has(option))
   {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first != std::string::npos && line[first] != '#')
+    const std::string file = job.Text(option), origin = option + (" " + file);
+    CheckRegularFile(file); // /dev/zero and some pipes never end, so reading stops here
+    std::ifstream source(file, std::ios::binary);
+    const std::size_t before = places.size();
+    for (std::string line; std::getline(source, line);)
     {
-      const std::size_t last = line.find_last_not_of(" \t\r");
-      places.push_back(parse(option + " " + file, line.substr(first, last + 1 - first)));
+      const std::size_t first = line.find_first_not_of(" \t\r");
+      if (first != std::string::npos && line[first] != '#')
+      {
+        const std::size_t last = line.find_last_not_of(" \t\r");
+        places.push_back(parse(origin, line.substr(first, last + 1 - first)));
+      }
     }
-  }
-  if (places.size() == before)
-  {
-    throw UsageError(option + " " + file + " has no " + nouns + "; it needs lines " + form);
-  }
-}
-
-/// Returns the places, followed by a file's places, if there is a file.
-std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
-  Text form, Place (*parse)(Text option, Text text))
-{
-  if (!file.empty())
-  {
-    AddOfFile(option, file, nouns, form, parse, places);
+    Need(places.size() > before, origin + " has no " + nouns + "; it needs lines " + form);
   }
   std::set<std::string> known;
   for (const Place& place : places)
   {
-    if (!known.insert(place.Name).second)
-    {
-      throw UsageError(
-        "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
-    }
+    Need(known.insert(place.Name).second,
+      "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
   }
   return places;
 }
@@ -96,27 +79,23 @@ std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, T
 
 Place ToGauge(Text option, Text text)
 {
-  const std::size_t equals = text.rfind('=');
-  Place gauge;
-  std::vector<double>& ends = gauge.Numbers;
-  Need(equals != std::string::npos && equals > 0 &&
-      ParsePlaces(text.substr(equals + 1), { 3, 3 }, ends),
-    option, std::string("a name and two places, ") + GaugeForm, text);
-  gauge.Shape = Place::Line;
-  gauge.Name = ToRowName(option, "gauge", text.substr(0, equals));
-  if (std::equal(ends.begin(), ends.begin() + 3, ends.begin() + 3))
-  {
-    throw UsageError(option + ": gauge '" + gauge.Name +
+  const std::size_t equals = std::min(text.rfind('='), text.size());
+  const std::vector<double> ends =
+    ParsePlaces(text.substr(std::min(equals + 1, text.size())), { 3, 3 });
+  Need(
+    equals > 0 && !ends.empty(), option, std::string("a name and two places, ") + GaugeForm, text);
+  const Place gauge = { ToRowName(option, "gauge", text.substr(0, equals)), ends, "" };
+  Need(!std::equal(ends.begin(), ends.begin() + 3, ends.begin() + 3),
+    option + ": gauge '" + gauge.Name +
       "' has no length, because both its ends are the same; give it two");
-  }
   return gauge;
 }
 
 GaugeGrid ToGaugeGrid(Text option, Text text)
 {
   GaugeGrid grid;
-  std::vector<double> n;
-  Need(ParsePlaces(text, { 2, 6 }, n) && n[2] <= n[3] && n[4] <= n[5] && n[6] < n[7], option,
+  const std::vector<double> n = ParsePlaces(text, { 2, 6 });
+  Need(!n.empty() && n[2] <= n[3] && n[4] <= n[5] && n[6] < n[7], option,
     "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
   std::copy(n.begin() + 2, n.end(), grid.Bounds.begin());
   for (std::size_t a = 0; a < 2; ++a)
@@ -124,12 +103,10 @@ GaugeGrid ToGaugeGrid(Text option, Text text)
     grid.Counts[a] = static_cast<int>(std::clamp(n[a], 0.0, 1e6));
     Need(n[a] >= 1.0 && n[a] == grid.Counts[a], option, "whole numbers of gauges, 1 or more", text);
   }
-  if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
-  {
-    throw UsageError(option +
+  Need(static_cast<double>(grid.Counts[0]) * grid.Counts[1] <= 1e6,
+    option +
       " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of "
       "the bounds at a time");
-  }
   return grid;
 }
 
@@ -138,10 +115,16 @@ Place ToFlux(Text option, Text text)
   static const struct
   {
     const char* Begin;
-    Place::Kind Shape;
     std::vector<std::size_t> Counts;
-  } forms[] = { { "disc:", Place::Disc, { 3, 3, 1 } }, { "box:", Place::Box, { 6 } },
-    { "", Place::Line, { 3, 3 } }, { "", Place::Rectangle, { 3, 3, 3 } } };
+    decltype(Place::Add) Add;
+  } forms[] = {
+    { "disc:", { 3, 3, 1 },
+      [](auto* flux, auto* name, auto* n) { flux->AddDisc(name, n, n + 3, n[6]); } },
+    { "box:", { 6 }, [](auto* flux, auto* name, auto* n) { flux->AddBox(name, n); } },
+    { "", { 3, 3 }, [](auto* flux, auto* name, auto* n) { flux->AddLine(name, n, n + 3); } },
+    { "", { 3, 3, 3 },
+      [](auto* flux, auto* name, auto* n) { flux->AddRectangle(name, n, n + 3, n + 6); } },
+  };
   const std::size_t equals = text.find('=');
   const bool isNamed = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
   Need(isNamed, option, std::string("a section with a name, ") + FluxForm, text);
@@ -158,10 +141,10 @@ Place ToFlux(Text option, Text text)
   for (const auto& form : forms)
   {
     const std::string begin = form.Begin;
-    section.Shape = form.Shape;
-    section.Numbers.clear();
-    if (text.compare(equals + 1, begin.size(), begin) == 0 &&
-      ParsePlaces(text.substr(equals + 1 + begin.size()), form.Counts, section.Numbers))
+    section.Add = form.Add;
+    section.Numbers =
+      ParsePlaces(text.substr(std::min(equals + 1 + begin.size(), text.size())), form.Counts);
+    if (text.compare(equals + 1, begin.size(), begin) == 0 && !section.Numbers.empty())
     {
       return section;
     }
@@ -171,8 +154,7 @@ Place ToFlux(Text option, Text text)
 
 std::vector<Place> ListGauges(const Job& job)
 {
-  std::vector<Place> gauges =
-    WithFile(job.Gauges, "--gauges", job.GaugeFile, "gauges", GaugeForm, ToGauge);
+  std::vector<Place> gauges = WithFile(job.Gauges, job, "--gauges", "gauges", GaugeForm, ToGauge);
   const std::array<double, 6>& b = job.Grid.Bounds;
   const auto at = [&job, &b](std::size_t axis, int i)
   {
@@ -185,8 +167,8 @@ std::vector<Place> ListGauges(const Job& job)
     for (int i = 0; i < job.Grid.Counts[0]; ++i)
     {
       const double x = at(0, i), y = at(1, j);
-      gauges.push_back({ std::to_string(i) + " " + std::to_string(j), Place::Line,
-        { x, y, b[4], x, y, b[5] }, "" });
+      gauges.push_back(
+        { std::to_string(i) + " " + std::to_string(j), { x, y, b[4], x, y, b[5] }, "" });
     }
   }
   return gauges;
@@ -194,5 +176,5 @@ std::vector<Place> ListGauges(const Job& job)
 
 std::vector<Place> ListSections(const Job& job)
 {
-  return WithFile(job.Fluxes, "--fluxes", job.FluxFile, "sections", FluxForm, ToFlux);
+  return WithFile(job.Fluxes, job, "--fluxes", "sections", FluxForm, ToFlux);
 }

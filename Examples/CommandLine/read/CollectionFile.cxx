@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "FileName.h"
-#include "OptionValue.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkSPHSay.h"
 #include "vtkSmartPointer.h"
@@ -14,9 +12,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
 
 namespace
 {
@@ -29,23 +24,24 @@ std::string AttributeOf(vtkXMLDataElement* element, const char* name)
   return value ? value : "";
 }
 
-/// Returns the element of this name below the root of a VTK XML file.
-vtkSmartPointer<vtkXMLDataElement> ReadElement(const std::string& file, const char* name)
+/// Returns the elements called `name` in the element called `list` below the root of a VTK XML file.
+std::vector<vtkSmartPointer<vtkXMLDataElement>> ReadElements(
+  const std::string& file, const char* list, const std::string& name)
 {
   CheckRegularFile(file);
   vtkSmartPointer<vtkXMLDataElement> root;
   ReadWithCare(file,
     [&file, &root] { root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str())); });
-  if (!root)
+  RequireToRead(root, file, "it is not XML, or damaged");
+  vtkXMLDataElement* found = root->FindNestedElementWithName(list);
+  RequireToRead(found, file, std::string("it has no element ") + list);
+  std::vector<vtkSmartPointer<vtkXMLDataElement>> elements;
+  for (int i = 0; i < found->GetNumberOfNestedElements(); ++i)
   {
-    FailToRead(file, "it is not XML, or damaged");
+    vtkXMLDataElement* element = found->GetNestedElement(i);
+    elements.insert(elements.end(), element->GetName() == name ? 1 : 0, element);
   }
-  vtkXMLDataElement* found = root->FindNestedElementWithName(name);
-  if (!found)
-  {
-    FailToRead(file, std::string("it has no element ") + name);
-  }
-  return found;
+  return elements;
 }
 
 /// Splits JSON into signs, numbers and words, and texts, which begin with a quotation mark here.
@@ -68,18 +64,19 @@ std::vector<std::string> Tokens(const std::string& text)
     {
       const bool isMasked = text[at] == '\\' && at + 1 < text.size();
       at += isMasked ? 1 : 0;
-      if (isMasked && text[at] == 'u') // the code of a character outside of ASCII
+      if (!isMasked || text[at] != 'u')
       {
-        const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
-        at += std::min<std::size_t>(4, text.size() - 1 - at);
-        token += code < 0x80 ? std::string(1, static_cast<char>(code))
-          : code < 0x800     ? std::string{ static_cast<char>(0xC0 | code >> 6) }
-                             : std::string{ static_cast<char>(0xE0 | code >> 12),
-                             static_cast<char>(0x80 | (code >> 6 & 0x3F)) };
-        token += code < 0x80 ? "" : std::string(1, static_cast<char>(0x80 | (code & 0x3F)));
+        token += text[at];
         continue;
       }
-      token += text[at];
+      const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
+      at += std::min<std::size_t>(4, text.size() - 1 - at);
+      const int bits = code < 0x80 ? 0 : code < 0x800 ? 6 : 12; // in bytes behind the first one
+      token += static_cast<char>((bits == 0 ? 0 : bits == 6 ? 0xC0 : 0xE0) | code >> bits);
+      for (int shift = bits - 6; shift >= 0; shift -= 6)
+      {
+        token += static_cast<char>(0x80 | (code >> shift & 0x3F));
+      }
     }
     tokens.push_back(token);
     at += 1;
@@ -92,13 +89,11 @@ std::string Resolved(const std::string& list, const std::string& file)
   return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
 }
 
-/// Reads ParaView's {"files": [{"name": "a.vtk", "time": 0}, ...]}, in the order of time.
+/// Reads ParaView's {"files": [{"name": "a.vtk", "time": 0}, ...]}.
 std::vector<CollectionEntry> ReadSeries(const std::string& file)
 {
   CheckRegularFile(file);
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<std::string> tokens =
-    Tokens({ std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>() });
+  const std::vector<std::string> tokens = Tokens(std::string(*BytesOf(file)));
   const auto at = [&tokens](std::size_t i) { return i < tokens.size() ? tokens[i] : ""; };
   std::vector<CollectionEntry> entries;
   const std::size_t begin =
@@ -120,12 +115,27 @@ std::vector<CollectionEntry> ReadSeries(const std::string& file)
     entry.File = Resolved(file, entry.File);
     entries.push_back(entry);
   }
-  if (!isGood || entries.empty())
+  Require(isGood && !entries.empty(), vtkSPHSay(MCOR_SAY(NO_SERIES), file.c_str()));
+  return entries;
+}
+
+/// Reads the entries of a .pvd file.
+std::vector<CollectionEntry> ReadEntries(const std::string& file)
+{
+  std::vector<CollectionEntry> entries;
+  for (vtkXMLDataElement* element : ReadElements(file, "Collection", "DataSet"))
   {
-    throw std::runtime_error(vtkSPHSay(MCOR_SAY(NO_SERIES), file.c_str()));
+    const std::string time = AttributeOf(element, "timestep"), name = AttributeOf(element, "file"),
+                      part = AttributeOf(element, "part");
+    double value = 0.0;
+    RequireToRead(
+      !name.empty(), file, "entry " + std::to_string(entries.size()) + " names no file");
+    RequireToRead(time.empty() || ParseNumber(time, value), file,
+      "the time of " + name + " is '" + time + "', not a number");
+    entries.push_back({ value, Resolved(file, name),
+      part.empty() ? "" : AttributeOf(element, "group") + " part " + part });
   }
-  std::stable_sort(entries.begin(), entries.end(),
-    [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
+  RequireToRead(!entries.empty(), file, "it lists no files");
   return entries;
 }
 
@@ -134,41 +144,13 @@ std::vector<CollectionEntry> ReadSeries(const std::string& file)
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings)
 {
-  if (EndsWith(file, ".series"))
-  {
-    return ReadSeries(file);
-  }
-  const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection");
-  std::vector<CollectionEntry> entries;
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
-  {
-    vtkXMLDataElement* element = list->GetNestedElement(i);
-    if (std::string(element->GetName()) != "DataSet")
-    {
-      continue;
-    }
-    const std::string time = AttributeOf(element, "timestep"), name = AttributeOf(element, "file");
-    double value = 0.0;
-    if (name.empty() || (!time.empty() && !ParseNumber(time, value)))
-    {
-      FailToRead(file,
-        name.empty() ? "entry " + std::to_string(i) + " names no file"
-                     : "the time of " + name + " is '" + time + "', not a number");
-    }
-    const std::string part = AttributeOf(element, "part");
-    entries.push_back({ value, Resolved(file, name),
-      part.empty() ? "" : AttributeOf(element, "group") + " part " + part });
-  }
-  if (entries.empty())
-  {
-    FailToRead(file, "it lists no files");
-  }
+  const bool isSeries = EndsWith(file, ".series");
+  std::vector<CollectionEntry> entries = isSeries ? ReadSeries(file) : ReadEntries(file);
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
   // A run that is repeated in a folder adds its steps to the list again: the last entries count.
   std::vector<CollectionEntry> kept;
-  std::size_t again = 0;
-  double first = 0.0;
+  std::vector<double> again;
   for (const CollectionEntry& entry : entries)
   {
     const auto same = std::find_if(kept.begin(), kept.end(),
@@ -177,19 +159,19 @@ std::vector<CollectionEntry> ReadCollection(
         return other.Time == entry.Time &&
           (other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part));
       });
-    if (same == kept.end())
+    if (isSeries || same == kept.end())
     {
       kept.push_back(entry);
       continue;
     }
     *same = entry;
-    first = again == 0 ? entry.Time : first;
-    ++again;
+    again.push_back(entry.Time);
   }
-  if (again > 0)
+  if (!again.empty())
   {
-    warnings.push_back(vtkSPHSay(MCOR_SAY(LISTED_TWICE), file.c_str(),
-      static_cast<long long>(again), again == 1 ? "file" : "files", DigitsOf(first).c_str()));
+    warnings.push_back(
+      vtkSPHSay(MCOR_SAY(LISTED_TWICE), file.c_str(), static_cast<long long>(again.size()),
+        again.size() == 1 ? "file" : "files", DigitsOf(again.front()).c_str()));
   }
   return kept;
 }
@@ -197,21 +179,13 @@ std::vector<CollectionEntry> ReadCollection(
 std::vector<std::string> ReadPieces(const std::string& file)
 {
   const bool isPolyData = file.back() == 'p';
-  const vtkSmartPointer<vtkXMLDataElement> list =
-    ReadElement(file, isPolyData ? "PPolyData" : "PUnstructuredGrid");
   std::vector<std::string> pieces;
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
+  for (vtkXMLDataElement* element :
+    ReadElements(file, isPolyData ? "PPolyData" : "PUnstructuredGrid", "Piece"))
   {
-    vtkXMLDataElement* element = list->GetNestedElement(i);
     const std::string name = AttributeOf(element, "Source");
-    if (std::string(element->GetName()) == "Piece" && !name.empty())
-    {
-      pieces.push_back(Resolved(file, name));
-    }
+    pieces.insert(pieces.end(), name.empty() ? 0 : 1, Resolved(file, name));
   }
-  if (pieces.empty())
-  {
-    FailToRead(file, "it lists no pieces");
-  }
+  RequireToRead(!pieces.empty(), file, "it lists no pieces");
   return pieces;
 }

@@ -7,12 +7,25 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+class vtkDataArray;
 class vtkDataObject;
+class vtkPolyData;
+
+using View = std::string_view;
 
 // These functions read files. All throw std::runtime_error with one sentence.
+
+/// Returns the bytes of a file, which stay at hand as long as a copy of the pointer; none if the file cannot be opened.
+using FileBytes = std::shared_ptr<const View>;
+FileBytes BytesOf(const std::string& file);
+
+/// Returns points without arrays at these places.
+vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places);
 
 /// Opens a file that is to be read, so that IsSource() knows it. Refuses a name that is not a file, and a file that
 /// cannot be opened or has no positions to go to.

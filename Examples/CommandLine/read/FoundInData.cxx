@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkDataArray.h"
 #include "vtkMarchingCorrectors.h"
@@ -12,9 +12,7 @@
 #include "vtkSPHFound.h"
 #include "vtkSPHSay.h"
 
-#include <iomanip>
 #include <sstream>
-#include <stdexcept>
 
 namespace
 {
@@ -23,9 +21,8 @@ namespace
 /// component's own range.
 std::string DescribeRange(vtkDataArray* array)
 {
-  const int count = array->GetNumberOfComponents();
-  std::ostringstream ends[2];
-  for (int c = 0; c < count; ++c)
+  std::vector<std::string> low, high;
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
   {
     double range[2];
     array->GetFiniteRange(range, c);
@@ -33,27 +30,23 @@ std::string DescribeRange(vtkDataArray* array)
     {
       return "no finite values";
     }
-    for (int e = 0; e < 2; ++e)
-    {
-      ends[e] << std::setprecision(9)
-              << (c > 0          ? ", "
-                     : count > 1 ? "("
-                                 : "")
-              << range[e] << (c > 0 && c == count - 1 ? ")" : "");
-    }
+    low.push_back(DigitsOf(range[0], 9));
+    high.push_back(DigitsOf(range[1], 9));
   }
-  return ends[0].str() + " .. " + ends[1].str();
+  const auto text = [](const std::vector<std::string>& ends)
+  { return ends.size() > 1 ? "(" + Joined(ends) + ")" : Joined(ends); };
+  return text(low) + " .. " + text(high);
 }
 
 /// Returns the period as "1,1,0", or nothing.
 std::string TextOf(const vtkSPHPeriod& found)
 {
-  std::ostringstream text;
+  std::vector<std::string> numbers;
   for (const double number : found.Period)
   {
-    text << (text.tellp() > 0 ? "," : "") << number;
+    numbers.push_back(DigitsOf(number, 6));
   }
-  return text.str();
+  return Joined(numbers, ",");
 }
 
 }
@@ -63,10 +56,8 @@ std::string DescribeArrays(vtkPointSet& particles)
   std::ostringstream text;
   text << "particles         " << particles.GetNumberOfPoints() << "\npositions         "
        << DescribeRange(particles.GetPoints()->GetData()) << "\n";
-  vtkPointData* data = particles.GetPointData();
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(particles.GetPointData()))
   {
-    vtkAbstractArray* array = data->GetAbstractArray(i);
     auto* numbers = vtkDataArray::SafeDownCast(array);
     const int components = array->GetNumberOfComponents();
     text << "array             " << (array->GetName() ? array->GetName() : "(no name)") << ": "
@@ -76,6 +67,7 @@ std::string DescribeArrays(vtkPointSet& particles)
   }
   const vtkSPHFound found = vtkSPHFindArrays(&particles);
   const vtkSPHPeriod period = vtkSPHFindPeriod(particles.GetFieldData());
+  const std::string value = DigitsOf(found.FluidValue, 6);
   const auto orNone = [](const std::string& name, const char* none)
   { return name.empty() ? none : name; };
   const std::string volume = !found.Volume.empty() ? found.Volume
@@ -85,17 +77,11 @@ std::string DescribeArrays(vtkPointSet& particles)
   text << "smoothing length  "
        << orNone(found.SmoothingLength, "none (give --smoothing-length NAME, VALUE or estimate)")
        << "\nvolume            " << volume << "\nvelocity          "
-       << orNone(found.Velocity, "none") << "\nfluid             ";
-  if (found.Fluid.empty())
-  {
-    text << "all particles";
-  }
-  else
-  {
-    text << found.Fluid << " = " << found.FluidValue << " (give --fluid " << found.Fluid << "="
-         << found.FluidValue << ")";
-  }
-  text << "\nperiod            "
+       << orNone(found.Velocity, "none") << "\nfluid             "
+       << (found.Fluid.empty()
+              ? "all particles"
+              : found.Fluid + " = " + value + " (give --fluid " + found.Fluid + "=" + value + ")")
+       << "\nperiod            "
        << orNone(TextOf(period), period.Array.empty() ? "none" : "none, as its cell is tilted")
        << (period.Period.empty() ? "" : " (field data " + period.Array + "; --periodic auto)")
        << "\ndimension         " << vtkNew<vtkMarchingCorrectors>()->FindDimension(&particles)
@@ -105,13 +91,10 @@ std::string DescribeArrays(vtkPointSet& particles)
 
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem)
 {
-  if (!problem.empty() || found.Period.empty())
-  {
-    const bool isTilted = problem.empty() && found.IsTilted();
-    throw std::runtime_error(isTilted ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) + " Leave out --periodic."
-        : problem.empty()             ? vtkSPHSay(MCOR_SAY(NO_PERIOD))
-                                      : problem);
-  }
+  const std::string why = found.IsTilted()
+    ? vtkSPHSay(MCOR_SAY(CELL_TILTED)) + " Leave out --periodic."
+    : vtkSPHSay(MCOR_SAY(NO_PERIOD));
+  Require(problem.empty() && !found.Period.empty(), problem.empty() ? why : problem);
   return found.Period;
 }
 

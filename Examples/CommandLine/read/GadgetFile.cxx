@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkByteSwap.h"
 #include "vtkDoubleArray.h"
@@ -13,12 +13,9 @@
 #include "vtkSPHSay.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
+#include <iterator>
 #include <vector>
 
 namespace
@@ -28,7 +25,7 @@ namespace
 /// particles have the first arrays; only gas has the others.
 struct Known
 {
-  const char* Label;
+  View Label;
   const char* Name;
   int Columns;
   bool IsOfAll;
@@ -49,46 +46,30 @@ class File
 public:
   explicit File(const std::string& name)
     : Name(name)
-    , Stream(name, std::ios::binary)
-    , Size(std::filesystem::file_size(name))
+    , Bytes(BytesOf(name))
   {
-    std::uint32_t first = 0;
-    char word[4] = {};
-    this->Stream.read(reinterpret_cast<char*>(&first), 4).read(word, 4);
-    std::uint32_t other = first;
-    vtkByteSwap::SwapVoidRange(&other, 1, 4);
-    this->HasLabels = std::memcmp(word, "HEAD", 4) == 0 && (first == 8 || other == 8);
+    const auto first = this->Number<std::uint32_t>(*this->Bytes);
+    this->IsSwapped = true;
+    const auto other = this->Number<std::uint32_t>(*this->Bytes);
+    this->HasLabels = this->Bytes->substr(0, 8).find("HEAD") == 4 && (first == 8 || other == 8);
     this->IsSwapped = this->HasLabels ? other == 8 : other == HeaderSize;
     this->IsGadget = this->HasLabels || this->IsSwapped || first == HeaderSize;
-    this->Stream.clear();
   }
 
   void ReadHeader()
   {
-    std::array<char, HeaderSize> data;
-    std::uint64_t size = 0;
-    const bool isEmpty = this->HasLabels && !this->Begin(size);
-    if (isEmpty || !this->Begin(size) || size != HeaderSize ||
-      !this->Stream.read(data.data(), HeaderSize))
-    {
-      this->Fail("its header is damaged");
-    }
-    const auto get = [this, &data](std::size_t at, void* to, std::size_t count, std::size_t width)
-    {
-      std::memcpy(to, data.data() + at, count * width);
-      this->Order(to, count, width);
-    };
-    get(0, this->Counts, 6, 4);
-    get(24, this->Masses, 6, 8);
-    get(72, &this->Time, 1, 8);
-    get(120, &this->HasCooling, 1, 4);
-    get(124, &this->Files, 1, 4);
+    View data;
+    const bool isEmpty = this->HasLabels && !this->Next(data);
+    this->Check(!isEmpty && this->Next(data) && data.size() == HeaderSize, "its header is damaged");
+    this->Copy(data, this->Counts, 6);
+    this->Copy(data.substr(24), this->Masses, 6);
+    this->Time = this->Number<double>(data.substr(72));
+    this->HasCooling = this->Number<std::int32_t>(data.substr(120)) != 0;
+    this->Files = this->Number<std::int32_t>(data.substr(124));
     for (int type = 0; type < 6; ++type)
     {
-      if (this->Counts[type] < 0)
-      {
-        this->Fail("it claims " + std::to_string(this->Counts[type]) + " particles of a type");
-      }
+      this->Check(this->Counts[type] >= 0,
+        "it claims " + std::to_string(this->Counts[type]) + " particles of a type");
       this->Total += this->Counts[type];
       this->WithMasses += this->Masses[type] == 0.0 ? this->Counts[type] : 0;
     }
@@ -98,118 +79,96 @@ public:
   vtkSmartPointer<vtkPolyData> ReadGas()
   {
     auto gas = vtkSmartPointer<vtkPolyData>::New();
-    const vtkIdType count = this->Counts[0];
     std::size_t next = 0; // place in the order of format 1
-    std::uint64_t size = 0;
-    for (const Known* known = nullptr; this->Begin(size);)
+    View record;
+    for (const Known* known = nullptr; this->Next(record);)
     {
       if (this->HasLabels)
       {
-        char label[4] = {};
-        this->Stream.read(label, 4);
-        const auto found = std::find_if(std::begin(Arrays), std::end(Arrays),
-          [&label](const Known& each) { return std::memcmp(each.Label, label, 4) == 0; });
-        known = found == std::end(Arrays) ? nullptr : &*found;
-        if (!this->Begin(size))
-        {
-          this->Fail("it ends before an array");
-        }
+        known = std::find_if(std::begin(Arrays), std::end(Arrays),
+          [label = record.substr(0, 4)](const Known& each) { return each.Label == label; });
+        this->Check(this->Next(record), "it ends before an array");
       }
       else
       {
         next += next == 3 && this->WithMasses == 0 ? 1 : 0;
-        next += next == 6 && this->HasCooling == 0 ? 2 : 0;
-        known = next < 9 ? &Arrays[next++] : nullptr;
+        next += next == 6 && !this->HasCooling ? 2 : 0;
+        known = next < 9 ? &Arrays[next++] : std::end(Arrays);
       }
-      if (known)
+      if (known != std::end(Arrays))
       {
-        this->Take(*known, size, gas);
+        this->Take(*known, record, gas);
       }
     }
-    if (!gas->GetPoints())
-    {
-      this->Fail("it has no positions");
-    }
+    this->Check(gas->GetPoints(), "it has no positions");
     if (this->Masses[0] != 0.0)
     {
       vtkNew<vtkDoubleArray> masses;
       masses->SetName("Masses");
-      masses->SetNumberOfValues(count);
+      masses->SetNumberOfValues(this->Counts[0]);
       masses->Fill(this->Masses[0]);
       gas->GetPointData()->AddArray(masses);
     }
     return gas;
   }
 
-  [[noreturn]] void Fail(const std::string& why) const { FailToRead(this->Name, why); }
-
   bool IsGadget = false;
   std::int32_t Counts[6] = {}, Files = 1;
   double Time = 0.0;
 
 private:
-  /// Reverses the bytes of numbers if the file has the other byte order.
-  void Order(void* numbers, std::size_t count, std::size_t width) const
+  void Check(bool isGood, const std::string& why) const { RequireToRead(isGood, this->Name, why); }
+
+  /// Copies numbers, and reverses their bytes if the file has the other byte order.
+  template <typename T>
+  void Copy(View from, T* to, std::size_t count) const
   {
+    from.copy(reinterpret_cast<char*>(to), count * sizeof(T));
     if (this->IsSwapped)
     {
-      vtkByteSwap::SwapVoidRange(numbers, count, width);
+      vtkByteSwap::SwapVoidRange(to, count, sizeof(T));
     }
   }
 
-  std::uint32_t ReadSize()
+  template <typename T>
+  T Number(View from) const
   {
-    std::uint32_t size = 0;
-    this->Stream.read(reinterpret_cast<char*>(&size), 4);
-    this->Order(&size, 1, 4);
-    return size;
+    T number = 0;
+    this->Copy(from, &number, 1);
+    return number;
   }
 
-  /// Goes to the bytes of the next record. size: becomes their number. Returns false at the end.
-  bool Begin(std::uint64_t& size)
+  /// Goes to the next record. Returns false at the end.
+  bool Next(View& record)
   {
-    const std::uint64_t at = this->Next;
-    if (at == this->Size)
+    const View rest = this->Bytes->substr(this->At);
+    const std::size_t size = this->Number<std::uint32_t>(rest);
+    if (rest.empty())
     {
       return false;
     }
-    this->Stream.seekg(static_cast<std::streamoff>(at));
-    size = this->ReadSize();
-    if (!this->Stream || size < 4 || at + 8 + size > this->Size)
-    {
-      throw std::runtime_error(
-        vtkSPHSay(MCOR_SAY(FILE_ENDS), this->Name.c_str(), static_cast<long long>(at)));
-    }
-    this->Stream.seekg(static_cast<std::streamoff>(at + 4 + size));
-    if (this->ReadSize() != size || !this->Stream)
-    {
-      throw std::runtime_error(
-        vtkSPHSay(MCOR_SAY(RECORD_ENDS), this->Name.c_str(), static_cast<long long>(at)));
-    }
-    this->Stream.seekg(static_cast<std::streamoff>(at + 4));
-    this->Next = at + 8 + size;
+    Require(rest.size() >= 8 && size >= 4 && size <= rest.size() - 8,
+      vtkSPHSay(MCOR_SAY(FILE_ENDS), this->Name.c_str(), static_cast<long long>(this->At)));
+    Require(this->Number<std::uint32_t>(rest.substr(4 + size)) == size,
+      vtkSPHSay(MCOR_SAY(RECORD_ENDS), this->Name.c_str(), static_cast<long long>(this->At)));
+    record = rest.substr(4, size);
+    this->At += 8 + size;
     return true;
   }
 
-  void Take(const Known& known, std::uint64_t size, vtkPolyData* gas)
+  void Take(const Known& known, View record, vtkPolyData* gas)
   {
-    const bool isMass = std::strcmp(known.Label, "MASS") == 0,
-               isId = std::strcmp(known.Label, "ID  ") == 0;
+    const bool isMass = known.Label == "MASS", isId = known.Label == "ID  ";
     const std::int64_t rows = isMass ? this->WithMasses
       : known.IsOfAll                ? this->Total
                                      : this->Counts[0];
-    const auto values = static_cast<std::uint64_t>(rows * known.Columns);
-    const std::uint64_t width = values > 0 ? size / values : 0;
-    if (width * values != size || (width != 4 && width != 8))
-    {
-      if (known.IsOfAll && size > 0)
-      {
-        this->Fail("its " + std::string(known.Name) + " have " + std::to_string(size) +
-          " bytes for " + std::to_string(rows) + " particles");
-      }
-      return;
-    }
-    if (isMass && this->Masses[0] != 0.0)
+    const auto values = static_cast<std::size_t>(rows * known.Columns);
+    const std::size_t width = values > 0 ? record.size() / values : 0;
+    const bool isGood = width * values == record.size() && (width == 4 || width == 8);
+    this->Check(isGood || !known.IsOfAll,
+      "its " + std::string(known.Name) + " have " + std::to_string(record.size()) + " bytes for " +
+        std::to_string(rows) + " particles");
+    if (!isGood || (isMass && this->Masses[0] != 0.0))
     {
       return;
     }
@@ -220,18 +179,16 @@ private:
     array->SetNumberOfComponents(known.Columns);
     array->SetNumberOfTuples(this->Counts[0]);
     const auto count = static_cast<std::size_t>(array->GetNumberOfValues());
-    void* to = array->GetVoidPointer(0);
-    this->Stream.read(static_cast<char*>(to), static_cast<std::streamsize>(count * width));
-    this->Order(to, count, width);
+    void* const to = array->GetVoidPointer(0);
+    width == 4 ? this->Copy(record, static_cast<std::uint32_t*>(to), count)
+               : this->Copy(record, static_cast<std::uint64_t*>(to), count);
     array->SetName(known.Name);
     if (&known == Arrays) // this array is the positions
     {
-      gas->SetPoints(vtkNew<vtkPoints>());
-      gas->GetPoints()->SetData(array);
+      gas->SetPoints(PointsAt(array)->GetPoints());
       return;
     }
-    for (vtkIdType i = 0; std::strcmp(known.Label, "HSML") == 0 && i < array->GetNumberOfTuples();
-         ++i)
+    for (vtkIdType i = 0; known.Label == "HSML" && i < array->GetNumberOfTuples(); ++i)
     {
       array->SetTuple1(i, 0.5 * array->GetTuple1(i));
     }
@@ -239,12 +196,10 @@ private:
   }
 
   const std::string Name;
-  std::ifstream Stream;
-  const std::uint64_t Size;
-  bool HasLabels = false, IsSwapped = false;
-  std::uint64_t Next = 0; ///< where the next record begins
+  const FileBytes Bytes;
+  bool HasLabels = false, IsSwapped = false, HasCooling = false;
+  std::size_t At = 0; ///< where the next record begins
   double Masses[6] = {};
-  std::int32_t HasCooling = 0;
   std::int64_t Total = 0, WithMasses = 0;
 };
 

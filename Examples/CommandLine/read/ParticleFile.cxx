@@ -4,10 +4,9 @@
 
 #include "Ending.h"
 #include "Extra.h"
-#include "FileName.h"
 #include "Formats.h"
 #include "Messages.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
@@ -82,10 +81,7 @@ std::vector<double> ListTimesOfHdf(File file)
 /// Refuses a step that is not the first one.
 void RefuseStep(File file, std::size_t step)
 {
-  if (step > 0)
-  {
-    FailToRead(file, "it has no step " + std::to_string(step));
-  }
+  RequireToRead(step == 0, file, "it has no step " + std::to_string(step));
 }
 
 /// Returns the time of the list itself or, if it has none, of its first piece; all pieces have the
@@ -146,10 +142,7 @@ Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step 
 {
   CheckRegularFile(file);
   const Kind* kind = KindOf(formats, file);
-  if (!kind)
-  {
-    throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
-  }
+  Require(kind, file + " is not a " + ListEndings(formats) + " file");
   RefuseStep(file, kind->Read == ReadHdf || kind->Read == ReadText ? 0 : step);
   Data data;
   ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
@@ -161,9 +154,8 @@ Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step 
 /// Throws std::runtime_error.
 void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(arrays))
   {
-    vtkAbstractArray* array = arrays->GetAbstractArray(i);
     array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
     for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
     {
@@ -172,14 +164,17 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
         array->SetComponentName(c, Printable(name).c_str());
       }
     }
-    if (array->GetNumberOfTuples() != count)
-    {
-      FailToRead(file,
-        std::string("its array '") + array->GetName() + "' has " +
-          std::to_string(array->GetNumberOfTuples()) + " entries for " + std::to_string(count) +
-          kind);
-    }
+    RequireToRead(array->GetNumberOfTuples() == count, file,
+      std::string("its array '") + array->GetName() + "' has " +
+        std::to_string(array->GetNumberOfTuples()) + " entries for " + std::to_string(count) +
+        kind);
   }
+}
+
+void CheckAllArrays(const std::string& file, vtkDataSet* data)
+{
+  CheckArrays(file, data->GetPointData(), data->GetNumberOfPoints(), " points");
+  CheckArrays(file, data->GetCellData(), data->GetNumberOfCells(), " cells");
 }
 
 /// Returns the array with its texts as numbers, if --only chooses words in it.
@@ -190,18 +185,15 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   {
     return array;
   }
+  const std::vector<std::string>& words = chosen->second;
   auto* texts = vtkStringArray::SafeDownCast(array);
-  if (!texts)
-  {
-    FailToRead(file,
-      "--only " + chosen->first + "=" + chosen->second.front() +
-        " chooses a text, and the array has numbers; give a number or a range");
-  }
+  RequireToRead(texts, file,
+    "--only " + chosen->first + "=" + words.front() +
+      " chooses a text, and the array has numbers; give a number or a range");
   vtkNew<vtkIntArray> numbers;
   numbers->SetName(array->GetName());
   for (vtkIdType i = 0; i < texts->GetNumberOfValues(); ++i)
   {
-    const std::vector<std::string>& words = chosen->second;
     const auto found = std::find(words.begin(), words.end(), std::string(texts->GetValue(i)));
     numbers->InsertNextValue(
       found == words.end() ? 0 : 1 + static_cast<int>(found - words.begin()));
@@ -215,8 +207,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   const std::string& file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
-  CheckArrays(file, all->GetPointData(), all->GetNumberOfPoints(), " points");
-  CheckArrays(file, all->GetCellData(), all->GetNumberOfCells(), " cells");
+  CheckAllArrays(file, all);
   const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
@@ -229,16 +220,13 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
         static_cast<long long>(all->GetNumberOfPoints()), " of ", file.c_str()));
   }
   particles->SetPoints(data->GetPoints());
-  vtkPointData* arrays = data->GetPointData();
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(data->GetPointData()))
   {
-    particles->GetPointData()->AddArray(AsNumbers(file, arrays->GetAbstractArray(i)));
+    particles->GetPointData()->AddArray(AsNumbers(file, array));
   }
-  vtkFieldData* field = data->GetFieldData();
-  for (int i = 0; field && i < field->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(data->GetFieldData()))
   {
-    vtkDataArray* array = field->GetArray(i);
-    if (array && vtkSPHTellsOfPeriod(array->GetName()))
+    if (vtkDataArray::SafeDownCast(array) && vtkSPHTellsOfPeriod(array->GetName()))
     {
       particles->GetFieldData()->AddArray(array);
     }
@@ -264,12 +252,10 @@ void ReadSet(const std::string& name, ParticleSets& sets)
   const auto [file, step] = StepOf(name);
   const vtkSmartPointer<vtkDataObject> data = Read(file, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
-  if (!points)
-  {
-    throw std::runtime_error(file + " holds " +
+  Require(points,
+    file + " holds " +
       (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
       ", not particles (poly data or an unstructured grid)");
-  }
   if (points->GetNumberOfPoints() > 0)
   {
     const bool haveVertices = vtkSPHHaveVertices(points);
@@ -303,10 +289,7 @@ std::vector<std::string> ListParts(const std::string& name)
   const std::vector<std::string> parts = kind->ListParts(file);
   for (const std::string& part : parts)
   {
-    if (IsList(part))
-    {
-      FailToRead(file, "its piece " + part + " is a list itself");
-    }
+    RequireToRead(!IsList(part), file, "its piece " + part + " is a list itself");
   }
   return parts;
 }
@@ -322,20 +305,13 @@ std::map<std::string, std::vector<std::string>>& ChosenWords()
 void CheckRegularFile(const std::string& file)
 {
   std::error_code error;
-  if (fs::is_directory(file, error))
-  {
-    FailToRead(file, "it is a directory");
-  }
-  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
-  {
-    FailToRead(file, "it is not a regular file");
-  }
+  RequireToRead(!fs::is_directory(file, error), file, "it is a directory");
+  RequireToRead(
+    !fs::exists(file, error) || fs::is_regular_file(file, error), file, "it is not a regular file");
   struct stat status = {};
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0 || fstat(descriptor, &status) != 0)
-  {
-    FailToRead(file, std::strerror(errno));
-  }
+  const bool isOpen = descriptor >= 0 && fstat(descriptor, &status) == 0;
+  RequireToRead(isOpen, file, std::strerror(errno));
   close(descriptor);
   Sources().emplace(status.st_dev, status.st_ino);
 }
@@ -348,10 +324,7 @@ void ReadWithCare(const std::string& file, const std::function<void()>& read)
   try
   {
     read();
-    if (!Messages().Errors.empty())
-    {
-      FailToRead(file, Messages().Errors.front());
-    }
+    RequireToRead(Messages().Errors.empty(), file, Messages().FirstError());
     return;
   }
   catch (const std::bad_alloc&)
@@ -363,6 +336,26 @@ void ReadWithCare(const std::string& file, const std::function<void()>& read)
   FailToRead(file, "it needs more memory than is available; it may be damaged");
 }
 
+std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data)
+{
+  std::vector<vtkAbstractArray*> arrays;
+  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
+  {
+    arrays.push_back(data->GetAbstractArray(i));
+  }
+  return arrays;
+}
+
+std::vector<std::string> NamesOf(vtkFieldData* data)
+{
+  std::vector<std::string> names;
+  for (vtkAbstractArray* array : ArraysOf(data))
+  {
+    names.emplace_back(array->GetName() ? array->GetName() : "");
+  }
+  return names;
+}
+
 std::string ParticleFileEndings()
 {
   return ListEndings(ParticleFormats);
@@ -370,19 +363,8 @@ std::string ParticleFileEndings()
 
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::vector<std::string>& files, bool mayBeEmpty)
 {
-  ParticleSets sets;
-  for (const std::string& file : files)
-  {
-    for (const std::string& part : ListParts(file))
-    {
-      ReadSet(part, sets);
-    }
-  }
-  if (sets.Sets.empty() && !mayBeEmpty)
-  {
-    throw std::runtime_error(files.front() + " holds no points");
-  }
-  sets.IsList = files.size() > 1 || IsList(files.front());
+  const ParticleSets sets = ReadSets(files);
+  Require(!sets.Sets.empty() || mayBeEmpty, files.front() + " holds no points");
   return JoinSets(sets);
 }
 
@@ -436,10 +418,15 @@ bool IsSource(const struct stat& file)
   return Sources().count({ file.st_dev, file.st_ino }) > 0;
 }
 
-ParticleSets ReadParticlesPart(const std::string& file, int rank, int count)
+ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count)
 {
-  const std::vector<std::string> all = ListParts(file);
   ParticleSets sets;
+  std::vector<std::string> all;
+  for (const std::string& file : files)
+  {
+    const std::vector<std::string> parts = ListParts(file);
+    all.insert(all.end(), parts.begin(), parts.end());
+  }
   const auto endOf = [&all, count](int ranks)
   {
     const auto n = static_cast<std::size_t>(count);
@@ -449,7 +436,7 @@ ParticleSets ReadParticlesPart(const std::string& file, int rank, int count)
   {
     ReadSet(all[i], sets);
   }
-  sets.IsList = IsList(file);
+  sets.IsList = files.size() > 1 || IsList(files.front());
   return sets;
 }
 
@@ -478,16 +465,11 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file)
 {
   const vtkSmartPointer<vtkDataObject> data = Read(file, DataFormats);
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
-  if (set && set->GetNumberOfPoints() > VTK_INT_MAX)
-  {
-    throw std::runtime_error(file + " has " + std::to_string(set->GetNumberOfPoints()) +
-      " points; at most " + std::to_string(VTK_INT_MAX) + " can be probed at once");
-  }
-  if (!set || set->GetNumberOfPoints() == 0)
-  {
-    throw std::runtime_error(file + " holds no points");
-  }
-  CheckArrays(file, set->GetPointData(), set->GetNumberOfPoints(), " points");
-  CheckArrays(file, set->GetCellData(), set->GetNumberOfCells(), " cells");
+  const vtkIdType count = set ? set->GetNumberOfPoints() : 0;
+  Require(count > 0, file + " holds no points");
+  Require(count <= VTK_INT_MAX,
+    file + " has " + std::to_string(count) + " points; at most " + std::to_string(VTK_INT_MAX) +
+      " can be probed at once");
+  CheckAllArrays(file, set);
   return set;
 }

@@ -10,10 +10,16 @@
 #include <vector>
 
 struct stat;
+class vtkAbstractArray;
 class vtkDataObject;
 class vtkDataSet;
+class vtkFieldData;
 class vtkPointSet;
 struct vtkSPHPeriod;
+
+/// Lists arrays, or their names; "" is the name of an array without one.
+std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data);
+std::vector<std::string> NamesOf(vtkFieldData* data);
 
 /// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .vtk".
 std::string ParticleFileEndings();
@@ -58,9 +64,9 @@ struct ParticleSets
   bool IsList = false; ///< pieces may hold copies of other pieces' particles
 };
 
-/// Reads the part of process `rank` of `count`: its share of the pieces of a file that lists pieces,
-/// in order. The first process reads any other file.
-ParticleSets ReadParticlesPart(const std::string& file, int rank, int count);
+/// Reads the part of process `rank` of `count`: its share of the files, and of the pieces that they
+/// list, in order.
+ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one; there may be no particles.
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);

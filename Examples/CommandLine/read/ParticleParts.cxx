@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
+#include "Formats.h"
+#include "Text.h"
+
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -18,7 +21,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,13 +58,10 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
 /// Returns each component's median; 0 for vtkGhostType, because walls are not copies.
 std::vector<double> Median(vtkDataArray* array)
 {
+  const bool isGhost = std::string(array->GetName()) == vtkDataSetAttributes::GhostArrayName();
   std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
-  if (std::string(array->GetName()) == vtkDataSetAttributes::GhostArrayName())
-  {
-    return median;
-  }
   std::vector<double> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
-  for (std::size_t c = 0; c < median.size(); ++c)
+  for (std::size_t c = 0; c < median.size() && !isGhost; ++c)
   {
     for (std::size_t i = 0; i < values.size(); ++i)
     {
@@ -93,32 +94,40 @@ vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, v
 
 }
 
+vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places)
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(places);
+  data->SetPoints(points);
+  return data;
+}
+
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts)
 {
-  std::vector<vtkSmartPointer<vtkPolyData>> own(parts.size());
-  std::transform(parts.begin(), parts.end(), own.begin(), Own);
-  vtkPointData* arrays = own.front()->GetPointData();
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* first = arrays->GetArray(i);
-    const std::string name = arrays->GetArrayName(i);
-    const bool areAlike = std::all_of(own.begin(), own.end(),
-      [first, &name](vtkPolyData* part)
-      {
-        vtkDataArray* array = first ? part->GetPointData()->GetArray(name.c_str()) : nullptr;
-        return !array || array->GetDataType() == first->GetDataType();
-      });
-    for (std::size_t p = 0; p < own.size() && !areAlike; ++p)
-    {
-      vtkNew<vtkDoubleArray> values; // VTK would leave out arrays that have different types
-      values->DeepCopy(own[p]->GetPointData()->GetArray(name.c_str()));
-      own[p]->GetPointData()->AddArray(values);
-    }
-  }
   vtkNew<vtkMultiBlockDataSet> blocks;
-  for (const vtkSmartPointer<vtkPolyData>& part : own)
+  std::map<std::string, std::set<int>> types; // the types of each array
+  for (const vtkSmartPointer<vtkPointSet>& part : parts)
   {
-    blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
+    const vtkSmartPointer<vtkPolyData> own = Own(part);
+    for (vtkAbstractArray* array : ArraysOf(own->GetPointData()))
+    {
+      types[array->GetName()].insert(array->GetDataType());
+    }
+    blocks->SetBlock(blocks->GetNumberOfBlocks(), own);
+  }
+  for (unsigned b = 0; b < blocks->GetNumberOfBlocks(); ++b)
+  {
+    vtkPointData* arrays = vtkPolyData::SafeDownCast(blocks->GetBlock(b))->GetPointData();
+    for (vtkAbstractArray* array : ArraysOf(arrays))
+    {
+      if (types[array->GetName()].size() > 1 && !types[array->GetName()].count(VTK_STRING))
+      {
+        vtkNew<vtkDoubleArray> values; // VTK would leave out arrays that have different types
+        values->DeepCopy(array);
+        arrays->AddArray(values);
+      }
+    }
   }
   const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
   joined->SetFieldData(parts.front()->GetFieldData());
@@ -131,22 +140,16 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
   {
     return fluid; // without fluid there is nothing for walls to end
   }
-  vtkPointData* arrays = fluid->GetPointData();
-  if (arrays->HasArray(WallArrayName))
-  {
-    throw std::runtime_error(std::string("the particles have an array '") + WallArrayName +
+  Require(!fluid->GetPointData()->HasArray(WallArrayName),
+    std::string("the particles have an array '") + WallArrayName +
       "', the name by which --walls marks walls; use --fluid " + WallArrayName +
       "=VALUE, or rename it");
-  }
   const vtkIdType count = fluid->GetNumberOfPoints(), wallCount = walls->GetNumberOfPoints();
-  auto all = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetData(Append(fluid->GetPoints()->GetData(), walls->GetPoints()->GetData(), wallCount));
-  all->SetPoints(points);
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  const vtkSmartPointer<vtkPolyData> all =
+    PointsAt(Append(fluid->GetPoints()->GetData(), walls->GetPoints()->GetData(), wallCount));
+  for (vtkAbstractArray* each : ArraysOf(fluid->GetPointData()))
   {
-    vtkDataArray* array = arrays->GetArray(i); // null for an array of strings
-    if (array)
+    if (vtkDataArray* array = vtkDataArray::SafeDownCast(each)) // texts are left out
     {
       all->GetPointData()->AddArray(
         Append(array, walls->GetPointData()->GetArray(array->GetName()), wallCount));

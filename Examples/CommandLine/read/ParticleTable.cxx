@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "FileName.h"
-#include "SafeText.h"
+#include "Text.h"
 #include "TextTable.h"
 
 #include "vtkDoubleArray.h"
@@ -14,10 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
 
@@ -44,14 +42,13 @@ bool AreNumbers(const std::vector<View>& cells)
 /// Splits a comment into possible names: x y z, or x, y, z, or [01 x] [02 y] [03 z].
 std::vector<View> WordsOf(View comment)
 {
-  std::vector<View> words;
   const std::size_t open = comment.find('['), blank = comment.find(' ', open);
   double number;
   if (blank == View::npos || !ToNumber(comment.substr(open + 1, blank - open - 1), number))
   {
-    Split(comment, comment.find(',') != View::npos ? ',' : ' ', words);
-    return words;
+    return Split(comment, comment.find(',') != View::npos ? ',' : ' ');
   }
+  std::vector<View> words;
   for (std::size_t at = open; at != View::npos; at = comment.find('[', at + 1))
   {
     const View part = comment.substr(at, comment.find(']', at) - at);
@@ -67,8 +64,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
   const bool isBlankTab = !EndsWith(file, ".csv") && !EndsWith(file, ".tsv");
   Lines lines(file);
   Table table;
-  std::vector<View> cells;
-  std::string comment;
+  View comment;
   char separator = 0; // blanks and tabs count as one separator
   while (lines.Next())
   {
@@ -76,7 +72,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     if (line.empty() || line[0] == '#' || line[0] == '%' || line[0] == '!')
     {
       const std::size_t begin = line.find_first_not_of("#%! \t");
-      comment = line.empty() ? comment : std::string(line.substr(std::min(begin, line.size())));
+      comment = line.empty() ? comment : line.substr(std::min(begin, line.size()));
       continue;
     }
     if (separator == 0)
@@ -85,18 +81,16 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
       separator = has(';') ? ';' : has('\t') && !isBlankTab ? '\t' : has(',') ? ',' : ' ';
     }
     line = separator == ' ' ? line.substr(0, line.find('#')) : lines.Get();
-    Split(line, separator, cells);
+    const std::vector<View> cells = Split(line, separator);
     if (table.empty())
     {
-      if (cells.size() > mostColumns)
-      {
-        FailToRead(file, lines.Where() + " has " + std::to_string(cells.size()) + " columns");
-      }
+      const std::size_t count = cells.size();
+      lines.Check(count <= mostColumns, " has " + std::to_string(count) + " columns");
       const std::vector<View> words = WordsOf(comment);
       const bool isHead = !AreNumbers(cells);
-      table = TableOf(isHead                                   ? NamesOf(cells)
-          : words.size() == cells.size() && !AreNumbers(words) ? NamesOf(words)
-                                                               : NumberedNames(cells.size()));
+      table = TableOf(isHead                            ? NamesOf(cells)
+          : words.size() == count && !AreNumbers(words) ? NamesOf(words)
+                                                        : NumberedNames(count));
       if (isHead)
       {
         continue;
@@ -104,16 +98,13 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     }
     AddRow(table, lines, cells, separator);
   }
-  if (table.empty())
-  {
-    FailToRead(file, "it has no row of values");
-  }
+  RequireToRead(!table.empty(), file, "it has no row of values");
   std::vector<std::size_t> positions = FindPositions(file, table);
   // Without names, the first three columns are positions, but only between blanks.
-  const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0;
-  for (std::size_t c = 0; c < std::min(first, table.size()) && positions.size() == c; ++c)
+  if (positions.empty() && separator == ' ' && table.size() > 1)
   {
-    positions.push_back(c);
+    positions.resize(std::min<std::size_t>(table.size(), 3));
+    std::iota(positions.begin(), positions.end(), std::size_t(0));
   }
   return ParticlesOf(file, table, positions);
 }
@@ -141,9 +132,7 @@ vtkTypeInt64 CountOf(View line)
 std::map<std::string, std::string> ValuesOf(View comment)
 {
   std::map<std::string, std::string> values;
-  std::vector<View> words;
-  Split(comment, ' ', words);
-  for (const View word : words)
+  for (const View word : Split(comment, ' '))
   {
     const std::size_t equals = word.find('=');
     if (equals != View::npos)
@@ -156,38 +145,29 @@ std::map<std::string, std::string> ValuesOf(View comment)
 
 std::vector<double> NumbersOf(View text)
 {
-  std::vector<View> words;
   std::vector<double> numbers;
-  Split(text, ' ', words);
-  for (const View word : words)
+  for (const View word : Split(text, ' '))
   {
     double number = 0.0;
-    if (ToNumber(word, number))
-    {
-      numbers.push_back(number);
-    }
+    numbers.insert(numbers.end(), ToNumber(word, number) ? 1 : 0, number);
   }
   return numbers;
 }
 
 /// Returns names of columns from the names, types and widths in Properties=species:S:1:pos:R:3:...
-std::vector<std::string> PropertiesOf(const std::string& file, const std::string& text)
+std::vector<std::string> PropertiesOf(const Lines& lines, const std::string& text)
 {
   std::vector<std::string> names;
-  std::vector<View> parts;
-  Split(text, ':', parts);
+  const std::vector<View> parts = Split(text, ':');
   for (std::size_t p = 0; p + 2 < parts.size(); p += 3)
   {
+    const std::string name(parts[p]);
     const vtkTypeInt64 width = CountOf(parts[p + 2]);
-    if (width < 1 || width > 100)
-    {
-      FailToRead(file,
-        "its Properties give " + std::string(parts[p]) + " " + std::string(parts[p + 2]) +
-          " columns");
-    }
+    RequireToRead(width >= 1 && width <= 100, lines.File,
+      "its Properties give " + name + " " + std::string(parts[p + 2]) + " columns");
     for (vtkTypeInt64 c = 0; c < width; ++c)
     {
-      names.push_back(std::string(parts[p]) + (width == 1 ? "" : ":" + std::to_string(c)));
+      names.push_back(name + (width == 1 ? "" : ":" + std::to_string(c)));
     }
   }
   return names;
@@ -218,34 +198,26 @@ bool FindXyzStep(Lines& lines, Step& step)
     }
   } while (Trimmed(lines.Get()).empty());
   step.Count = CountOf(lines.Get());
-  if (step.Count < 0)
-  {
-    throw std::runtime_error(
-      vtkSPHSay(MCOR_SAY(STEP_WITHOUT_COUNT), lines.File.c_str(), lines.Where().c_str()));
-  }
+  Require(step.Count >= 0,
+    vtkSPHSay(MCOR_SAY(STEP_WITHOUT_COUNT), lines.File.c_str(), lines.Where().c_str()));
   lines.Need("the second line of a step");
   std::map<std::string, std::string> values = ValuesOf(lines.Get());
-  step.Names = PropertiesOf(lines.File, values["properties"]);
+  step.Names = PropertiesOf(lines, values["properties"]);
   step.Cell = NumbersOf(values["lattice"]);
-  std::vector<View> words;
-  Split(values["pbc"], ' ', words);
-  const std::vector<double> origin = NumbersOf(values["origin"]);
+  const std::vector<View> words = Split(values["pbc"], ' ');
+  const std::vector<double> origin = NumbersOf(values["origin"]), time = NumbersOf(values["time"]);
   for (const auto& [key, count, least] : { std::tuple("lattice", step.Cell.size(), 9U),
          std::tuple("pbc", words.size(), 3U), std::tuple("origin", origin.size(), 3U) })
   {
-    if (count != least && !values[key].empty())
-    {
-      FailToRead(lines.File,
-        lines.Where() + " has " + std::to_string(count) + " values as its " + key + ", which are " +
-          std::to_string(least));
-    }
+    lines.Check(count == least || values[key].empty(),
+      " has " + std::to_string(count) + " values as its " + key + ", which are " +
+        std::to_string(least));
   }
   for (std::size_t a = 0; a < 3 && !step.Cell.empty(); ++a)
   {
     step.Periodic[a] = words.empty() || (words[a] != "F" && words[a] != "0" && words[a] != "False");
     step.Origin[a] = origin.empty() ? 0.0 : origin[a];
   }
-  const std::vector<double> time = NumbersOf(values["time"]);
   step.Time = time.size() == 1 ? time[0] : step.Time;
   return true;
 }
@@ -260,65 +232,42 @@ bool StartsWith(View text, View start)
 /// origin).
 void ReadBox(Lines& lines, std::vector<View> words, Step& step)
 {
-  const std::string kind = lines.Where();
   const auto isFlag = [](View word)
   { return word.size() == 2 && word.find_first_not_of("pfsm") == View::npos; };
   if (words.size() >= 3 && std::all_of(words.end() - 3, words.end(), isFlag))
   {
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      step.Periodic[a] = words[words.size() - 3 + a] == "pp";
-    }
+    std::transform(
+      words.end() - 3, words.end(), step.Periodic.begin(), [](View word) { return word == "pp"; });
     words.resize(words.size() - 3);
   }
   const bool isTilted = words == std::vector<View>{ "xy", "xz", "yz" };
   const bool isOfVectors = words == std::vector<View>{ "abc", "origin" };
-  if (!words.empty() && !isTilted && !isOfVectors)
-  {
-    FailToRead(lines.File, kind + " begins a box of a kind that is not known here");
-  }
+  lines.Check(
+    words.empty() || isTilted || isOfVectors, " begins a box of a kind that is not known here");
   const std::size_t count = isOfVectors ? 4 : isTilted ? 3 : 2;
-  std::array<std::vector<double>, 3> sides;
-  for (std::vector<double>& side : sides)
+  std::array<std::vector<double>, 3> s; // the lines' numbers
+  for (std::vector<double>& side : s)
   {
     lines.Need("the bounds of the box");
     side = NumbersOf(lines.Get());
-    if (side.size() != count)
-    {
-      FailToRead(lines.File,
-        lines.Where() + " has " + std::to_string(side.size()) +
-          " numbers, where a side of its box has " + std::to_string(count));
-    }
-  }
-  step.Cell.assign(9, 0.0);
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    step.Origin[a] = sides[a][isOfVectors ? 3 : 0];
-    step.Cell[4 * a] = sides[a][1];
-    for (std::size_t b = 0; b < 3 && isOfVectors; ++b)
-    {
-      step.Cell[3 * a + b] = sides[a][b];
-    }
+    lines.Check(side.size() == count,
+      " has " + std::to_string(side.size()) + " numbers, where a side of its box has " +
+        std::to_string(count));
   }
   if (isOfVectors)
   {
+    step.Origin = { s[0][3], s[1][3], s[2][3] };
+    step.Cell = { s[0][0], s[0][1], s[0][2], s[1][0], s[1][1], s[1][2], s[2][0], s[2][1], s[2][2] };
     return;
   }
-  if (isTilted)
-  {
-    const double xy = sides[0][2], xz = sides[1][2], yz = sides[2][2];
-    step.Cell[3] = xy;
-    step.Cell[6] = xz;
-    step.Cell[7] = yz;
-    step.Origin[0] -= std::min({ 0.0, xy, xz, xy + xz });
-    step.Cell[0] -= std::max({ 0.0, xy, xz, xy + xz });
-    step.Origin[1] -= std::min(0.0, yz);
-    step.Cell[4] -= std::max(0.0, yz);
-  }
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    step.Cell[4 * a] -= step.Origin[a];
-  }
+  const double xy = isTilted ? s[0][2] : 0.0, xz = isTilted ? s[1][2] : 0.0,
+               yz = isTilted ? s[2][2] : 0.0;
+  step.Origin = { s[0][0] - std::min({ 0.0, xy, xz, xy + xz }), s[1][0] - std::min(0.0, yz),
+    s[2][0] };
+  const double highX = s[0][1] - std::max({ 0.0, xy, xz, xy + xz }),
+               highY = s[1][1] - std::max(0.0, yz);
+  step.Cell = { highX - step.Origin[0], 0.0, 0.0, xy, highY - step.Origin[1], 0.0, xz, yz,
+    s[2][1] - step.Origin[2] };
 }
 
 bool FindDumpStep(Lines& lines, Step& step)
@@ -330,17 +279,13 @@ bool FindDumpStep(Lines& lines, Step& step)
   {
     const View line = Trimmed(lines.Get());
     hasBegun = hasBegun || !line.empty();
-    std::vector<View> words;
-    Split(line, ' ', words);
+    std::vector<View> words = Split(line, ' ');
     if (StartsWith(line, "ITEM: TIME"))
     {
       const bool isStep = words[1] == "TIMESTEP";
       double time = 0.0;
       lines.Need("the number of a step");
-      if (!ToNumber(Trimmed(lines.Get()), time))
-      {
-        FailToRead(lines.File, lines.Where() + " is no time");
-      }
+      lines.Check(ToNumber(Trimmed(lines.Get()), time), " is no time");
       step.Time = isStep && isTold ? step.Time : time;
       isTold = isTold || !isStep;
     }
@@ -348,35 +293,27 @@ bool FindDumpStep(Lines& lines, Step& step)
     {
       lines.Need("the number of particles");
       step.Count = CountOf(lines.Get());
-      if (step.Count < 0)
-      {
-        FailToRead(lines.File, lines.Where() + " is no number of particles");
-      }
+      lines.Check(step.Count >= 0, " is no number of particles");
     }
     else if (StartsWith(line, "ITEM: BOX BOUNDS"))
     {
-      words.erase(words.begin(), words.begin() + 3);
-      ReadBox(lines, words, step);
+      ReadBox(lines, { words.begin() + 3, words.end() }, step);
     }
     else if (StartsWith(line, "ITEM: ATOMS"))
     {
-      words.erase(words.begin(), words.begin() + 2);
-      step.Names = NamesOf(words);
+      step.Names = NamesOf({ words.begin() + 2, words.end() });
       return true;
     }
     else if (line == "ITEM: UNITS")
     {
       lines.Need("the name of its units");
     }
-    else if (!line.empty())
+    else
     {
-      FailToRead(lines.File, lines.Where() + " is none of a dump of LAMMPS");
+      lines.Check(line.empty(), " is none of a dump of LAMMPS");
     }
   }
-  if (hasBegun)
-  {
-    FailToRead(lines.File, "it ends before the particles of a step");
-  }
+  RequireToRead(!hasBegun, lines.File, "it ends before the particles of a step");
   return false;
 }
 
@@ -391,10 +328,8 @@ std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, cons
     {
       continue;
     }
-    if (*kind == 's' && step.Cell.empty())
-    {
-      FailToRead(file, "its positions are shares of a box (xs, ys, zs), and it has no box");
-    }
+    RequireToRead(*kind == 'u' || !step.Cell.empty(), file,
+      "its positions are shares of a box (xs, ys, zs), and it has no box");
     for (std::size_t row = 0; row < table.front().Numbers.size() && *kind == 's'; ++row)
     {
       std::array<double, 3> place = step.Origin;
@@ -452,37 +387,36 @@ StepFinder FinderOf(const std::string& file)
 /// not go through all earlier steps to read one.
 struct Steps
 {
-  std::uintmax_t Size = 0;
-  std::vector<Lines::Place> Places;
+  std::size_t Size = 0;
+  std::vector<Lines> Begins;
 };
 std::map<std::string, Steps> KnownSteps;
+
+/// Returns the lines of a file from one of its steps on.
+Lines LinesFrom(const std::string& file, std::size_t number)
+{
+  Lines lines(file);
+  Steps& steps = KnownSteps[file];
+  if (number > 0 && steps.Size != lines.GetRest().size())
+  {
+    ListTimesInText(file);
+  }
+  RequireToRead(
+    number == 0 || number < steps.Begins.size(), file, "it has no step " + std::to_string(number));
+  return number == 0 ? lines : steps.Begins[number];
+}
 
 vtkSmartPointer<vtkDataObject> ReadStep(
   const std::string& file, StepFinder find, std::size_t number)
 {
-  Lines lines(file);
+  Lines lines = LinesFrom(file, number);
   Step step;
-  bool isThere = number == 0;
-  if (!isThere)
-  {
-    if (KnownSteps[file].Size != std::filesystem::file_size(file))
-    {
-      ListTimesInText(file);
-    }
-    const std::vector<Lines::Place>& places = KnownSteps[file].Places;
-    isThere = number < places.size();
-    lines.GoTo(isThere ? places[number] : lines.Here());
-  }
-  if (!isThere || !find(lines, step))
-  {
-    FailToRead(file, "it has no step " + std::to_string(number));
-  }
+  RequireToRead(find(lines, step), file, "it has no step " + std::to_string(number));
   Table table = TableOf(step.Names);
-  std::vector<View> cells;
   for (vtkTypeInt64 i = 0; i < step.Count; ++i)
   {
     lines.Need("all particles of a step");
-    Split(lines.Get(), ' ', cells);
+    const std::vector<View> cells = Split(lines.Get(), ' ');
     if (table.empty())
     {
       const bool hasSpecies = cells.size() > 3;
@@ -492,19 +426,17 @@ vtkSmartPointer<vtkDataObject> ReadStep(
     }
     AddRow(table, lines, cells, ' ');
   }
-  for (cells.clear(); cells.empty() && lines.Next();)
+  std::vector<View> behind; // the first words behind the step
+  while (behind.empty() && lines.Next())
   {
-    Split(lines.Get(), ' ', cells);
+    behind = Split(lines.Get(), ' ');
   }
-  const bool beginsStep = cells.empty() ||
-    (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(cells[0], "ITEM:"));
+  const bool beginsStep = behind.empty() ||
+    (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(behind[0], "ITEM:"));
   // Other lines behind later steps are reported when the next step is read.
-  if (!beginsStep && (number == 0 || cells.size() == table.size()))
-  {
-    FailToRead(file,
-      lines.Where() + " is one more than the " + std::to_string(step.Count) +
-        " particles that the step says it has; correct that number");
-  }
+  lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
+    " is one more than the " + std::to_string(step.Count) +
+      " particles that the step says it has; correct that number");
   table = table.empty() ? TableOf({ "x", "y", "z" }) : table;
   const vtkSmartPointer<vtkPolyData> particles =
     ParticlesOf(file, table, PositionsOf(file, table, step));
@@ -519,16 +451,12 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   return particles;
 }
-
 }
 
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step)
 {
   const StepFinder find = FinderOf(file);
-  if (!find && step > 0)
-  {
-    FailToRead(file, "it has no step " + std::to_string(step));
-  }
+  RequireToRead(find || step == 0, file, "it has no step " + std::to_string(step));
   return find ? ReadStep(file, find, step) : ReadRows(file);
 }
 
@@ -538,18 +466,11 @@ std::vector<double> ListTimesInText(const std::string& file)
   const StepFinder find = FinderOf(file);
   Lines lines(file);
   Step step;
-  std::error_code error; // it is reported when the file is read
-  Steps known = { std::filesystem::file_size(file, error), {} };
+  Steps known = { lines.GetRest().size(), {} };
   try
   {
-    while (find)
+    for (known.Begins.push_back(lines); find && find(lines, step); known.Begins.push_back(lines))
     {
-      known.Places.push_back(lines.Here());
-      if (!find(lines, step))
-      {
-        known.Places.pop_back();
-        break;
-      }
       times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
       for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
       {

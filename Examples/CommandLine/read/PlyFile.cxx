@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "SafeText.h"
+#include "Text.h"
 #include "TextTable.h"
 
 #include "vtkSPHSay.h"
@@ -11,7 +11,6 @@
 #include <cstring>
 #include <map>
 #include <set>
-#include <stdexcept>
 
 namespace
 {
@@ -70,17 +69,13 @@ struct Element
 std::vector<Element> ReadHead(Lines& lines, std::string& form)
 {
   std::vector<Element> elements;
-  std::vector<View> words;
   lines.Need("its head");
-  if (lines.Get() != "ply")
-  {
-    FailToRead(lines.File, "it is no .ply file");
-  }
+  RequireToRead(lines.Get() == "ply", lines.File, "it is no .ply file");
   for (lines.Need("the end of its head"); Trimmed(lines.Get()) != "end_header";
        lines.Need("the end of its head"))
   {
-    Split(lines.Get(), ' ', words);
-    const std::string first(words.empty() ? "comment" : words[0]);
+    const std::vector<View> words = Split(lines.Get(), ' ');
+    const View first = words.empty() ? "comment" : words[0];
     Element* last = elements.empty() ? nullptr : &elements.back();
     vtkTypeInt64 count = 0;
     const auto kind = NumberKinds.find(words.size() == 3 ? std::string(words[1]) : "");
@@ -101,50 +96,44 @@ std::vector<Element> ReadHead(Lines& lines, std::string& form)
     {
       last->HasLists = true;
     }
-    else if (first != "comment" && first != "obj_info")
+    else
     {
-      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_HEAD), lines.File.c_str(),
-        Printable(std::string(Trimmed(lines.Get()))).c_str()));
+      Require(first == "comment" || first == "obj_info",
+        vtkSPHSay(MCOR_SAY(PLY_HEAD), lines.File.c_str(),
+          Printable(std::string(Trimmed(lines.Get()))).c_str()));
     }
   }
   return elements;
 }
 
-/// Reads rows of bytes into columns.
-void ReadBytes(
-  Lines& lines, std::ifstream& stream, const Element& element, bool isSwapped, Table& table)
+/// Takes rows of bytes from the beginning of `bytes` into columns.
+void TakeRows(
+  const std::string& file, View& bytes, const Element& element, bool isSwapped, Table& table)
 {
-  std::size_t width = 0;
-  for (const NumberKind& kind : element.Kinds)
-  {
-    width += kind.Size;
-  }
-  std::string row(width, '\0');
   for (vtkTypeInt64 i = 0; i < element.Count; ++i)
   {
-    if (!stream.read(&row[0], static_cast<std::streamsize>(width)))
-    {
-      FailToRead(
-        lines.File, "it ends before all of its " + std::to_string(element.Count) + " vertices");
-    }
-    char* bytes = &row[0];
     for (std::size_t c = 0; c < table.size(); ++c)
     {
       const NumberKind& kind = element.Kinds[c];
+      char number[8];
+      if (bytes.copy(number, kind.Size) < kind.Size)
+      {
+        FailToRead(
+          file, "it ends before all of its " + std::to_string(element.Count) + " vertices");
+      }
+      bytes.remove_prefix(kind.Size);
       if (isSwapped)
       {
-        std::reverse(bytes, bytes + kind.Size);
+        std::reverse(number, number + kind.Size);
       }
-      table[c].Numbers.push_back(kind.Read(bytes));
+      table[c].Numbers.push_back(kind.Read(number));
       if (kind.IsWhole)
       {
         table[c].Whole.push_back(static_cast<vtkTypeInt64>(table[c].Numbers.back()));
       }
-      bytes += kind.Size;
     }
   }
 }
-
 }
 
 vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
@@ -155,40 +144,28 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
   const bool isText = form == "ascii";
   const std::uint16_t one = 1;
   const bool isLittle = *reinterpret_cast<const char*>(&one) == 1;
-  if (!isText && form != "binary_little_endian" && form != "binary_big_endian")
-  {
-    FailToRead(file, "its format '" + form + "' is not known");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  stream.seekg(lines.Here().Offset);
+  RequireToRead(isText || form == "binary_little_endian" || form == "binary_big_endian", file,
+    "its format '" + form + "' is not known");
+  View bytes = lines.GetRest();
   for (const Element& element : elements)
   {
     const bool isVertex = element.Name == "vertex";
-    if (element.Names.empty() && !element.HasLists && element.Count > 0)
-    {
-      FailToRead(file, "its element " + element.Name + " has no properties");
-    }
-    if (element.HasLists && (isVertex || element.Count > 0))
-    {
-      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_LISTS), file.c_str(), element.Name.c_str()));
-    }
-    if (isVertex &&
-      std::set<std::string>(element.Names.begin(), element.Names.end()).size() <
-        element.Names.size())
-    {
-      throw std::runtime_error(vtkSPHSay(MCOR_SAY(PLY_NAMES), file.c_str()));
-    }
+    RequireToRead(!element.Names.empty() || element.HasLists || element.Count == 0, file,
+      "its element " + element.Name + " has no properties");
+    Require(!element.HasLists || (!isVertex && element.Count == 0),
+      vtkSPHSay(MCOR_SAY(PLY_LISTS), file.c_str(), element.Name.c_str()));
+    const std::set<std::string> names(element.Names.begin(), element.Names.end());
+    Require(!isVertex || names.size() == element.Names.size(),
+      vtkSPHSay(MCOR_SAY(PLY_NAMES), file.c_str()));
     Table table = TableOf(element.Names);
     if (!isText)
     {
-      ReadBytes(lines, stream, element, isLittle == (form == "binary_big_endian"), table);
+      TakeRows(file, bytes, element, isLittle == (form == "binary_big_endian"), table);
     }
-    std::vector<View> cells;
     for (vtkTypeInt64 i = 0; isText && i < element.Count; ++i)
     {
       lines.Need("all of its vertices");
-      Split(lines.Get(), ' ', cells);
-      AddRow(table, lines, cells, ' ');
+      AddRow(table, lines, Split(lines.Get(), ' '), ' ');
     }
     if (isVertex)
     {

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TextTable.h"
 
-#include "FileName.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkDoubleArray.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkSPHFound.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
@@ -39,27 +36,26 @@ std::string Small(View text)
 
 bool ToNumber(View text, double& value)
 {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+  const auto parse = [&value](View digits)
   {
-    text.remove_prefix(1);
-  }
-  std::string copy;
-  auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc::result_out_of_range && end.ptr != text.data() + text.size())
-  {
-    copy = std::string(text);
-    for (char& c : copy)
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (end.ec == std::errc::result_out_of_range)
     {
-      c = c == 'd' || c == 'D' ? 'e' : c == ',' ? '.' : c;
+      value = std::strtod(std::string(digits).c_str(), nullptr); // infinity, or 0
     }
-    text = copy;
-    end = std::from_chars(text.data(), text.data() + text.size(), value);
-  }
-  if (end.ec == std::errc::result_out_of_range)
+    return end.ec != std::errc::invalid_argument && end.ptr == digits.data() + digits.size();
+  };
+  text.remove_prefix(text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+  if (parse(text))
   {
-    value = std::strtod(std::string(text).c_str(), nullptr); // infinity, or 0
+    return true;
   }
-  return end.ec != std::errc::invalid_argument && end.ptr == text.data() + text.size();
+  std::string other(text);
+  for (char& c : other)
+  {
+    c = c == 'd' || c == 'D' ? 'e' : c == ',' ? '.' : c;
+  }
+  return parse(other);
 }
 
 bool ToInteger(View text, vtkTypeInt64& value)
@@ -68,50 +64,53 @@ bool ToInteger(View text, vtkTypeInt64& value)
   return end.ec == std::errc() && end.ptr == text.data() + text.size();
 }
 
-void Split(View line, char separator, std::vector<View>& cells)
+std::vector<View> Split(View line, char separator)
 {
-  cells.clear();
   const bool isBlank = separator == ' ';
+  std::vector<View> cells;
   std::size_t begin = 0;
-  bool quoted = false;
+  bool isQuoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i)
   {
     const char c = i < line.size() ? line[i] : separator;
-    quoted = quoted != (c == '"' && i < line.size());
-    const bool ends =
-      i == line.size() || (!quoted && (c == separator || (isBlank && (c == '\t' || c == '\r'))));
-    if (!ends)
+    isQuoted = i < line.size() && isQuoted != (c == '"');
+    if (!isQuoted && (c == separator || (isBlank && (c == '\t' || c == '\r'))))
     {
-      continue;
+      if (!isBlank || i > begin)
+      {
+        cells.push_back(Trimmed(line.substr(begin, i - begin)));
+      }
+      begin = i + 1;
     }
-    if (!isBlank || i > begin)
-    {
-      cells.push_back(Trimmed(line.substr(begin, i - begin)));
-    }
-    begin = i + 1;
   }
+  return cells;
+}
+
+Lines::Lines(const std::string& file)
+  : File(file)
+  , Bytes(BytesOf(file))
+  , Rest(*Bytes)
+{
+  const View mark = "\xEF\xBB\xBF"; // UTF-8's byte order mark
+  this->Rest.remove_prefix(this->Rest.substr(0, 3) == mark ? 3 : 0);
 }
 
 bool Lines::Next()
 {
-  if (!std::getline(this->Stream, this->Line))
+  if (this->Rest.empty())
   {
     return false;
   }
-  if (++this->Number == 1 && this->Line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+  const std::size_t end = std::min(this->Rest.find('\n'), this->Rest.size());
+  this->Line = this->Rest.substr(0, end);
+  this->Rest.remove_prefix(std::min(end + 1, this->Rest.size()));
+  ++this->Number;
+  if (this->Line.find('\0') != View::npos)
   {
-    this->Line.erase(0, 3); // UTF-8's byte order mark
+    this->Check(false, " is no text; if it is UTF-16, save it as UTF-8");
   }
-  if (this->Line.find('\0') != std::string::npos)
-  {
-    FailToRead(this->File,
-      "line " + std::to_string(this->Number) + " is no text; if it is UTF-16, save it as UTF-8");
-  }
-  if (!this->Line.empty() && this->Line.back() == '\r')
-  {
-    this->Line.pop_back();
-  }
-  if (this->Line.find('\r') != std::string::npos)
+  this->Line.remove_suffix(!this->Line.empty() && this->Line.back() == '\r' ? 1 : 0);
+  if (this->Line.find('\r') != View::npos)
   {
     FailToRead(this->File, "its lines end in carriage returns alone; save it with line feeds");
   }
@@ -126,26 +125,26 @@ void Lines::Need(const char* what)
   }
 }
 
+void Lines::Check(bool isGood, const std::string& why) const
+{
+  RequireToRead(isGood, this->File, this->Where() + why);
+}
+
 void Column::Add(View cell)
 {
-  double number = std::numeric_limits<double>::quiet_NaN();
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double number = none;
+  vtkTypeInt64 whole = 0;
   const std::size_t rows = this->Numbers.size();
   const bool isNumber = cell.empty() || ToNumber(cell, number);
-  vtkTypeInt64 whole = 0;
-  if (this->Whole.size() == rows && ToInteger(cell, whole))
-  {
-    this->Whole.push_back(whole);
-  }
-  else
-  {
-    this->Whole.clear();
-  }
+  const bool isWhole = this->Whole.size() == rows && ToInteger(cell, whole);
+  isWhole ? this->Whole.push_back(whole) : this->Whole.clear();
   if (!this->Words.empty() || (!isNumber && rows == 0))
   {
     this->Words.emplace_back(cell);
   }
   // A single word among numbers becomes NaN; a column of words begins with a word.
-  this->Numbers.push_back(isNumber ? number : std::numeric_limits<double>::quiet_NaN());
+  this->Numbers.push_back(isNumber ? number : none);
 }
 
 Table TableOf(const std::vector<std::string>& names)
@@ -157,17 +156,17 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 {
   if (cells.size() != table.size())
   {
-    FailToRead(lines.File,
-      lines.Where() + " has " + std::to_string(cells.size()) + " values for " +
-        std::to_string(table.size()) + " columns");
+    lines.Check(false,
+      " has " + std::to_string(cells.size()) + " values for " + std::to_string(table.size()) +
+        " columns");
   }
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
     if (separator == ',' && cells[c].find(',') != View::npos && table[c].Words.empty() &&
       cells[c].find_first_not_of("0123456789+-.,eEdD ") == View::npos)
     {
-      FailToRead(lines.File,
-        lines.Where() + " has '" + std::string(cells[c]) +
+      lines.Check(false,
+        " has '" + std::string(cells[c]) +
           "' in a table with commas between columns: write it without a comma, or semicolons "
           "between columns, where a comma is that of decimals");
     }
@@ -199,7 +198,7 @@ int ComponentOf(const std::string& name, std::string& base)
                                          : static_cast<int>(axis % 3);
 }
 
-std::string NamesOf(const Table& table)
+std::string ListNames(const Table& table)
 {
   std::string list;
   for (std::size_t c = 0; c < table.size() && list.size() < 200; ++c)
@@ -213,26 +212,27 @@ std::string NamesOf(const Table& table)
 struct Array
 {
   std::string Name;
-  std::vector<std::size_t> Columns; ///< empty: the columns are positions, or belong to another
-                                    ///< array
+  std::vector<std::size_t> Columns;
 };
 
-/// Lists arrays, each at its first column: columns alone, and vectors, whose names tell components.
-std::vector<Array> FindArrays(const Table& table, const std::vector<std::size_t>& positions = {})
+/// Lists arrays by their first columns: columns alone, and vectors, whose names tell components.
+std::map<std::size_t, Array> FindArrays(
+  const Table& table, const std::vector<std::size_t>& positions = {})
 {
-  std::vector<Array> arrays;
+  std::map<std::size_t, Array> arrays;
   std::map<std::string, std::map<int, std::size_t>> vectors; // columns by name and component
-  for (const Column& column : table)
+  for (std::size_t c = 0; c < table.size(); ++c)
   {
     std::string base;
-    const int component = ComponentOf(column.Name, base);
-    const std::size_t c = arrays.size();
-    const bool isFree = std::find(positions.begin(), positions.end(), c) == positions.end();
-    if (component >= 0 && isFree)
+    const int component = ComponentOf(table[c].Name, base);
+    if (std::find(positions.begin(), positions.end(), c) == positions.end())
     {
-      vectors[base].emplace(component, c);
+      arrays[c] = { table[c].Name, { c } };
+      if (component >= 0)
+      {
+        vectors[base].emplace(component, c);
+      }
     }
-    arrays.push_back({ column.Name, std::vector<std::size_t>(isFree ? 1 : 0, c) });
   }
   for (const Column& column : table)
   {
@@ -245,10 +245,10 @@ std::vector<Array> FindArrays(const Table& table, const std::vector<std::size_t>
     if (isUsual && components.rbegin()->first == static_cast<int>(count) - 1)
     {
       Array vector = { base, {} };
-      for (const auto& component : components)
+      for (const auto& [component, column] : components)
       {
-        vector.Columns.push_back(component.second);
-        arrays[component.second].Columns.clear();
+        vector.Columns.push_back(column);
+        arrays.erase(column);
       }
       arrays[*std::min_element(vector.Columns.begin(), vector.Columns.end())] = vector;
     }
@@ -288,27 +288,26 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   const std::string& file, const Table& table, const std::vector<std::size_t>& columns)
 {
   const Column& first = table[columns[0]];
-  if (columns.size() == 1 && !first.Words.empty())
+  if (columns.size() > 1)
+  {
+    return JoinColumns(table, columns, static_cast<int>(columns.size()));
+  }
+  if (!first.Words.empty())
   {
     return ArrayWith<vtkStringArray>(first.Words);
   }
-  const auto isLarge = [](double number) { return std::abs(number) >= 9007199254740992.0; };
-  const bool areLarge = columns.size() == 1 &&
-    std::any_of(first.Numbers.begin(), first.Numbers.end(), isLarge); // here doubles are 2 apart
-  const bool isIdentifier = columns.size() == 1 && vtkSPHTellsApart(first.Name.c_str());
+  const bool areLarge = std::any_of(first.Numbers.begin(), first.Numbers.end(),
+    [](double number) { return std::abs(number) >= 9007199254740992.0; }); // doubles are 2 apart
+  const bool isIdentifier = vtkSPHTellsApart(first.Name.c_str()); // of particles, or of their kinds
   if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
-    return ArrayWith<vtkTypeInt64Array>(first.Whole); // such an array tells particles or kinds of
-                                                      // particles apart
+    return ArrayWith<vtkTypeInt64Array>(first.Whole);
   }
-  if (isIdentifier && areLarge)
-  {
-    FailToRead(file,
-      "its column " + first.Name +
-        " has numbers from 2^53 on, where some of it are not whole or are 2^63 and more: different "
-        "ones would become equal");
-  }
-  return JoinColumns(table, columns, static_cast<int>(columns.size()));
+  RequireToRead(!isIdentifier || !areLarge, file,
+    "its column " + first.Name +
+      " has numbers from 2^53 on, where some of it are not whole or are 2^63 and more: different "
+      "ones would become equal");
+  return JoinColumns(table, columns, 1);
 }
 
 }
@@ -330,72 +329,50 @@ std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
 
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table)
 {
-  const auto need = [&file, &table](const std::vector<std::size_t>& found)
-  {
-    if (found.size() == 3 || found.size() == table.size())
-    {
-      return found;
-    }
-    std::string names;
-    for (const std::size_t column : found)
-    {
-      names += (names.empty() ? "" : " and ") + table[column].Name;
-    }
-    FailToRead(file,
-      "of the three columns of positions only " + names + " is found; there are " + NamesOf(table) +
-        ". For particles in a plane add the third one, of zeros");
-  };
-  const std::vector<Array> arrays = FindArrays(table);
-  const Array* usual = nullptr;
-  int best = -1;
-  for (const Array& array : arrays)
+  std::vector<std::size_t> found;
+  int best = VTK_INT_MAX;
+  for (const auto& [first, array] : FindArrays(table))
   {
     const std::size_t count = array.Columns.size();
     const int rank = vtkSPHPositionPriority(array.Name.c_str());
-    if ((count == 2 || count == 3) && rank >= 0 && (!usual || rank < best))
+    if ((count == 2 || count == 3) && rank >= 0 && rank < best)
     {
-      usual = &array;
+      found = array.Columns;
       best = rank;
     }
   }
-  if (usual)
+  found = found.empty() ? FindAxes(table, "") : found;
+  std::vector<std::string> names;
+  for (const std::size_t column : found)
   {
-    return need(usual->Columns);
+    names.push_back(table[column].Name);
   }
-  const std::vector<std::size_t> found = FindAxes(table, "");
-  return found.empty() ? found : need(found);
+  RequireToRead(found.empty() || found.size() == 3 || found.size() == table.size(), file,
+    "of the three columns of positions only " + Joined(names, " and ") + " is found; there are " +
+      ListNames(table) + ". For particles in a plane add the third one, of zeros");
+  return found;
 }
 
 vtkSmartPointer<vtkPolyData> ParticlesOf(
   const std::string& file, const Table& table, std::vector<std::size_t> positions)
 {
   positions = positions.empty() ? FindPositions(file, table) : positions;
-  if (positions.empty())
-  {
-    FailToRead(file,
-      "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
-      "Points:2; there are " +
-        NamesOf(table));
-  }
+  RequireToRead(!positions.empty(), file,
+    "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+    "Points:2; there are " +
+      ListNames(table));
   for (const std::size_t column : positions)
   {
-    if (!table[column].Words.empty())
-    {
-      FailToRead(file, "its positions are no numbers: '" + table[column].Words.front() + "'");
-    }
+    const std::vector<std::string>& words = table[column].Words;
+    RequireToRead(words.empty(), file,
+      "its positions are no numbers: '" + (words.empty() ? "" : words.front()) + "'");
   }
-  auto particles = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetData(JoinColumns(table, positions, 3));
-  particles->SetPoints(points);
-  for (const Array& each : FindArrays(table, positions))
+  const vtkSmartPointer<vtkPolyData> particles = PointsAt(JoinColumns(table, positions, 3));
+  for (const auto& [first, each] : FindArrays(table, positions))
   {
-    if (!each.Columns.empty())
-    {
-      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(file, table, each.Columns);
-      array->SetName(each.Name.c_str());
-      particles->GetPointData()->AddArray(array);
-    }
+    const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(file, table, each.Columns);
+    array->SetName(each.Name.c_str());
+    particles->GetPointData()->AddArray(array);
   }
   return particles;
 }

@@ -4,17 +4,14 @@
 #ifndef TextTable_h
 #define TextTable_h
 
+#include "Formats.h"
+
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <cstddef>
-#include <fstream>
 #include <string>
-#include <string_view>
 #include <vector>
-
-using View = std::string_view;
 
 View Trimmed(View text);
 std::string Small(View text);
@@ -25,45 +22,32 @@ bool ToNumber(View text, double& value);
 bool ToInteger(View text, vtkTypeInt64& value);
 
 /// Splits a line at the separators that are not in quotes; several blanks are one separator.
-void Split(View line, char separator, std::vector<View>& cells);
+std::vector<View> Split(View line, char separator);
 
-/// The lines of a file, one at a time.
+/// The lines of a file, one at a time. A copy stays at the line where it was made.
 class Lines
 {
 public:
-  explicit Lines(const std::string& file)
-    : File(file)
-    , Stream(file, std::ios::binary)
-  {
-  }
+  explicit Lines(const std::string& file);
 
-  /// Reads the next line. Returns false at the end.
+  /// Goes to the next line. Returns false at the end.
   bool Next();
 
-  /// Reads the next line. Fails at the end; `what` tells the user what the line should hold.
+  /// Goes to the next line. Fails at the end; `what` tells the user what the line should hold.
   void Need(const char* what);
 
-  /// Where the next line begins.
-  struct Place
-  {
-    std::streamoff Offset;
-    std::size_t Number;
-  };
-  Place Here() { return { this->Stream.tellg(), this->Number }; }
-  void GoTo(const Place& place)
-  {
-    this->Stream.seekg(place.Offset);
-    this->Number = place.Number;
-  }
-
   View Get() const { return this->Line; }
+  View GetRest() const { return this->Rest; } ///< all bytes behind this line
   std::string Where() const { return "line " + std::to_string(this->Number); }
 
-  const std::string File;
+  /// Throws std::runtime_error with a sentence about this line unless `isGood`.
+  void Check(bool isGood, const std::string& why) const;
+
+  std::string File;
 
 private:
-  std::ifstream Stream;
-  std::string Line;
+  FileBytes Bytes;
+  View Rest, Line;
   std::size_t Number = 0;
 };
 

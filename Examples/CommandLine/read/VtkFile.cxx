@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "FileName.h"
 #include "Messages.h"
-#include "OptionValue.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -26,13 +24,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <memory>
 #include <set>
 #include <sstream>
-#include <stdexcept>
-#include <string_view>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -43,33 +36,7 @@
 namespace
 {
 
-using View = std::string_view;
-
 // ---- The counts that a file declares ----
-
-/// Calls check(file, bytes of the file).
-void Inspect(const std::string& file, void (*check)(const std::string& file, View text))
-{
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status = {};
-  const bool isThere = descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0;
-  const auto size = static_cast<std::size_t>(status.st_size);
-  const std::shared_ptr<void> memory(
-    isThere ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : MAP_FAILED,
-    [size](void* mapped)
-    {
-      if (mapped != MAP_FAILED)
-      {
-        munmap(mapped, size);
-      }
-    });
-  if (descriptor >= 0)
-  {
-    close(descriptor);
-  }
-  const bool isMapped = memory.get() != MAP_FAILED;
-  check(file, isMapped ? View(static_cast<char*>(memory.get()), size) : View());
-}
 
 /// Returns the whole numbers of a text, up to the first word that is none.
 std::vector<double> Numbers(View text)
@@ -146,18 +113,6 @@ void CheckXmlSizes(const std::string& file, View text)
   }
 }
 
-/// Checks that an XML file is complete. VTK reads appended data that end too early without an
-/// error, and the rest of the arrays then has random values.
-void CheckXml(const std::string& file, View text)
-{
-  CheckXmlSizes(file, text);
-  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 256)).find("</VTKFile>") ==
-    View::npos)
-  {
-    throw std::runtime_error(file + " is not a complete VTK XML file: its end is missing");
-  }
-}
-
 /// Returns the words of a line in small letters; none if it has values, as text or bytes.
 std::vector<std::string> DeclaringWords(View line)
 {
@@ -204,17 +159,16 @@ bool BeginsWithNumbers(View text, double count)
 /// earlier line. The arrays of a field have lines with a name, two counts and a type.
 void CheckLegacy(const std::string& file, View text)
 {
-  static const std::set<std::string> counted = { "points", "vertices", "lines", "polygons",
-    "triangle_strips", "cells", "cell_types", "x_coordinates", "y_coordinates", "z_coordinates",
-    "field", "lookup_table" };
-  static const std::set<std::string> cells = { "vertices", "lines", "polygons", "triangle_strips",
-    "cells" };
+  using Words = std::set<std::string>;
+  static const Words cells = { "vertices", "lines", "polygons", "triangle_strips", "cells" };
+  static const Words counted = { "points", "cell_types", "x_coordinates", "y_coordinates",
+    "z_coordinates", "field", "lookup_table" };
   // VTK's reader crashes if other words stand where a type must stand.
-  static const std::set<std::string> types = { "bit", "char", "signed_char", "unsigned_char", "short",
+  static const Words types = { "bit", "char", "signed_char", "unsigned_char", "short",
     "unsigned_short", "int", "unsigned_int", "long", "unsigned_long", "vtkidtype", "vtktypeint64",
     "vtktypeuint64", "float", "double", "string", "utf8_string", "variant" };
-  static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
-    "color_scalars", "texture_coordinates" };
+  static const Words attributes = { "scalars", "vectors", "normals", "tensors", "color_scalars",
+    "texture_coordinates" };
   const double most = 8.0 * static_cast<double>(text.size());
   std::string section = "point_data"; // the kind of elements, points or cells
   double elements = 0.0;              // how many elements there are
@@ -232,12 +186,17 @@ void CheckLegacy(const std::string& file, View text)
       const std::vector<double> number = Numbers(words[i]);
       numbers.insert(numbers.end(), number.begin(), number.end());
     }
-    if (fields > 0.0 && words.size() == 4 && AreDigits(words[1]) && AreDigits(words[2]) &&
-      types.count(words[3]))
+    const auto checkArray = [&]
     {
-      --fields;
       CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
       CheckSize(file, most, first, numbers[1]);
+    };
+    const bool isArray =
+      words.size() == 4 && AreDigits(words[1]) && AreDigits(words[2]) && types.count(words[3]);
+    if (fields > 0.0 && isArray)
+    {
+      --fields;
+      checkArray();
       continue;
     }
     const double room = 0.5 * static_cast<double>(text.size() - end); // two bytes each, or more
@@ -246,10 +205,8 @@ void CheckLegacy(const std::string& file, View text)
       CheckSize(file, room, first, numbers[1]);
       const std::size_t next = text.find_first_not_of(" \t\r\n", end);
       const bool isList = isText && next != View::npos && text[next] != 'O'; // 'O': OFFSETS
-      if (isList && !BeginsWithNumbers(text.substr(end), numbers[1]))
-      {
-        FailToRead(file, "its " + first + " are no whole numbers; it may be damaged");
-      }
+      RequireToRead(!isList || BeginsWithNumbers(text.substr(end), numbers[1]), file,
+        "its " + first + " are no whole numbers; it may be damaged");
     }
     else if (first == "points" && !numbers.empty())
     {
@@ -257,10 +214,8 @@ void CheckLegacy(const std::string& file, View text)
     }
     else if (first == "field")
     {
-      if (words.size() != 3 || !AreDigits(words[2]))
-      {
-        FailToRead(file, "the line of its FIELD has no number of arrays; it may be damaged");
-      }
+      RequireToRead(words.size() == 3 && AreDigits(words[2]), file,
+        "the line of its FIELD has no number of arrays; it may be damaged");
       fields = numbers.back();
     }
     const bool isSection = first == "point_data" || first == "cell_data";
@@ -271,7 +226,7 @@ void CheckLegacy(const std::string& file, View text)
       {
         CheckSize(file, most, first, std::min(number, 0.0));
       }
-      if (hasAttribute || counted.count(first))
+      if (hasAttribute || cells.count(first) || counted.count(first))
       {
         CheckSize(file, most, first, number);
       }
@@ -284,14 +239,10 @@ void CheckLegacy(const std::string& file, View text)
     }
     else if (words.size() == 4 && numbers.size() == 2 && Numbers(words[3]).empty())
     {
-      if (!types.count(words[3]) || !AreDigits(words[1]) || !AreDigits(words[2]))
-      {
-        FailToRead(file,
-          "its array '" + words[0] + "' has the numbers and the type '" + words[1] + " " + words[2] +
-            " " + words[3] + "', which are not known");
-      }
-      CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
-      CheckSize(file, most, first, numbers[1]);
+      RequireToRead(isArray, file,
+        "its array '" + words[0] + "' has the numbers and the type '" + words[1] + " " + words[2] +
+          " " + words[3] + "', which are not known");
+      checkArray();
     }
   }
 }
@@ -401,9 +352,33 @@ std::vector<double> NumberOf(vtkDataObject* data, const std::vector<std::string>
 
 }
 
+FileBytes BytesOf(const std::string& file)
+{
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat status = {};
+  const bool isFile = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+  const auto size = static_cast<std::size_t>(isFile ? status.st_size : 0);
+  void* const memory =
+    size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  close(descriptor);
+  RequireToRead(memory != MAP_FAILED, file, "it cannot be mapped into memory");
+  return FileBytes(new View(static_cast<const char*>(memory), size),
+    [memory, size](const View* bytes)
+    {
+      munmap(memory, size);
+      delete bytes;
+    });
+}
+
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t)
 {
-  Inspect(file, CheckXml);
+  const FileBytes bytes = BytesOf(file);
+  CheckXmlSizes(file, *bytes);
+  // VTK reads appended data that end too early without an error, and the rest of the arrays then has
+  // random values.
+  const View end = bytes->substr(bytes->size() - std::min<std::size_t>(bytes->size(), 256));
+  Require(end.find("</VTKFile>") != View::npos,
+    file + " is not a complete VTK XML file: its end is missing");
   const vtkSmartPointer<vtkXMLReader> reader = FindFormat(XmlReaders, file)->Process();
   reader->SetFileName(file.c_str());
   reader->Update();
@@ -412,7 +387,7 @@ vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t)
 
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t)
 {
-  Inspect(file, CheckLegacy);
+  CheckLegacy(file, *BytesOf(file));
   vtkNew<vtkGenericDataObjectReader> reader;
   reader->SetFileName(file.c_str());
   // By default only the first array of each kind is read.
@@ -430,10 +405,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
 
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names)
 {
-  std::string head(1 << 16, '\0'); // field data behind the particles are ignored
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(&head[0], static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string head(BytesOf(file)->substr(0, 1 << 16)); // field data behind it are ignored
   const bool isLegacy = head.compare(0, 5, "# vtk") == 0;
   const std::string text = isLegacy ? FieldOfLegacy(head) : FieldOfXml(head);
   std::vector<double> number;
@@ -459,16 +431,9 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
       number = NumberOf(reader->GetOutput(), names);
     }
   };
-  try
+  if (!text.empty())
   {
-    if (!text.empty())
-    {
-      ReadWithCare(file, read);
-    }
-  }
-  catch (const std::exception&)
-  {
-    // A fault is reported when the whole file is read.
+    FailureOf([&] { ReadWithCare(file, read); }); // it is reported when the whole file is read
   }
   Messages() = {};
   // If an XML file has field data at its end, its beginning has their least and greatest value.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Ending.h"
 
-#include "SafeText.h"
+#include "Text.h"
 
 #include <algorithm>
 #include <climits>
@@ -180,8 +180,7 @@ std::string FaultsOfDrivers(const std::string& device)
 }
 
 Activity::Activity(const std::string& failure, const std::string& hint)
-  : OuterFailure(Failure)
-  , OuterHint(Hint)
+  : Outer(Failure, Hint)
 {
   Set(Failure, Printable(failure));
   Set(Hint, hint);
@@ -189,8 +188,8 @@ Activity::Activity(const std::string& failure, const std::string& hint)
 
 Activity::~Activity()
 {
-  Set(Failure, this->OuterFailure);
-  Set(Hint, this->OuterHint);
+  Set(Failure, this->Outer.first);
+  Set(Hint, this->Outer.second);
 }
 
 Silence::Silence()
@@ -223,14 +222,7 @@ TemporaryFile::TemporaryFile(const std::string& begin)
 {
   const std::lock_guard<std::mutex> guard(FilesLock);
   this->Descriptor = mkstemp(&this->Name[0]);
-  if (this->Descriptor >= 0)
-  {
-    Files.push_back(this->Name);
-  }
-  else
-  {
-    this->Name.clear();
-  }
+  this->Descriptor >= 0 ? Files.push_back(this->Name) : this->Name.clear();
 }
 
 TemporaryFile::~TemporaryFile()

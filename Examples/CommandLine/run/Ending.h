@@ -4,6 +4,7 @@
 #define Ending_h
 
 #include <string>
+#include <utility>
 
 /// Must be called before any thread starts. From then on the program prints a sentence if it
 /// crashes, and removes its temporary files if a crash, or a signal that people and batch systems
@@ -28,8 +29,7 @@ public:
   void operator=(const Activity&) = delete;
 
 private:
-  std::string OuterFailure;
-  std::string OuterHint;
+  const std::pair<std::string, std::string> Outer; ///< the sentence around this object's life
 };
 
 /// While such an object lives, only the program's own sentence about a crash reaches standard

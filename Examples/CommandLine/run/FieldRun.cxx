@@ -11,8 +11,8 @@
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
 #include "Runs.h"
-#include "SafeText.h"
 #include "Sharing.h"
+#include "Text.h"
 
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
@@ -28,7 +28,6 @@
 #include <cmath>
 #include <iostream>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace
@@ -56,10 +55,7 @@ vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
       last = -1.0;
     }
   }
-  if (first >= last)
-  {
-    throw std::runtime_error("no part of the --line lies in the --box");
-  }
+  Require(first < last, "no part of the --line lies in the --box");
   const double length = std::hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> way;
@@ -90,20 +86,15 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
   }
   double bounds[6];
   vtkNew<vtkSPHProbe> all; // walls count, too
-  if (!all->FindFluidBounds(job.Probe->TakePresent(particles), bounds))
-  {
-    throw std::runtime_error(
-      "--slice has no plane to show, as --within and --only leave no particles");
-  }
+  Require(all->FindFluidBounds(job.Probe->TakePresent(particles), bounds),
+    "--slice has no plane to show, as --within and --only leave no particles");
   const SliceOptions& slice = job.Slice;
   const double* box = job.Surface->GetBox();
   for (int i = 0; job.Surface->GetUseBox() && i < 6; ++i)
   {
     bounds[i] = std::isfinite(box[i]) ? box[i] : bounds[i];
-    if (i / 2 == slice.Axis && (i % 2 ? box[i] < slice.Place : box[i] > slice.Place))
-    {
-      throw std::runtime_error("the plane of --slice does not cross the --box");
-    }
+    const bool isOutside = i % 2 ? box[i] < slice.Place : box[i] > slice.Place;
+    Require(i / 2 != slice.Axis || !isOutside, "the plane of --slice does not cross the --box");
   }
   double origin[3], size[3];
   for (int a = 0; a < 3; ++a)
@@ -112,11 +103,9 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
     size[a] = a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
   }
   const double longest = *std::max_element(size, size + 3);
-  if (!(longest > 0.0))
-  {
-    throw std::runtime_error(std::string("--slice ") + "xyz"[slice.Axis] +
+  Require(longest > 0.0,
+    std::string("--slice ") + "xyz"[slice.Axis] +
       "= has no plane to show: all particles lie on one line along this axis");
-  }
   auto image = vtkSmartPointer<vtkImageData>::New();
   const double spacing = longest / (slice.Resolution - 1);
   const auto count = [spacing](double length)
@@ -131,21 +120,19 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
   const double* box = job.Surface->GetBox();
-  vtkPointData* arrays = result->GetPointData();
-  const bool isAsked = !job.ProbeFile.empty() && job.Surface->GetUseBox();
+  const bool isAsked = job.Has("--probe") && job.Surface->GetUseBox();
   for (vtkIdType i = 0; isAsked && i < result->GetNumberOfPoints(); ++i)
   {
     const double* x = result->GetPoint(i);
     const bool isIn = x[0] >= box[0] && x[0] <= box[1] && x[1] >= box[2] && x[1] <= box[3] &&
       x[2] >= box[4] && x[2] <= box[5];
-    for (int a = 0; !isIn && a < arrays->GetNumberOfArrays(); ++a)
+    for (vtkAbstractArray* each : ArraysOf(result->GetPointData()))
     {
-      vtkDataArray* array = arrays->GetArray(a);
-      for (int c = 0; array && !points->GetPointData()->HasArray(array->GetName()) &&
-           c < array->GetNumberOfComponents();
-           ++c)
+      auto* array = vtkDataArray::SafeDownCast(each);
+      if (!isIn && array && !points->GetPointData()->HasArray(array->GetName()))
       {
-        array->SetComponent(i, c, 0.0);
+        const std::vector<double> zeros(static_cast<std::size_t>(array->GetNumberOfComponents()));
+        array->SetTuple(i, zeros.data());
       }
     }
   }
@@ -174,10 +161,8 @@ std::string Describe(vtkDataSet* data)
 vtkImageData* SeenImage(const Job& job)
 {
   vtkImageData* image = job.Projection->GetImage();
-  if (image->GetNumberOfPoints() == 0 || !image->GetPointData()->GetScalars())
-  {
-    throw std::runtime_error("no particle is seen, so no image was written");
-  }
+  Require(image->GetNumberOfPoints() > 0 && image->GetPointData()->GetScalars(),
+    "no particle is seen, so no image was written");
   return image;
 }
 
@@ -230,7 +215,7 @@ public:
   explicit PointTable(Sharing& sharing)
     : TableSeries(sharing, sharing.Options.Output)
   {
-    sharing.OnFirst([this] { this->Points = ReadDataSet(this->Options.ProbeFile); });
+    sharing.OnFirst([this] { this->Points = ReadDataSet(this->Options.Text("--probe")); });
   }
 
   bool Make()
@@ -266,15 +251,14 @@ private:
     if (this->Columns.empty())
     {
       this->Text = "time,point,x,y,z,valid";
-      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+      for (vtkAbstractArray* array : ArraysOf(arrays))
       {
-        vtkAbstractArray* array = arrays->GetAbstractArray(i);
+        const std::string name = array->GetName();
         const int components = array->GetNumberOfComponents();
-        for (int c = 0; std::string(array->GetName()) != MaskName && c < components; ++c)
+        for (int c = 0; name != MaskName && c < components; ++c)
         {
-          this->Columns.emplace_back(array->GetName(), c);
-          this->Text +=
-            "," + TableField(array->GetName() + (components > 1 ? ":" + std::to_string(c) : ""));
+          this->Columns.emplace_back(name, c);
+          this->Text += "," + TableField(name + (components > 1 ? ":" + std::to_string(c) : ""));
         }
       }
       this->Text += "\n";
@@ -284,12 +268,9 @@ private:
     {
       const double* x = points->GetPoint(p);
       const bool isValid = mask && mask->GetComponent(p, 0) > 0.0;
-      this->Text += DigitsOf(time) + "," + std::to_string(p);
-      for (int a = 0; a < 3; ++a)
-      {
-        this->Text += "," + DigitsOf(x[a]);
-      }
-      this->Text += isValid ? ",1" : ",0";
+      this->Text += Joined({ DigitsOf(time), std::to_string(p), DigitsOf(x[0]), DigitsOf(x[1]),
+                             DigitsOf(x[2]), isValid ? "1" : "0" },
+        ",");
       for (const auto& [name, component] : this->Columns)
       {
         vtkAbstractArray* array = arrays->GetAbstractArray(name.c_str());
@@ -313,7 +294,7 @@ bool MakePointTable(Sharing& sharing)
   return PointTable(sharing).Make();
 }
 
-void MakeField(Sharing& sharing)
+bool MakeField(Sharing& sharing)
 {
   const Job& job = sharing.Options;
   const bool isProbe = job.IsProbe();
@@ -325,9 +306,9 @@ void MakeField(Sharing& sharing)
     {
       OpenSources(job.InputFiles());
       CheckOutputs({ job.Output, job.Picture.File });
-      if (!job.ProbeFile.empty())
+      if (job.Has("--probe"))
       {
-        points = ReadDataSet(job.ProbeFile);
+        points = ReadDataSet(job.Text("--probe"));
         CheckDataSetFile(job.Output, points);
       }
     });
@@ -336,7 +317,7 @@ void MakeField(Sharing& sharing)
   sharing.OnAll(
     [&]
     {
-      if (isProbe && job.ProbeFile.empty())
+      if (isProbe && !job.Has("--probe"))
       {
         const vtkSmartPointer<vtkDataSet> made = MakePoints(job, particles);
         points = sharing.IsFirst() ? made : points;
@@ -359,7 +340,7 @@ void MakeField(Sharing& sharing)
       vtkDataSet* result =
         isProbe ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
       HideOutside(job, points, result);
-      if (!job.Quiet)
+      if (!job.Has("--quiet"))
       {
         std::cout << Describe(result) << "seconds     " << seconds << "\n";
       }
@@ -371,4 +352,5 @@ void MakeField(Sharing& sharing)
         WriteOutput(job.Picture.File, DrawField(job, result, job.Picture.File, *picture, colors));
       }
     });
+  return true;
 }

@@ -3,14 +3,12 @@
 #include "ColorScale.h"
 #include "DataFile.h"
 #include "Extra.h"
-#include "FileName.h"
 #include "Job.h"
 #include "Messages.h"
-#include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleTimes.h"
 #include "Runs.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
@@ -22,7 +20,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <utility>
@@ -77,11 +74,11 @@ public:
     , Colors(this->Options.Picture)
     , FrameColors(this->Options.Picture)
     , ListFile(IsCollectionFile(this->Options.Output) ? this->Options.Output : "")
-    , PieceFile(this->Options.ComponentFile)
-    , NumberFile(this->Options.NumbersFile)
+    , PieceFile(this->Options.Text("--components"))
+    , NumberFile(this->Options.Text("--numbers"))
   {
     const Job& job = this->Options;
-    if (!job.NumbersFile.empty())
+    if (job.Has("--numbers"))
     {
       AddGauges(job);
     }
@@ -94,24 +91,20 @@ public:
           outputs.push_back(NameOfStep(job.Picture.File, i));
         }
         outputs.insert(outputs.end(),
-          { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
+          { job.Text("--stats"), job.Text("--components"), job.Text("--numbers"),
             IsCollectionFile(job.Output) ? job.Output : "" });
         this->Times.OpenFiles();
         CheckOutputs(outputs);
-        if (Printable(job.Output) != job.Output)
-        {
-          throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
-        }
+        Need(Printable(job.Output) == job.Output,
+          job.Output + " has characters in its name that a .pvd file cannot hold");
         // The user has not named the files beside a .pvd file, so each must be new, or a step of an
         // older film.
         for (const std::string& surface : this->Surfaces)
         {
           std::error_code error;
-          if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
-            !IsFilmStep(surface))
-          {
-            throw UsageError(vtkSPHSay(MCOR_SAY(FILM_STEP_TAKEN), surface.c_str()));
-          }
+          Need(!IsCollectionFile(job.Output) || !fs::exists(fs::symlink_status(surface, error)) ||
+              IsFilmStep(surface),
+            vtkSPHSay(MCOR_SAY(FILM_STEP_TAKEN), surface.c_str()));
         }
       });
     if (!job.Picture.File.empty())
@@ -131,11 +124,11 @@ public:
           SeenImage(this->Options);
         }
         this->List(true);
-        if (!this->Options.StatisticsFile.empty())
+        if (this->Options.Has("--stats"))
         {
           std::cout.flush(); // the file may be /dev/stdout
           WriteOutput(
-            this->Options.StatisticsFile, FilmAsJson(this->Options, this->Reports, this->Last));
+            this->Options.Text("--stats"), FilmAsJson(this->Options, this->Reports, this->Last));
         }
       });
     return isGood;
@@ -149,21 +142,15 @@ private:
 
   bool IsOfTimes() const override
   {
-    return !this->Options.NumbersFile.empty() || !this->Options.ComponentFile.empty();
+    return this->Options.Has("--numbers") || this->Options.Has("--components");
   }
 
   void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
   {
     const std::string progress = "step " + std::to_string(i + 1) + " of " +
       std::to_string(this->Surfaces.size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
-    if (this->Options.Has("--project"))
-    {
-      this->MakeImage(i, particles, progress, warnings);
-    }
-    else
-    {
-      this->MakeSurface(i, particles, progress, warnings);
-    }
+    this->Options.Has("--project") ? this->MakeImage(i, particles, progress, warnings)
+                                   : this->MakeSurface(i, particles, progress, warnings);
   }
 
   void Miss(std::size_t i, const std::string& error) override
@@ -180,8 +167,7 @@ private:
     this->Shared.OnAll(
       [&] { projection->SetInputData(SetUpParticles(projection, this->Options, particles)); });
     this->Shared.OnAll([&] { seconds = Update(projection, this->Shared, progress); });
-    const std::vector<std::string>& told = Messages().Warnings;
-    warnings.insert(warnings.end(), told.begin(), told.end());
+    Messages().AddWarningsTo(warnings);
     this->Shared.OnFirst(
       [&]
       {
@@ -196,18 +182,14 @@ private:
         {
           for (const auto& [step, cost] : std::exchange(this->Waiting, {}))
           {
-            this->WriteImage(step, isSeen && step == i ? image : this->Empty.Get(), cost);
+            vtkImageData* shown = isSeen && step == i ? image : this->Empty.Get();
+            this->Write(step, DataSetBytes(this->Surfaces[step], shown),
+              [&](const std::string& frame)
+              { return DrawField(this->Options, shown, frame, *this->Drawn, this->FrameColors); });
+            this->Keep(step, nullptr, DescribeSize(shown), cost);
           }
         }
       });
-  }
-
-  void WriteImage(std::size_t i, vtkImageData* image, double seconds)
-  {
-    this->Write(i, DataSetBytes(this->Surfaces[i], image),
-      [&](const std::string& frame)
-      { return DrawField(this->Options, image, frame, *this->Drawn, this->FrameColors); });
-    this->Keep(i, nullptr, DescribeSize(image), seconds);
   }
 
   void MakeSurface(std::size_t i, vtkPointSet* particles, const std::string& progress,
@@ -270,36 +252,32 @@ private:
     const double time = this->Times.Get()[i];
     this->Entries += "    <DataSet timestep=\"" + DigitsOf(time) + "\" part=\"0\" file=\"" +
       EscapedForXml(fs::path(this->Surfaces[i]).filename().string()) + "\"/>\n";
-    if (!this->Options.StatisticsFile.empty())
+    if (this->Options.Has("--stats"))
     {
       this->Reports.push_back(
         StepAsJson(time, this->Times.ListFiles(time), this->Surfaces[i], statistics, seconds));
     }
     this->List(false);
-    if (!this->Options.Quiet)
+    if (!this->Options.Has("--quiet"))
     {
-      std::cout << Printable(this->Label(i)) << ": " << what << ", " << std::setprecision(3)
-                << seconds << " s" << std::endl;
+      std::cout << Printable(this->Label(i)) << ": " << what << ", " << DigitsOf(seconds, 3) << " s"
+                << std::endl;
     }
   }
 
   /// Writes the lists and tables of all surfaces so far.
   void List(bool isLast)
   {
-    if (this->Entries.empty())
+    if (!this->Entries.empty())
     {
-      return;
+      this->ListFile.Write(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+        "  <Collection>\n" +
+          this->Entries + "  </Collection>\n</VTKFile>\n",
+        isLast);
+      this->PieceFile.Write(this->Pieces, isLast);
+      this->NumberFile.Write(this->Numbers, isLast);
     }
-    this->ListFile.Write(
-      [this]
-      {
-        return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
-               "  <Collection>\n" +
-          this->Entries + "  </Collection>\n</VTKFile>\n";
-      },
-      isLast);
-    this->PieceFile.Write([this] { return this->Pieces; }, isLast);
-    this->NumberFile.Write([this] { return this->Numbers; }, isLast);
   }
 
   const std::vector<std::string> Surfaces;

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Messages.h"
 
+#include "Text.h"
+
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace
 {
@@ -73,10 +74,7 @@ vtkStandardNewMacro(Window);
 
 void KeptMessages::Check(const std::string& error) const
 {
-  if (!error.empty() || !this->Errors.empty())
-  {
-    throw std::runtime_error(error.empty() ? this->Errors.front() : error);
-  }
+  Require(error.empty() && this->Errors.empty(), error.empty() ? this->FirstError() : error);
 }
 
 KeptMessages& Messages()

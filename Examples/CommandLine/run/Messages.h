@@ -12,6 +12,12 @@ struct KeptMessages
 {
   std::vector<std::string> Errors, Warnings; ///< sentences without file, line and address
 
+  std::string FirstError() const { return this->Errors.empty() ? "" : this->Errors.front(); }
+  void AddWarningsTo(std::vector<std::string>& list) const
+  {
+    list.insert(list.end(), this->Warnings.begin(), this->Warnings.end());
+  }
+
   /// Throws std::runtime_error with `error` or, if it is empty, with the first kept error, if any.
   void Check(const std::string& error = "") const;
 };

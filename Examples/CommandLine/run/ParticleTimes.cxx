@@ -3,13 +3,11 @@
 #include "ParticleTimes.h"
 
 #include "Ending.h"
-#include "FileName.h"
 #include "Formats.h"
 #include "Job.h"
 #include "Messages.h"
-#include "OptionValue.h"
 #include "ParticleFile.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -27,13 +25,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <iomanip>
 #include <iostream>
 #include <iterator>
-#include <locale>
 #include <map>
-#include <sstream>
-#include <stdexcept>
 
 namespace
 {
@@ -70,91 +64,19 @@ using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, s
 NumberedName Numbered(const std::string& name)
 {
   NumberedName numbered;
-  auto& [words, numbers] = numbered;
-  for (const char c : name)
+  for (std::size_t at = 0, end = 0; at < name.size(); at = end)
   {
-    if (c < '0' || c > '9')
+    const std::size_t begin = std::min(name.find_first_of("0123456789", at), name.size());
+    end = std::min(name.find_first_not_of("0123456789", begin), name.size());
+    numbered.first += name.substr(at, begin - at);
+    if (end > begin)
     {
-      words += c;
-      continue;
+      const std::size_t first = std::min(name.find_first_not_of('0', begin), end);
+      numbered.first += '\0';
+      numbered.second.emplace_back(end - first, name.substr(first, end - first));
     }
-    if (words.empty() || words.back() != '\0')
-    {
-      words += '\0';
-      numbers.emplace_back();
-    }
-    auto& [size, digits] = numbers.back();
-    digits += c == '0' && size == 0 ? "" : std::string(1, c);
-    size = digits.size();
   }
   return numbered;
-}
-
-/// Rounds to 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
-double Rounded(double time)
-{
-  std::ostringstream digits;
-  digits.imbue(std::locale::classic());
-  digits << std::setprecision(15) << time;
-  ParseNumber(digits.str(), time);
-  return time;
-}
-
-/// Lists the steps of files given one by one. isTold: whether the files, or --time-step, tell the
-/// times. storedStep: the time between steps, if the files only store this; else 0.
-Steps GivenSteps(
-  const Job& job, std::vector<std::string>& warnings, bool& isTold, double& storedStep)
-{
-  // If names differ only in numbers, the numbers tell the order: shells list tank_10 before tank_9.
-  std::vector<std::string> inputs = job.Inputs;
-  const std::string words = Numbered(inputs.front()).first;
-  if (std::all_of(inputs.begin(), inputs.end(),
-        [&words](const std::string& file) { return Numbered(file).first == words; }))
-  {
-    std::stable_sort(inputs.begin(), inputs.end(),
-      [](const std::string& a, const std::string& b)
-      { return Numbered(a).second < Numbered(b).second; });
-  }
-  std::vector<std::string> files;
-  std::vector<double> times;
-  for (const std::string& file : inputs)
-  {
-    const std::vector<double> steps = ::ListTimes(file);
-    const bool isFilm = steps.size() > 1;
-    for (std::size_t k = 0; k < (isFilm ? steps.size() : 1); ++k)
-    {
-      files.push_back(isFilm ? file + "#" + std::to_string(k) : file);
-    }
-    times.insert(times.end(), steps.begin(), steps.end());
-  }
-  if (job.Has("--time-step"))
-  {
-    times.clear();
-    if (files.size() == 1)
-    {
-      throw UsageError("--time-step is the time between one INPUT and the next, and there is one; "
-                       "leave it out");
-    }
-  }
-  const bool areAll = times.size() == files.size();
-  const bool areGood = areAll &&
-    std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()) == times.end();
-  if (!times.empty() && !areGood)
-  {
-    warnings.push_back("the times in the field data of the files " +
-      std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
-      ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
-  }
-  isTold = files.size() == 1 || job.Has("--time-step") || areGood;
-  storedStep = isTold ? 0.0 : StoredTimeStep(inputs);
-  const double step = storedStep > 0.0 ? storedStep : job.TimeStep;
-  Steps steps;
-  for (std::size_t i = 0; i < files.size(); ++i)
-  {
-    const double time = areGood ? times[i] : Rounded(static_cast<double>(i) * step);
-    steps.push_back({ time, { files[i] }, {} });
-  }
-  return steps;
 }
 
 /// Adds the walls of a file to all steps. For a name with %d, each step gets the file of its number;
@@ -164,34 +86,27 @@ void AddStepWalls(
 {
   const bool areListed = IsListOfSteps(file);
   const Steps walls = areListed ? ListedSteps(file, warnings) : Steps();
-  if (areListed && !haveTimes && walls.size() != steps.size())
-  {
-    throw std::runtime_error("--walls: " + file + " lists " + std::to_string(walls.size()) +
-      " times, and there are " + std::to_string(steps.size()) + " steps");
-  }
+  Require(!areListed || haveTimes || walls.size() == steps.size(),
+    "--walls: " + file + " lists " + std::to_string(walls.size()) + " times, and there are " +
+      std::to_string(steps.size()) + " steps");
   auto next = walls.begin();
   for (ParticleTimes::Step& step : steps)
   {
+    const std::string& name = step.Files.front();
     if (areListed)
     {
       next = haveTimes ? FindStep(walls, step.Time) : next;
-      if (next == walls.end() || (haveTimes && next->Time != step.Time))
-      {
-        throw std::runtime_error(
-          "--walls: " + file + " has no walls at the time of " + step.Files.front());
-      }
+      Require(next != walls.end() && (!haveTimes || next->Time == step.Time),
+        "--walls: " + file + " has no walls at the time of " + name);
       step.Walls.insert(step.Walls.end(), next->Files.begin(), next->Files.end());
       ++next;
     }
     else if (HasStepNumber(file))
     {
-      const std::string name = std::filesystem::path(step.Files.front()).filename().string();
-      const auto numbers = Numbered(name).second; // the 120 of WaterBody_120.vtp
-      if (numbers.empty())
-      {
-        throw std::runtime_error("--walls " + file +
-          " needs the number of each step, but the name " + step.Files.front() + " has none");
-      }
+      // The number of WaterBody_120.vtp is 120.
+      const auto numbers = Numbered(std::filesystem::path(name).filename().string()).second;
+      Require(!numbers.empty(),
+        "--walls " + file + " needs the number of each step, but the name " + name + " has none");
       step.Walls.push_back(
         NameOfStep(file, std::strtoull(numbers.back().second.c_str(), nullptr, 10)));
     }
@@ -206,39 +121,32 @@ void AddStepWalls(
 std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
+  const double begin = steps.front().Time, end = steps.back().Time;
   if (job.FramesPerSecond > 0.0)
   {
-    const double first = steps.front().Time, frame = 1.0 / (job.FramesPerSecond * job.SlowMotion);
-    const double count = std::floor((steps.back().Time - first) / frame + 1e-9);
-    if (!(count < 1e6))
-    {
-      throw UsageError("--fps makes more than a million frames of the times " + TimeText(first) +
-        " to " + TimeText(steps.back().Time) + "; give fewer, or another --time-step");
-    }
+    const double frame = 1.0 / (job.FramesPerSecond * job.SlowMotion);
+    const double count = std::floor((end - begin) / frame + 1e-9);
+    Need(count < 1e6,
+      "--fps makes more than a million frames of the times " + TimeText(begin) + " to " +
+        TimeText(end) + "; give fewer, or another --time-step");
     for (double i = 0.0; i <= count; ++i)
     {
-      times.push_back(first + i * frame);
+      times.push_back(begin + i * frame);
     }
   }
   for (std::size_t i = 0; !job.HasTimes() && i < steps.size(); ++i)
   {
     times.push_back(steps[i].Time);
   }
-  const double begin = steps.front().Time, end = steps.back().Time;
   for (double& time : times)
   {
     // 3 * 0.1 means 0.3.
     const double tolerance = 1e-12 * (end - begin);
     const auto next = FindStep(steps, time - tolerance);
-    if (next != steps.end() && next->Time <= time + tolerance)
-    {
-      time = next->Time;
-    }
-    if (time < begin || time > end)
-    {
-      throw UsageError("--times: " + TimeText(time) + " is outside the times of the steps, " +
-        TimeText(begin) + " to " + TimeText(end));
-    }
+    time = next != steps.end() && next->Time <= time + tolerance ? next->Time : time;
+    Need(time >= begin && time <= end,
+      "--times: " + TimeText(time) + " is outside the times of the steps, " + TimeText(begin) +
+        " to " + TimeText(end));
   }
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
@@ -295,9 +203,7 @@ vtkStandardNewMacro(StoredSteps);
 
 std::string TimeText(double time)
 {
-  std::ostringstream stream;
-  stream << std::setprecision(12) << time;
-  return stream.str();
+  return DigitsOf(time, 12);
 }
 
 ParticleTimes::ParticleTimes(const Sharing& sharing)
@@ -306,8 +212,7 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
   const Job& job = sharing.Options;
   std::vector<std::string> notes;
   const bool haveTimes = IsListOfSteps(job.Inputs.front());
-  this->Steps =
-    haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes, this->AreTold, this->StoredStep);
+  this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), notes) : this->GivenSteps(notes);
   for (const std::string& walls : job.Walls)
   {
     AddStepWalls(walls, haveTimes, this->Steps, notes);
@@ -322,15 +227,62 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
   }
   const bool wallsMove = std::any_of(this->Steps.begin(), this->Steps.end(),
     [this](const Step& step) { return step.Walls != this->Steps.front().Walls; });
-  for (double time : this->Times)
+  for (const double time : this->Times)
   {
-    if (wallsMove && !this->GetStored(time))
-    {
-      throw UsageError("--times: " + TimeText(time) +
+    Need(!wallsMove || this->GetStored(time),
+      "--times: " + TimeText(time) +
         " is between two steps, where walls of each step (--walls) are not known");
-    }
   }
   this->Reset();
+}
+
+std::vector<ParticleTimes::Step> ParticleTimes::GivenSteps(std::vector<std::string>& warnings)
+{
+  // If names differ only in numbers, the numbers tell the order: shells list tank_10 before tank_9.
+  const Job& job = this->Shared.Options;
+  std::vector<std::string> inputs = job.Inputs;
+  if (std::all_of(inputs.begin(), inputs.end(),
+        [words = Numbered(inputs.front()).first](const std::string& file)
+        { return Numbered(file).first == words; }))
+  {
+    std::stable_sort(inputs.begin(), inputs.end(),
+      [](const std::string& a, const std::string& b)
+      { return Numbered(a).second < Numbered(b).second; });
+  }
+  std::vector<std::string> files;
+  std::vector<double> times;
+  for (const std::string& file : inputs)
+  {
+    const std::vector<double> steps = ::ListTimes(file);
+    const bool isFilm = steps.size() > 1;
+    for (std::size_t k = 0; k < (isFilm ? steps.size() : 1); ++k)
+    {
+      files.push_back(isFilm ? file + "#" + std::to_string(k) : file);
+    }
+    times.insert(times.end(), steps.begin(), steps.end());
+  }
+  const bool isGiven = job.Has("--time-step");
+  Need(!isGiven || files.size() > 1,
+    "--time-step is the time between one INPUT and the next, and there is one; leave it out");
+  const bool areAll = times.size() == files.size();
+  const bool areGood = areAll && !isGiven &&
+    std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()) == times.end();
+  if (!times.empty() && !areGood && !isGiven)
+  {
+    warnings.push_back("the times in the field data of the files " +
+      std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
+      ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
+  }
+  this->AreTold = files.size() == 1 || isGiven || areGood;
+  this->StoredStep = this->AreTold ? 0.0 : StoredTimeStep(inputs);
+  const double step = this->StoredStep > 0.0 ? this->StoredStep : job.TimeStep;
+  std::vector<Step> given;
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    const double time = areGood ? times[i] : Rounded(static_cast<double>(i) * step);
+    given.push_back({ time, { files[i] }, {} });
+  }
+  return given;
 }
 
 ParticleTimes::~ParticleTimes() = default;
@@ -368,7 +320,7 @@ void ParticleTimes::Reset()
   this->Source = vtkSmartPointer<StoredSteps>::New();
   this->Source->Known = &this->Steps;
   this->Interpolator = vtkSmartPointer<vtkSPHTemporalInterpolator>::New();
-  this->Interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
+  this->Interpolator->SetIdArrayName(Printable(this->Shared.Options.Text("--ids")).c_str());
   this->Interpolator->SetInputConnection(this->Source->GetOutputPort());
   const std::vector<double>& period = this->Shared.Options.Periodic;
   const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // only lengths are known
@@ -393,20 +345,13 @@ std::string ParticleTimes::CheckTold()
     this->Reset(); // without ids, particles cannot be matched
   }
   const double byVelocities = step * this->Interpolator->GetMotionRatio();
-  std::ostringstream found;
-  found << std::setprecision(3) << "the files tell no times, so the steps are ";
-  found << (this->StoredStep > 0.0 ? "as far apart as their 'dt' says, " : "at 0, 1, 2, ...; ");
-  if (this->StoredStep > 0.0)
-  {
-    found << this->StoredStep << "; ";
-  }
-  found << "give the time between them with --time-step";
-  if (byVelocities > 0.0)
-  {
-    found << ", which is about " << byVelocities << " by '"
-          << this->Interpolator->GetUsedVelocityArrayName() << "'";
-  }
-  return found.str();
+  return "the files tell no times, so the steps are " +
+    (this->StoredStep > 0.0 ? "as far apart as their 'dt' says, " + DigitsOf(this->StoredStep, 3)
+                            : std::string("at 0, 1, 2, ...")) +
+    "; give the time between them with --time-step" +
+    (byVelocities > 0.0 ? ", which is about " + DigitsOf(byVelocities, 3) + " by '" +
+          this->Interpolator->GetUsedVelocityArrayName() + "'"
+                        : std::string());
 }
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
@@ -416,8 +361,7 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
   this->Interpolator->UpdateTimeStep(time);
   const std::string error = this->Source->Error;
   Messages().Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
-  const std::vector<std::string>& told = Messages().Warnings;
-  warnings.insert(warnings.end(), told.begin(), told.end());
+  Messages().AddWarningsTo(warnings);
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
   const std::vector<std::string>& walls = FindStep(this->Steps, time)->Walls;
@@ -445,10 +389,7 @@ std::string Series::Label(std::size_t i) const
 
 void Series::Miss(std::size_t, const std::string& error)
 {
-  if (this->Times.Get().size() == 1)
-  {
-    throw std::runtime_error(error);
-  }
+  Require(this->Times.Get().size() > 1, error);
 }
 
 std::string Series::Progress(std::size_t i) const
@@ -486,9 +427,9 @@ bool Series::MakeAll()
       this->Miss(i, error);
       this->Times.Reset();
     }
+    const std::string kind = error.empty() ? "warning: " : "";
     for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
     {
-      const std::string kind = error.empty() ? "warning: " : "";
       // The number of dry places differs from step to step.
       const mcor_says code = vtkSPHCodeOf(warning);
       const bool areDry = code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
@@ -529,13 +470,10 @@ bool TableSeries::Make(const std::string& what)
   this->Shared.OnFirst(
     [this, &what]
     {
-      if (this->Text.empty())
-      {
-        throw std::runtime_error("no step could be measured, so no table was written");
-      }
-      this->File.Write([this] { return this->Text; }, true);
+      Require(!this->Text.empty(), "no step could be measured, so no table was written");
+      this->File.Write(this->Text, true);
       const std::string more = this->Finish();
-      if (!this->Options.Quiet)
+      if (!this->Options.Has("--quiet"))
       {
         const std::size_t steps = this->Times.Get().size();
         std::cout << what << ", " << steps << (steps == 1 ? " step" : " steps") << more << "\n";
@@ -551,5 +489,5 @@ void TableSeries::MakeStep(
   const std::vector<std::string>& told = Messages().Warnings;
   std::copy_if(told.begin(), told.end(), std::back_inserter(warnings),
     [this](const std::string& warning) { return this->IsTold(warning); });
-  this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
+  this->Shared.OnFirst([this] { this->File.Write(this->Text, false); });
 }

@@ -53,6 +53,9 @@ public:
   void Reset();
 
 private:
+  /// Lists the steps of files given one by one, and notes who tells their times.
+  std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
+
   const Sharing& Shared;
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;

@@ -3,14 +3,16 @@
 #include "Runs.h"
 
 #include "Job.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkFieldData.h"
 #include "vtkStringArray.h"
 #include "vtkVariant.h"
 #include "vtkVersion.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iomanip>
@@ -47,14 +49,20 @@ std::string Json(const Members& members, const char* brackets = "{}")
   return brackets[0] + text + (text.empty() ? "" : "\n") + brackets[1];
 }
 
-std::string JsonList(const std::vector<std::string>& texts)
+std::string JsonList(const std::vector<std::string>& values)
 {
   Members members;
-  for (const std::string& text : texts)
+  for (const std::string& value : values)
   {
-    members.emplace_back("", QuotedForJson(text));
+    members.emplace_back("", value);
   }
   return Json(members, "[]");
+}
+
+std::string JsonTexts(std::vector<std::string> texts)
+{
+  std::transform(texts.begin(), texts.end(), texts.begin(), QuotedForJson);
+  return JsonList(texts);
 }
 
 Members operator+(Members members, const Members& more)
@@ -87,24 +95,6 @@ const char* const StatisticNames[] = {
   "RankNeighbors"
 };
 
-/// Returns the numbers of an array; none if the run has no such array.
-std::vector<double> Numbers(vtkFieldData* run, const std::string& name)
-{
-  std::vector<double> numbers;
-  vtkDataArray* array = run->GetArray(name.c_str());
-  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
-  {
-    numbers.push_back(array->GetVariantValue(i).ToDouble());
-  }
-  return numbers;
-}
-
-double Number(vtkFieldData* run, const char* name)
-{
-  const std::vector<double> numbers = Numbers(run, name);
-  return numbers.empty() ? 0.0 : numbers.front();
-}
-
 std::string Text(vtkFieldData* run, const std::string& name)
 {
   vtkStringArray* array = vtkStringArray::SafeDownCast(run->GetAbstractArray(name.c_str()));
@@ -116,17 +106,17 @@ std::string Value(vtkFieldData* run, const std::string& name)
 {
   const std::string text = Text(run, name), array = Text(run, name + "Array");
   const std::size_t colon = name.find(':');
-  const std::vector<double> numbers = Numbers(run, name.substr(0, colon));
-  std::ostringstream stream;
+  const std::vector<double> numbers = NumbersOf(run, name.substr(0, colon));
+  std::vector<std::string> found;
   for (std::size_t i = 0; i < numbers.size(); ++i)
   {
     if (colon == std::string::npos || name.substr(colon + 1) == std::to_string(i))
     {
-      const bool whole = numbers[i] == static_cast<double>(static_cast<long long>(numbers[i]));
-      stream << (stream.tellp() > 0 ? ", " : "") << std::setprecision(whole ? 15 : 6) << numbers[i];
+      const bool isWhole = numbers[i] == static_cast<double>(static_cast<long long>(numbers[i]));
+      found.push_back(DigitsOf(numbers[i], isWhole ? 15 : 6));
     }
   }
-  return !text.empty() ? text : array.empty() ? stream.str() : array;
+  return !text.empty() ? text : array.empty() ? Joined(found) : array;
 }
 
 /// Returns seed_cells_not_intersected for "SeedCellsNotIntersected", search_grid for "search grid".
@@ -151,13 +141,12 @@ std::string Json(vtkFieldData* run, const std::string& name)
   {
     return QuotedForJson(Text(run, name));
   }
-  const std::vector<double> numbers = Numbers(run, name);
-  std::string values;
-  for (const double number : numbers)
+  std::vector<std::string> values;
+  for (const double number : NumbersOf(run, name))
   {
-    values += (values.empty() ? "" : ", ") + Json(number);
+    values.push_back(Json(number));
   }
-  return numbers.size() == 1 && name != "IsoValues" ? values : "[" + values + "]";
+  return values.size() == 1 && name != "IsoValues" ? values[0] : "[" + Joined(values) + "]";
 }
 
 template <std::size_t N>
@@ -190,11 +179,11 @@ Members ListSetting(const Job& job, vtkFieldData* run)
 {
   Members setting = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
     { "vtk", QuotedForJson(vtkVersion::GetVTKVersion()) },
-    job.IsFilm() ? std::make_pair("inputs", JsonList(job.Inputs))
+    job.IsFilm() ? std::make_pair("inputs", JsonTexts(job.Inputs))
                  : std::make_pair("input", QuotedForJson(job.Inputs.front())) };
   if (!job.Walls.empty())
   {
-    setting.emplace_back("walls", JsonList(job.Walls));
+    setting.emplace_back("walls", JsonTexts(job.Walls));
   }
   setting.emplace_back("output", QuotedForJson(job.Output));
   if (!run)
@@ -215,13 +204,29 @@ Members ListSetting(const Job& job, vtkFieldData* run)
     if (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL ||
       (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO && !filter->GetFreeSurface()))
     {
-      fluid.emplace_back("wall_share",
-        Json(run->HasArray("WallShare") ? Number(run, "WallShare") : filter->GetWallShare()));
+      fluid.emplace_back("wall_share", Json(NumberOf(run, "WallShare", filter->GetWallShare())));
     }
     setting.emplace_back("fluid", Json(fluid));
   }
   return setting;
 }
+}
+
+std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name)
+{
+  std::vector<double> numbers;
+  if (vtkDataArray* array = run->GetArray(name.c_str()))
+  {
+    const auto values = vtk::DataArrayValueRange(array);
+    numbers.assign(values.begin(), values.end());
+  }
+  return numbers;
+}
+
+double NumberOf(vtkFieldData* run, const std::string& name, double none)
+{
+  const std::vector<double> numbers = NumbersOf(run, name);
+  return numbers.empty() ? none : numbers.front();
 }
 
 std::string Fill(vtkFieldData* run, const std::string& form)
@@ -280,13 +285,13 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
   {
     return "";
   }
-  const std::vector<double> lengths = Numbers(run, "SmoothingLengthRange");
+  const std::vector<double> lengths = NumbersOf(run, "SmoothingLengthRange");
   const bool areMany = lengths.size() == 2 && lengths[0] < lengths[1];
-  const bool isPreview = Number(run, "Preview") != 0.0;
-  const double caps = Number(run, "CapTriangles");
+  const bool isPreview = NumberOf(run, "Preview") != 0.0;
+  const double caps = NumberOf(run, "CapTriangles");
   const bool hasLines = run->HasArray("Lines");
   std::string trimming; // may add triangles: a cut leaves one or two triangles of one
-  if (!hasLines && Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
+  if (!hasLines && NumberOf(run, "Triangles") - caps != NumberOf(run, "TrianglesBeforeTrimming"))
   {
     trimming = "{TrianglesBeforeTrimming} before trimming, which cuts some in two";
   }
@@ -299,8 +304,8 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
   const std::string volume =
     "[array {VolumeArray}|{ParticleVolume}|{Mass} / {Density}|computed from {Mass}|computed]";
   const bool leavesSpray =
-    Number(run, "LoneParticles") > 0.0 && Fill(run, volume).compare(0, 8, "computed") != 0;
-  const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
+    NumberOf(run, "LoneParticles") > 0.0 && Fill(run, volume).compare(0, 8, "computed") != 0;
+  const std::string pieces = NumberOf(run, "Pieces") == 1.0 ? "piece" : "pieces";
   return Fill(run,
     std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
                 "smoothing length {SmoothingLengthRange:0}") +
@@ -333,18 +338,17 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
-  Members each;
+  std::vector<std::string> each;
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
-    each.emplace_back("",
-      Json(Members{ { "seconds", JsonSeconds(runs[i]) },
-        { "statistics", JsonGroup(runs[i], StatisticNames) },
-        { "wall_seconds", Json(wallSeconds[i]) } }));
+    each.push_back(Json(Members{ { "seconds", JsonSeconds(runs[i]) },
+      { "statistics", JsonGroup(runs[i], StatisticNames) },
+      { "wall_seconds", Json(wallSeconds[i]) } }));
   }
   return Json(ListSetting(job, last) +
            Members{ { "statistics", JsonGroup(last, StatisticNames) },
              { "seconds", JsonSeconds(last) }, { "wall_seconds", Json(wallSeconds.back()) },
-             { "runs", Json(each, "[]") }, { "warnings", JsonList(warnings) },
+             { "runs", JsonList(each) }, { "warnings", JsonTexts(warnings) },
              { "peak_resident_bytes", Json(peakResidentBytes) } }) +
     "\n";
 }
@@ -352,7 +356,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds)
 {
-  const Members members = { { "time", Json(time) }, { "inputs", JsonList(inputs) } };
+  const Members members = { { "time", Json(time) }, { "inputs", JsonTexts(inputs) } };
   return Json(members +
     (run
         ? Members{ { "output", QuotedForJson(result) }, { "seconds", JsonSeconds(run) },
@@ -363,14 +367,9 @@ std::string StepAsJson(double time, const std::vector<std::string>& inputs,
 
 std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run)
 {
-  Members each;
-  for (const std::string& step : steps)
-  {
-    each.emplace_back("", step);
-  }
   return Json(ListSetting(job, run) +
-           Members{ { "steps", Json(each, "[]") },
-             { "peak_resident_bytes", Json(PeakResidentBytes()) } }) +
+           Members{
+             { "steps", JsonList(steps) }, { "peak_resident_bytes", Json(PeakResidentBytes()) } }) +
     "\n";
 }
 

@@ -10,6 +10,7 @@
 #include "ParticleTimes.h"
 #include "Runs.h"
 #include "Sharing.h"
+#include "Text.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -30,8 +31,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <stdexcept>
 #include <utility>
 
 namespace
@@ -58,10 +57,8 @@ void WriteGrid(const Job& job, vtkTable* table)
     { Names("z", "Level"), Names("depth", "Depth"), Names("crossings", "Crossings") })
   {
     vtkAbstractArray* column = table->GetColumnByName(names.first);
-    auto array = vtk::TakeSmartPointer(column->NewInstance());
-    array->DeepCopy(column);
-    array->SetName(names.second);
-    image->GetPointData()->AddArray(array);
+    column->SetName(names.second);
+    image->GetPointData()->AddArray(column);
   }
   image->GetPointData()->SetActiveScalars("Level");
   WriteDataSet(job.Output, image);
@@ -77,11 +74,8 @@ public:
     , IsImage(this->Options.Grid.Counts[0] > 0)
     , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
   {
-    if (this->IsImage && this->Times.Get().size() > 1)
-    {
-      throw std::runtime_error(
-        "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
-    }
+    Require(!this->IsImage || this->Times.Get().size() == 1,
+      "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
   }
 
 private:
@@ -139,17 +133,15 @@ private:
 /// Returns the iso values of a run, ascending; if it had no particles, the requested ones.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 {
-  std::vector<double> values;
-  vtkDataArray* used = run->GetArray("IsoValues");
+  std::vector<double> values = NumbersOf(run, "IsoValues");
   vtkMarchingCorrectors* asked = job.Surface;
-  const vtkIdType count = used ? used->GetNumberOfValues()
-    : asked->GetFreeSurface()  ? asked->GetNumberOfFreeSurfaceValues()
-                               : asked->GetNumberOfContours();
+  const bool isFree = asked->GetFreeSurface();
+  const vtkIdType count = run->HasArray("IsoValues") ? 0
+    : isFree                                         ? asked->GetNumberOfFreeSurfaceValues()
+                                                     : asked->GetNumberOfContours();
   for (int i = 0; i < static_cast<int>(count); ++i)
   {
-    values.push_back(used         ? used->GetComponent(i, 0)
-        : asked->GetFreeSurface() ? asked->GetFreeSurfaceValue(i)
-                                  : asked->GetValue(i));
+    values.push_back(isFree ? asked->GetFreeSurfaceValue(i) : asked->GetValue(i));
   }
   std::sort(values.begin(), values.end());
   return values.empty() ? std::vector<double>{ NoNumber } : values;
@@ -228,27 +220,12 @@ bool MakeMeterTable(Sharing& sharing)
   for (const Place& section : sections)
   {
     const char* name = section.Name.c_str();
-    const double* n = section.Numbers.data();
-    switch (section.Shape)
-    {
-      case Place::Line:
-        job.Flux->AddLine(name, n, n + 3);
-        break;
-      case Place::Rectangle:
-        job.Flux->AddRectangle(name, n, n + 3, n + 6);
-        break;
-      case Place::Disc:
-        job.Flux->AddDisc(name, n, n + 3, n[6]);
-        break;
-      case Place::Box:
-        job.Flux->AddBox(name, n);
-        break;
-      default:
-        job.Flux->AddSurface(name, ReadDataSet(section.File));
-    }
+    section.File.empty() ? section.Add(job.Flux, name, section.Numbers.data())
+                         : job.Flux->AddSurface(name, ReadDataSet(section.File));
   }
   const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
-  return MeterTable(sharing).Make(std::to_string(places) + (job.IsFlux() ? " section" : " gauge") + (places == 1 ? "" : "s"));
+  return MeterTable(sharing).Make(
+    std::to_string(places) + (job.IsFlux() ? " section" : " gauge") + (places == 1 ? "" : "s"));
 }
 
 // Describes the particles to the filter of pieces as to the filter of the surface. Surfaces of
@@ -257,26 +234,23 @@ void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {
   const Job& job = sharing.Options;
-  const bool isTable = !job.ComponentFile.empty();
+  const bool isTable = job.Has("--components");
   for (const double iso : IsoValuesOf(job, run.Statistics))
   {
     run.Levels.push_back({ iso, NoNumber, NoNumber, NoNumber });
   }
-  const bool areMany = !job.NumbersFile.empty() && run.Levels.size() > 1;
-  if (!isTable && areMany && run.Statistics->HasArray("Lines"))
+  const bool areMany = job.Has("--numbers") && run.Levels.size() > 1;
+  const bool hasLines = run.Statistics->HasArray("Lines");
+  if (!isTable && areMany && hasLines)
   {
     MeasureLines(run, job.Surface->GetIsoValueArrayName());
-    return;
   }
-  if (!isTable && !areMany)
+  if (!isTable && (!areMany || hasLines))
   {
     return;
   }
-  if (run.Surface->GetNumberOfLines() > 0)
-  {
-    throw std::runtime_error(
-      "--components is for surfaces, but particles in a plane give lines; leave it out");
-  }
+  Require(run.Surface->GetNumberOfLines() == 0,
+    "--components is for surfaces, but particles in a plane give lines; leave it out");
   vtkMarchingCorrectors* surface = job.Surface;
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
@@ -291,13 +265,19 @@ void AddPieces(
   split->Update();
   Messages().Check();
   vtkTable* pieces = split->GetTable();
+  double area = 0.0, volume = 0.0; // of all remaining pieces
   for (Level& level : run.Levels)
   {
     level.Area = level.Volume = level.Pieces = 0.0;
-    for (vtkIdType row = 0; row < pieces->GetNumberOfRows(); ++row)
+  }
+  for (vtkIdType row = 0; row < pieces->GetNumberOfRows(); ++row)
+  {
+    const auto of = [pieces, row](const char* column)
+    { return pieces->GetValueByName(row, column).ToDouble(); };
+    area += of("area");
+    volume += of("volume");
+    for (Level& level : run.Levels)
     {
-      const auto of = [pieces, row](const char* column)
-      { return pieces->GetValueByName(row, column).ToDouble(); };
       const bool isOwn = run.Levels.size() == 1 || of("iso") == level.Iso;
       level.Area += isOwn ? of("area") : 0.0;
       level.Volume += isOwn ? of("volume") : 0.0;
@@ -310,13 +290,11 @@ void AddPieces(
   }
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
-  for (const char* name : { "Area", "Volume" }) // numbers of the remaining pieces
+  for (const auto& [name, number] : { std::pair("Area", area), std::pair("Volume", volume) })
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
     {
-      auto* numbers =
-        vtkDoubleArray::SafeDownCast(pieces->GetColumnByName(name[0] == 'A' ? "area" : "volume"));
-      AddNumber(run.Statistics, name, std::accumulate(numbers->Begin(), numbers->End(), 0.0));
+      AddNumber(run.Statistics, name, number);
     }
   }
   vtkNew<vtkTable> table;
@@ -339,7 +317,7 @@ void AddFilmNumbers(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {
   const Job& job = sharing.Options;
-  if (job.NumbersFile.empty())
+  if (!job.Has("--numbers"))
   {
     return;
   }
@@ -347,20 +325,14 @@ void AddFilmNumbers(
   if (job.Gauge->GetNumberOfGauges() > 0)
   {
     gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
-    const std::vector<std::string>& more = Messages().Warnings;
-    run.Warnings.insert(run.Warnings.end(), more.begin(), more.end());
+    Messages().AddWarningsTo(run.Warnings);
   }
   const bool areMany = run.Levels.size() > 1;
   if (!areMany)
   {
-    const auto numberOf = [&run](const char* name)
-    {
-      vtkDataArray* array = run.Statistics->GetArray(name);
-      return array ? array->GetComponent(0, 0) : NoNumber;
-    };
-    const bool hasRun = run.Statistics->HasArray("Triangles"); // otherwise there is no fluid
-    run.Levels.front().Area = hasRun ? numberOf("Area") : 0.0;
-    run.Levels.front().Volume = hasRun ? numberOf("Volume") : 0.0;
+    const double none = run.Statistics->HasArray("Triangles") ? NoNumber : 0.0; // 0: no fluid
+    run.Levels.front().Area = NumberOf(run.Statistics, "Area", none);
+    run.Levels.front().Volume = NumberOf(run.Statistics, "Volume", none);
   }
   vtkDataArray* isoValues =
     areMany ? run.Surface->GetPointData()->GetArray(job.Surface->GetIsoValueArrayName()) : nullptr;
@@ -387,7 +359,7 @@ void AddFilmNumbers(
       AddNumber(row, "between",
         level.Volume - (i + 1 < run.Levels.size() ? run.Levels[i + 1].Volume : 0.0));
     }
-    if (!job.ComponentFile.empty())
+    if (job.Has("--components"))
     {
       AddNumber(row, "pieces", level.Pieces);
     }

@@ -21,27 +21,26 @@ class vtkSPHMeter;
 class vtkTable;
 struct Job;
 
-/// The runs of the program. All throw UsageError or std::runtime_error with one sentence.
+/// The runs of the program. All return false if a step failed, after its error was printed, and throw UsageError or
+/// std::runtime_error with one sentence.
 
 /// Extracts the surface, and writes it with its tables: all files, or none.
-void MakeSurface(Sharing& sharing);
+bool MakeSurface(Sharing& sharing);
 
 /// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them. If
-/// a step fails, names it, makes the others, and returns false.
+/// a step fails, makes the others.
 bool MakeFilm(Sharing& sharing);
 
 /// Measures, at each time of the input, the free surface along lines, or what flows, and has flowed since the first
-/// time, through sections. Writes the table or, for a grid of gauges, an image. If a step fails, reports it and returns
-/// false; the table has the other steps.
+/// time, through sections. Writes the table, of the steps that did not fail, or, for a grid of gauges, an image.
 bool MakeMeterTable(Sharing& sharing);
 
-/// Writes a table of the field at the points of a file at each time. If a step fails, reports it and returns false; the
-/// table has the other steps.
+/// Writes a table of the field at the points of a file at each time. The table has the steps that did not fail.
 bool MakePointTable(Sharing& sharing);
 
 /// Writes a data set with the field at the points of a file, a slice or a line, or an image of the
 /// field's integrals along lines of sight.
-void MakeField(Sharing& sharing);
+bool MakeField(Sharing& sharing);
 
 /// The functions below are parts of the runs above.
 
@@ -50,6 +49,9 @@ void MakeField(Sharing& sharing);
 /// is missing.
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
+
+/// Returns the particles with the factors of --widen or --smooth, see vtkMarchingCorrectors::Widen().
+vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles);
 
 /// Does SetUpParticles() for the surface, which gets the particles as its input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
@@ -101,6 +103,11 @@ std::size_t AddGauges(const Job& job);
 /// Returns the meter's table; shows its progress behind the words `progress`.
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
   double time, const std::string& progress);
+
+/// Returns the numbers of an array of a run; none if the run has no such array. NumberOf() returns the
+/// first one, or `none`.
+std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name);
+double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 
 /// Returns the form with the run's values for names in braces, {Area}, {ScalarRange:1}: texts, the
 /// array of a quantity if there is one, whole counts, and other numbers with six digits. [A|B|C]

@@ -5,7 +5,7 @@
 #include "Job.h"
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #if MCOR_HAS_RANKS
 #include "vtkAppendPolyData.h"
@@ -140,7 +140,7 @@ private:
   {
     Particles particles;
     ParticleSets sets;
-    this->OnAll([&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount()); });
+    this->OnAll([&] { sets = ReadSets({ file }, this->GetRank(), this->GetCount()); });
     const int own = sets.HaveVertices ? 1 : 0;
     int any = own;
     this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
@@ -163,10 +163,7 @@ private:
     const vtkIdType own = particles->GetNumberOfPoints();
     vtkIdType all = own;
     this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
-    if (all == 0 && !mayBeEmpty)
-    {
-      throw std::runtime_error("the input holds no points");
-    }
+    Require(all > 0 || mayBeEmpty, "the input holds no points");
     vtkNew<vtkPolyData> form;
     if (own > 0)
     {

@@ -6,13 +6,11 @@
 #include "DataFile.h"
 #include "Ending.h"
 #include "Extra.h"
-#include "FileName.h"
 #include "Job.h"
 #include "Messages.h"
-#include "OptionValue.h"
 #include "ParticleFile.h"
-#include "SafeText.h"
 #include "Sharing.h"
+#include "Text.h"
 
 #include "mcor.h"
 #include "vtkCommand.h"
@@ -98,13 +96,7 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
 vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
   SetParticles(job.Surface, job, input);
-  auto widened = vtkSmartPointer<vtkPolyData>::New();
-  Messages() = {};
-  if (!job.Surface->Widen(input, widened))
-  {
-    Messages().Check();
-    throw std::runtime_error("the factors of --widen could not be found");
-  }
+  const vtkSmartPointer<vtkPolyData> widened = Widen(job, input);
   filter->EstimateSmoothingLengthOff();
   filter->SetSmoothingLengthIsSupportRadius(false);
   filter->SetSmoothingLength(0.0);
@@ -120,101 +112,88 @@ vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, v
   return widened;
 }
 
+bool Contains(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// Lists the particles' arrays that are not interpolated because the surface's file could not hold
 /// them.
 std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
 {
-  std::vector<std::string> names;
-  vtkPointData* data = particles->GetPointData();
+  std::vector<std::string> without;
+  const std::vector<std::string> names = NamesOf(particles->GetPointData());
   const std::string& color = job.Picture.ColorBy; // if it is unknown, an error lists all arrays
-  if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
-    (!color.empty() && !data->HasArray(color.c_str())))
+  const bool isKept = HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
+    (!color.empty() && !Contains(names, color));
+  for (const std::string& name : isKept ? std::vector<std::string>() : names)
   {
-    return names;
-  }
-  const std::vector<std::string>& asked = job.AttributeNames;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    const std::string name = data->GetArrayName(i) ? data->GetArrayName(i) : "";
     if (!name.empty() && name != job.Scalar && name != color && name != WallArrayName &&
-      (asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end()))
+      (job.AttributeNames.empty() || Contains(job.AttributeNames, name)))
     {
-      names.push_back(name);
+      without.push_back(name);
     }
   }
-  return names;
+  return without;
 }
 
 /// Lets the filter carry all arrays, or the named ones, if the output has a place for them.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
-  const std::vector<std::string>& names = job.AttributeNames;
-  vtkPointData* data = particles->GetPointData();
+  const std::vector<std::string>& asked = job.AttributeNames;
+  const std::vector<std::string> names = NamesOf(particles->GetPointData());
+  std::vector<std::string> excluded;
   filter->ClearExcludedArrays(); // arrays of the step before
   if (!job.Walls.empty())
   {
-    filter->AddExcludedArray(WallArrayName); // its value is the same on the whole surface
+    excluded.push_back(WallArrayName); // its value is the same on the whole surface
   }
   for (const auto& words : ChosenWords())
   {
-    filter->AddExcludedArray(words.first); // an array that has the numbers of texts
+    excluded.push_back(words.first); // an array that has the numbers of texts
   }
-  for (const std::string& name : names)
+  for (const std::string& name : asked)
   {
-    if (particles->GetNumberOfPoints() > 0 && !data->HasArray(name.c_str()))
-    {
-      throw std::runtime_error(
-        "there is no point array '" + name + "' to interpolate (--attributes)");
-    }
+    Require(particles->GetNumberOfPoints() == 0 || Contains(names, name),
+      "there is no point array '" + name + "' to interpolate (--attributes)");
   }
   if (filter == job.Surface)
   {
     // A single iso value of all points is useless, unless it is their colour.
     const std::string& color = job.Picture.ColorBy;
     job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
-      job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !data->HasArray(color.c_str())));
-    for (const std::string& name : ArraysWithoutPlace(job, particles))
-    {
-      filter->AddExcludedArray(name.c_str());
-    }
+      job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !Contains(names, color)));
+    const std::vector<std::string> without = ArraysWithoutPlace(job, particles);
+    excluded.insert(excluded.end(), without.begin(), without.end());
   }
-  for (int i = 0; !names.empty() && i < data->GetNumberOfArrays(); ++i)
+  std::copy_if(names.begin(), names.end(), std::back_inserter(excluded),
+    [&asked](const std::string& name) { return !asked.empty() && !Contains(asked, name); });
+  for (const std::string& name : excluded)
   {
-    const char* name = data->GetArrayName(i);
-    if (name && std::find(names.begin(), names.end(), name) == names.end())
-    {
-      filter->AddExcludedArray(name);
-    }
+    filter->AddExcludedArray(name);
   }
 }
 
 /// Refuses an array to colour by that the output will not have, before the output is made.
 void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
-  const std::string& name = job.Picture.ColorBy;
-  std::vector<std::string> names;
-  for (int i = 0; i < particles->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    const char* each = particles->GetPointData()->GetArrayName(i);
-    names.emplace_back(each ? each : "");
-  }
   static const std::vector<std::string> ofPoints = { "WeightSum", "Gradients",
     "vtkValidPointMask" };
   static const std::vector<std::string> ofSurface = { "Normals", "IsoValue", "Gradients",
     "WeightSum", "BoundaryEigenvalue", "MeanCurvature", "GaussCurvature", "CorrectionLength",
     "Residual", "BoundaryFlag", "Widening", "BandValue", "ComponentId", "ComponentVolume" };
-  const bool isProjection = filter == job.Projection, isOfFile = !job.ProbeFile.empty();
-  const std::vector<std::string>& made = filter == job.Surface ? ofSurface : ofPoints;
-  const bool isMade = !job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0;
-  if (isProjection) // its image has one array
+  const std::string& name = job.Picture.ColorBy;
+  std::vector<std::string> names = NamesOf(particles->GetPointData());
+  bool isMade = !job.Scalar.empty() && name.compare(0, job.Scalar.size(), job.Scalar) == 0;
+  if (filter == job.Projection) // its image has one array
   {
     names.assign(1, job.Scalar.empty() ? "ColumnDensity" : job.Scalar);
   }
-  else if (std::find(made.begin(), made.end(), name) != made.end())
+  else
   {
-    return;
+    isMade = isMade || Contains(filter == job.Surface ? ofSurface : ofPoints, name);
   }
-  if (!name.empty() && particles->GetNumberOfPoints() > 0 && !isMade && !isOfFile)
+  if (!name.empty() && particles->GetNumberOfPoints() > 0 && !isMade && !job.Has("--probe"))
   {
     ::CheckColorName(name, names);
   }
@@ -223,25 +202,21 @@ void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* partic
 /// Returns why there is no surface, as far as the ranges tell.
 std::string ReasonForNoSurface(vtkFieldData* run)
 {
-  vtkDataArray* values = run->GetArray("IsoValues");
-  vtkDataArray* before = run->GetArray("TrianglesBeforeTrimming");
+  const std::size_t values = NumbersOf(run, "IsoValues").size();
   const std::string inBox = run->HasArray("Box") ? " in the box" : "";
   const std::string what = run->HasArray("Lines") ? "lines" : "triangles";
-  if (!values)
-  {
-    return "";
-  }
-  if (before && before->GetComponent(0, 0) > 0.0)
+  if (NumberOf(run, "TrianglesBeforeTrimming") > 0.0)
   {
     return Fill(run,
       "all {TrianglesBeforeTrimming} " + what + inBox +
         " were trimmed, as they lie where the fluid "
         "ends: a lower --vertex-threshold keeps more of them");
   }
-  return Fill(run,
-    "no part of the field" + inBox + " reaches the iso value" +
-      (values->GetNumberOfValues() == 1 ? " {IsoValues}" : "") +
-      "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
+  return values == 0 ? ""
+                     : Fill(run,
+                         "no part of the field" + inBox + " reaches the iso value" +
+                           (values == 1 ? " {IsoValues}" : "") +
+                           "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
 /// Shows a run's progress line; or, if this is not shown, a notice, once, if the driver is still
@@ -323,19 +298,14 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
     derivatives->SetInputData(input);
     derivatives->Update();
     const std::string error = derivatives->GetErrorMessage();
-    if (!error.empty())
-    {
-      throw std::runtime_error(error);
-    }
+    Require(error.empty(), error);
     particles.TakeReference(input->NewInstance());
     particles->ShallowCopy(derivatives->GetOutput()); // the next step changes the output
   }
   vtkDataArray* scalar = particles->GetPointData()->GetArray(job.Scalar.c_str());
-  if (job.Has("--component") && scalar && scalar->GetNumberOfComponents() == 1)
-  {
-    throw std::runtime_error("--component is for vectors, and '" + job.Scalar +
+  Require(!job.Has("--component") || !scalar || scalar->GetNumberOfComponents() > 1,
+    "--component is for vectors, and '" + job.Scalar +
       "' has one component; leave out --component");
-  }
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
   if (filter != job.Gauge && filter != job.Flux) // pictures show no tables
@@ -344,6 +314,18 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   }
   const bool isWidened = job.Surface->GetWidening() > 1.0 || job.Surface->GetSmooth();
   return isWidened && filter != job.Surface ? WidenFor(filter, job, particles) : particles;
+}
+
+vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
+{
+  auto widened = vtkSmartPointer<vtkPolyData>::New();
+  Messages() = {};
+  if (!job.Surface->Widen(particles, widened))
+  {
+    Messages().Check();
+    throw std::runtime_error("the factors of --widen could not be found");
+  }
+  return widened;
 }
 
 void SetUpSurface(const Job& job, vtkPointSet* input)
@@ -357,7 +339,7 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
 
 double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string& before)
 {
-  const bool isQuiet = sharing.Options.Quiet;
+  const bool isQuiet = sharing.Options.Has("--quiet");
   std::chrono::duration<double> elapsed;
   Messages() = {};
   filter->Modified();
@@ -384,13 +366,12 @@ Run Extract(const Sharing& sharing, const std::string& before)
   filter->GetOutput()->Initialize(); // frees one before the next: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
-  vtkDataArray* values = run.Statistics->GetArray("IsoValues");
+  const std::vector<double> values = NumbersOf(run.Statistics, "IsoValues");
   if (!sharing.Options.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
-    run.Statistics->HasArray("ScalarRange") && values && values->GetNumberOfValues() > 0)
+    run.Statistics->HasArray("ScalarRange") && !values.empty())
   {
-    filter->SetValue(
-      0, values->GetComponent(0, 0)); // it was chosen here, and stays for the next steps
-    if (!sharing.Options.Quiet && sharing.IsFirst())
+    filter->SetValue(0, values[0]); // it was chosen here, and stays for the next steps
+    if (!sharing.Options.Has("--quiet") && sharing.IsFirst())
     {
       std::cout << Fill(run.Statistics,
                      "iso value   {IsoValues}, chosen for {Scalar}, whose range is "
@@ -398,11 +379,9 @@ Run Extract(const Sharing& sharing, const std::string& before)
                 << std::endl;
     }
   }
-  // Warnings are in the statistics, too.
-  const std::vector<std::string>& told = Messages().Warnings;
-  run.Warnings.insert(run.Warnings.end(), told.begin(), told.end());
-  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
-  if (run.Surface->GetNumberOfCells() == 0 && !(triangles && triangles->GetComponent(0, 0) > 0))
+  Messages().AddWarningsTo(run.Warnings); // they are in the statistics, too
+  // Triangles are those of all processes.
+  if (run.Surface->GetNumberOfCells() == 0 && NumberOf(run.Statistics, "Triangles") == 0.0)
   {
     const std::string reason =
       run.Warnings.empty() ? ReasonForNoSurface(run.Statistics) : run.Warnings.front();

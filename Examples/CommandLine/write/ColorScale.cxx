@@ -3,10 +3,12 @@
 #include "ColorScale.h"
 
 #include "Job.h"
-#include "OptionValue.h"
+#include "ParticleFile.h"
+#include "Text.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataSet.h"
 #include "vtkPointData.h"
 #include "vtkSPHColorRange.h"
@@ -15,7 +17,6 @@
 
 #include <algorithm>
 #include <set>
-#include <stdexcept>
 
 namespace
 {
@@ -32,17 +33,11 @@ const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.
 /// of its own.
 bool AreAmong(vtkDataArray* array, vtkDataArray* isoValues)
 {
-  std::set<float> known;
-  for (vtkIdType i = 0; isoValues && i < isoValues->GetNumberOfValues(); ++i)
-  {
-    known.insert(static_cast<float>(isoValues->GetComponent(i, 0)));
-  }
-  bool areAmong = array->GetNumberOfComponents() == 1 && !known.empty();
-  for (vtkIdType i = 0; areAmong && i < array->GetNumberOfTuples(); ++i)
-  {
-    areAmong = known.count(static_cast<float>(array->GetComponent(i, 0))) > 0;
-  }
-  return areAmong;
+  const auto values = vtk::DataArrayValueRange(array), known = vtk::DataArrayValueRange(isoValues);
+  const std::set<float> knownFloats(known.begin(), known.end());
+  return array->GetNumberOfComponents() == 1 &&
+    std::all_of(values.begin(), values.end(),
+      [&knownFloats](double value) { return knownFloats.count(static_cast<float>(value)) > 0; });
 }
 }
 
@@ -74,17 +69,12 @@ ColorScale::ColorScale(const PictureOptions& options)
 
 void CheckColorName(const std::string& name, const std::vector<std::string>& names)
 {
-  if (std::find(names.begin(), names.end(), name) == names.end())
-  {
-    const std::string nearest = NearestOf(name, names);
-    std::string list;
-    for (const std::string& each : names)
-    {
-      list += (list.empty() ? "; there are " : ", ") + each;
-    }
-    throw std::runtime_error(
-      "there is no array '" + name + "' to colour by" + (nearest.empty() ? list : nearest));
-  }
+  const std::string nearest = NearestOf(name, names);
+  Require(std::find(names.begin(), names.end(), name) != names.end(),
+    "there is no array '" + name + "' to colour by" +
+      (!nearest.empty()   ? nearest
+          : names.empty() ? ""
+                          : "; there are " + Joined(names)));
 }
 
 void ColorScale::Include(vtkDataSet* data)
@@ -96,12 +86,7 @@ void ColorScale::Include(vtkDataSet* data)
   }
   if (!array)
   {
-    std::vector<std::string> names;
-    for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
-    {
-      names.emplace_back(data->GetPointData()->GetArrayName(i));
-    }
-    CheckColorName(this->Name, names);
+    CheckColorName(this->Name, NamesOf(data->GetPointData()));
   }
   vtkDataArray* begins = data->GetFieldData()->GetArray("IsoValues");
   double range[2];
@@ -117,14 +102,13 @@ void ColorScale::Include(vtkDataSet* data)
   {
     return;
   }
-  if (array == this->ArrayOf(data) && !AreAmong(array, begins))
+  if (array == this->ArrayOf(data) && !(begins && AreAmong(array, begins)))
   {
     vtkSPHColorRange(data).Find(array, range);
   }
   const double* old = this->Table->GetTableRange();
-  const double low = this->HasRange ? std::min(range[0], old[0]) : range[0];
-  const double high = this->HasRange ? std::max(range[1], old[1]) : range[1];
-  this->Table->SetTableRange(low, high);
+  this->Table->SetTableRange(this->HasRange ? std::min(range[0], old[0]) : range[0],
+    this->HasRange ? std::max(range[1], old[1]) : range[1]);
   this->HasRange = true;
 }
 
@@ -152,5 +136,5 @@ std::vector<unsigned char> ColorScale::Map(vtkDataArray* array) const
   const auto colors =
     vtk::TakeSmartPointer(this->Table->MapScalars(array, VTK_COLOR_MODE_MAP_SCALARS, -1, VTK_RGB));
   const unsigned char* first = colors->GetPointer(0);
-  return std::vector<unsigned char>(first, first + colors->GetNumberOfValues());
+  return { first, first + colors->GetNumberOfValues() };
 }

@@ -32,8 +32,8 @@ bool IsSurfaceFile(const std::string& file);
 std::string SurfaceFileEndings();
 
 /// Returns the bytes of a surface in the format of the file's ending. .stl and .obj have triangles
-/// and normals; .ply also has colours and all arrays of numbers; .csv has the points of lines with
-/// all arrays. Throws std::runtime_error with one sentence.
+/// and normals, .obj also lines; .ply has colours and all arrays of numbers; .csv has the points of
+/// lines with all arrays. Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
 /// Returns the bytes of an XML file with a mark: a step of a film, which another film may replace.

@@ -3,10 +3,10 @@
 #include "DataFile.h"
 
 #include "Ending.h"
-#include "FileName.h"
 #include "Messages.h"
 #include "OutputFile.h"
-#include "SafeText.h"
+#include "ParticleFile.h"
+#include "Text.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
@@ -21,11 +21,10 @@
 #include "vtkVariant.h"
 #include "vtkXMLDataObjectWriter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace
@@ -41,46 +40,40 @@ public:
     for (vtkFieldData* arrays : std::initializer_list<vtkFieldData*>{
            data->GetPointData(), data->GetCellData(), data->GetFieldData() })
     {
-      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+      for (vtkAbstractArray* array : ArraysOf(arrays))
       {
-        vtkAbstractArray* array = arrays->GetAbstractArray(i);
         array->SetName(array->GetName() ? array->GetName() : ""); // VTK would write an address
-        this->Replace(
-          array->GetName(), [array](const std::string& name) { array->SetName(name.c_str()); });
+        this->Replace(array->GetName(), [array](const char* name) { array->SetName(name); });
         for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
         {
           this->Replace(array->GetComponentName(c),
-            [array, c](const std::string& name) { array->SetComponentName(c, name.c_str()); });
+            [array, c](const char* name) { array->SetComponentName(c, name); });
         }
       }
     }
   }
-
   ~NamesForXml()
   {
-    for (const auto& [name, set] : this->Before)
+    for (const std::function<void()>& undo : this->Undo)
     {
-      set(name);
+      undo();
     }
   }
-
   NamesForXml(const NamesForXml&) = delete;
   void operator=(const NamesForXml&) = delete;
 
 private:
-  using Setter = std::function<void(const std::string&)>;
-
-  void Replace(const char* name, const Setter& set)
+  void Replace(const char* name, const std::function<void(const char*)>& set)
   {
     const std::string before = name ? name : "", fit = EscapedForXml(before);
     if (fit != before)
     {
-      set(fit);
-      this->Before.emplace_back(before, set);
+      set(fit.c_str());
+      this->Undo.emplace_back([before, set] { set(before.c_str()); });
     }
   }
 
-  std::vector<std::pair<std::string, Setter>> Before;
+  std::vector<std::function<void()>> Undo;
 };
 
 /// Every format that is written, with the class that it holds; it holds derived classes, too.
@@ -92,20 +85,15 @@ const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" 
 
 void CheckDataSetFile(const std::string& file, vtkDataSet* data)
 {
-  std::string endings;
+  std::vector<std::string> endings;
   for (const auto& [ending, className] : Formats)
   {
-    if (data->IsA(className))
-    {
-      endings += (endings.empty() ? "" : " or ") + std::string(ending);
-      if (EndsWith(file, ending))
-      {
-        return;
-      }
-    }
+    endings.insert(endings.end(), data->IsA(className) ? 1 : 0, ending);
   }
-  throw std::runtime_error("the output is the data set of the points, a " +
-    std::string(data->GetClassName()) + ", for a " + endings + " file, not '" + file + "'");
+  Require(std::any_of(endings.begin(), endings.end(),
+            [&file](const std::string& ending) { return EndsWith(file, ending); }),
+    "the output is the data set of the points, a " + std::string(data->GetClassName()) +
+      ", for a " + Joined(endings, " or ") + " file, not '" + file + "'");
 }
 
 std::string DataSetBytes(const std::string& file, vtkDataSet* data)
@@ -136,10 +124,7 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data)
     isGood = writer->Write() != 0;
     bytes = writer->GetOutputString();
   }
-  if (!isGood || !Messages().Errors.empty())
-  {
-    FailToWrite(file, Messages().Errors.empty() ? "" : Messages().Errors.front());
-  }
+  RequireToWrite(isGood && Messages().Errors.empty(), file, Messages().FirstError());
   return bytes;
 }
 
@@ -152,16 +137,9 @@ std::string TableField(const std::string& text)
 {
   const bool isFormula = !text.empty() && std::string("=+-@").find(text[0]) != std::string::npos;
   const std::string plain = (isFormula ? "'" : "") + text;
-  if (plain.find_first_of(",\"\n\r") == std::string::npos)
-  {
-    return plain;
-  }
-  std::string quoted = "\"";
-  for (const char c : plain)
-  {
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  }
-  return quoted + "\"";
+  return plain.find_first_of(",\"\n\r") == std::string::npos
+    ? plain
+    : '"' + Joined(ItemsOf(plain, '"'), "\"\"") + '"';
 }
 
 std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)

@@ -3,9 +3,8 @@
 #include "OutputFile.h"
 
 #include "Ending.h"
-#include "OptionValue.h"
 #include "ParticleFile.h"
-#include "SafeText.h"
+#include "Text.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -23,13 +22,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Fails with the system's reason, unless `isGood`.
-void Require(bool isGood, const std::string& file)
+/// Fails, unless `isGood`, with the system's reason or with another one.
+void Check(bool isGood, const std::string& file, const std::string& why = "")
 {
-  if (!isGood)
-  {
-    FailToWrite(file, std::strerror(errno));
-  }
+  RequireToWrite(isGood, file, why.empty() ? std::strerror(errno) : why);
 }
 
 /// The target of an output.
@@ -88,41 +84,30 @@ Target Find(const std::string& name)
     {
       break;
     }
-    if (i == mostLinks)
-    {
-      FailToWrite(name, std::strerror(ELOOP));
-    }
+    Check(i < mostLinks, name, std::strerror(ELOOP));
     // The operator leaves an absolute path as it is.
     target.Path = (FolderOf(target.Path) / fs::read_symlink(target.Path, error)).string();
   }
   target.Exists = (target.Descriptor >= 0 ? fstat(target.Descriptor, &target.Status)
                                           : stat(name.c_str(), &target.Status)) == 0;
-  Require(target.Exists || (errno == ENOENT && target.Descriptor < 0), name);
-  if (target.Exists && S_ISDIR(target.Status.st_mode))
-  {
-    FailToWrite(name, "it is a directory");
-  }
-  if (target.Exists && IsSource(target.Status))
-  {
-    throw UsageError(name + " would overwrite the input");
-  }
+  Check(target.Exists || (errno == ENOENT && target.Descriptor < 0), name);
+  Check(!target.Exists || !S_ISDIR(target.Status.st_mode), name, "it is a directory");
+  Need(!target.Exists || !IsSource(target.Status), name + " would overwrite the input");
   if (!target.IsReplaced())
   {
-    Require(target.Descriptor >= 0 || access(name.c_str(), W_OK) == 0, name);
+    Check(target.Descriptor >= 0 || access(name.c_str(), W_OK) == 0, name);
     return target;
   }
   if (target.Exists)
   {
     const int descriptor = open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    Require(descriptor >= 0, name);
+    Check(descriptor >= 0, name);
     close(descriptor);
   }
   const std::string folder = FolderOf(target.Path);
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-  {
-    FailToWrite(
-      name, "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
-  }
+  const bool isOpen = access(folder.c_str(), W_OK | X_OK) == 0;
+  Check(isOpen, name,
+    "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
   return target;
 }
 
@@ -130,23 +115,18 @@ Target Find(const std::string& name)
 /// is identified by its folder and its name.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
-Identity Identify(const struct stat& status, const std::string& name = "")
-{
-  return Identity(status.st_dev, status.st_ino, name);
-}
-
 Identity Identify(const Target& target)
 {
   struct stat folder = {};
   if (target.Exists)
   {
-    return Identify(target.Status);
+    return { target.Status.st_dev, target.Status.st_ino, "" };
   }
   stat(FolderOf(target.Path).c_str(), &folder);
-  return Identify(folder, fs::path(target.Path).filename().string());
+  return { folder.st_dev, folder.st_ino, fs::path(target.Path).filename().string() };
 }
 
-/// Closes the file. Returns false, and sets errno, if that failed.
+/// Returns false, and sets errno, if not all bytes could be written.
 bool WriteAll(int descriptor, const std::string& bytes)
 {
   for (std::size_t done = 0; done < bytes.size();)
@@ -175,7 +155,7 @@ void SetAttributes(int descriptor, const Target& target)
     const bool sameOwner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
     mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
   }
-  Require(fchmod(descriptor, mode) == 0, target.Name);
+  Check(fchmod(descriptor, mode) == 0, target.Name);
 }
 
 }
@@ -192,13 +172,11 @@ struct OutputFiles::Output
 void CheckOutputs(const std::vector<std::string>& outputs)
 {
   std::set<Identity> streams, found;
-  struct stat status = {};
   for (const int stream : { STDOUT_FILENO, STDERR_FILENO })
   {
-    if (fstat(stream, &status) == 0)
-    {
-      streams.insert(Identify(status));
-    }
+    Target target;
+    target.Exists = fstat(stream, &target.Status) == 0;
+    streams.insert(Identify(target));
   }
   for (const std::string& output : outputs)
   {
@@ -207,18 +185,12 @@ void CheckOutputs(const std::vector<std::string>& outputs)
       continue;
     }
     const Target target = Find(output);
-    const Identity identity = Identify(target);
-    if (target.Exists && S_ISCHR(target.Status.st_mode))
+    if (!target.Exists || !S_ISCHR(target.Status.st_mode)) // not a terminal, nor /dev/null
     {
-      continue; // a device such as /dev/null, or a terminal
-    }
-    if (!found.insert(identity).second)
-    {
-      throw UsageError(output + " would be written twice");
-    }
-    if (target.IsReplaced() && streams.count(identity))
-    {
-      throw UsageError(output + " would be written twice: standard output goes there, too");
+      const Identity identity = Identify(target);
+      Need(found.insert(identity).second, output + " would be written twice");
+      Need(!target.IsReplaced() || !streams.count(identity),
+        output + " would be written twice: standard output goes there, too");
     }
   }
 }
@@ -240,11 +212,11 @@ void OutputFiles::Write(const std::string& file, const std::string& bytes)
     output.File = std::make_unique<TemporaryFile>(
       FolderOf(path) + "/." + fs::path(path).filename().string().substr(0, longest) + ".");
     const int descriptor = output.File->GetDescriptor();
-    Require(descriptor >= 0 && WriteAll(descriptor, bytes), file);
+    Check(descriptor >= 0 && WriteAll(descriptor, bytes), file);
     SetAttributes(descriptor, output.Place);
     // Some file systems have no fsync, and some report a full disk only here.
-    Require(fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP, file);
-    Require(output.File->Close(), file);
+    Check(fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP, file);
+    Check(output.File->Close(), file);
   }
   this->Files.push_back(std::move(output));
 }
@@ -256,7 +228,7 @@ void OutputFiles::Commit()
     const Target& target = output.Place;
     if (output.File)
     {
-      Require(output.File->TakePlaceOf(target.Path), target.Name);
+      Check(output.File->TakePlaceOf(target.Path), target.Name);
       continue;
     }
     const int descriptor = target.Descriptor >= 0
@@ -266,7 +238,7 @@ void OutputFiles::Commit()
     const int problem = errno;
     const bool isClosed = descriptor < 0 || close(descriptor) == 0;
     errno = isWritten ? errno : problem;
-    Require(isWritten && isClosed, target.Name);
+    Check(isWritten && isClosed, target.Name);
   }
   this->Files.clear();
 }
@@ -278,7 +250,7 @@ void WriteOutput(const std::string& file, const std::string& bytes)
   one.Commit();
 }
 
-void GrowingFile::Write(const std::function<std::string()>& text, bool isLast)
+void GrowingFile::Write(const std::string& text, bool isLast)
 {
   std::error_code error;
   const fs::file_status status = fs::status(this->Name, error);
@@ -288,6 +260,6 @@ void GrowingFile::Write(const std::function<std::string()>& text, bool isLast)
   {
     return;
   }
-  WriteOutput(this->Name, text());
+  WriteOutput(this->Name, text);
   this->Next = Clock::now() + 19 * (Clock::now() - begin);
 }

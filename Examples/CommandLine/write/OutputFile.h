@@ -4,7 +4,6 @@
 #define OutputFile_h
 
 #include <chrono>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -49,9 +48,9 @@ public:
   {
   }
 
-  /// Is called when the file may have grown; `text` returns all of it. Does nothing without a name.
+  /// Is called with all of its text when the file may have grown. Does nothing without a name.
   /// Throws std::runtime_error with one sentence.
-  void Write(const std::function<std::string()>& text, bool isLast);
+  void Write(const std::string& text, bool isLast);
 
 private:
   using Clock = std::chrono::steady_clock;

@@ -4,8 +4,9 @@
 
 #include "ColorScale.h"
 #include "Ending.h"
-#include "FileName.h"
-#include "SafeText.h"
+#include "Formats.h"
+#include "ParticleFile.h"
+#include "Text.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
@@ -25,10 +26,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
-#include <set>
 #include <sstream>
 #include <vector>
 
@@ -141,6 +140,37 @@ void WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
       }
       bytes += "\n";
     });
+  vtkNew<vtkIdList> line;
+  const vtkIdType lines = surface->GetNumberOfPolys() > 0 ? 0 : surface->GetNumberOfLines();
+  for (vtkIdType l = 0; l < lines; ++l)
+  {
+    surface->GetLines()->GetCellAtId(l, line);
+    bytes += "l";
+    for (const vtkIdType point : *line)
+    {
+      bytes += " " + std::to_string(point + 1);
+    }
+    bytes += "\n";
+  }
+}
+
+/// A component of an array, under a name that no other column has, because readers go by names.
+struct Column
+{
+  vtkAbstractArray* Array;
+  int Component;
+  std::string Name;
+};
+
+void AddColumn(
+  std::vector<Column>& columns, vtkAbstractArray* array, int component, std::string name)
+{
+  while (std::any_of(
+    columns.begin(), columns.end(), [&name](const Column& column) { return column.Name == name; }))
+  {
+    name += "_";
+  }
+  columns.push_back({ array, component, name });
 }
 
 /// A type of .ply files: its name, its size, and how a value is written. No type has 64-bit integers.
@@ -157,7 +187,7 @@ PlyType MakePlyType(const char* name)
   return { name, sizeof(T), [](char*& next, double value) { Put(next, static_cast<T>(value)); } };
 }
 
-PlyType FindPlyType(vtkDataArray* array)
+PlyType FindPlyType(vtkAbstractArray* array)
 {
   static const std::map<int, PlyType> types = { { VTK_FLOAT, MakePlyType<float>("float") },
     { VTK_INT, MakePlyType<std::int32_t>("int") },
@@ -176,78 +206,66 @@ PlyType FindPlyType(vtkDataArray* array)
 /// leaves out. A vector has NAME_x, NAME_y and NAME_z, as Blender and splashsurf name them.
 void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
-  struct Property
-  {
-    PlyType Type;
-    vtkDataArray* Array;
-    int Component;
-  };
-  std::vector<Property> properties;
-  std::set<std::string> names;
-  std::ostringstream head;
-  std::size_t size = 0;
-  const auto add = [&](vtkDataArray* array, int component, std::string name)
-  {
-    std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    while (!names.insert(name).second)
-    {
-      name += "_";
-    }
-    properties.push_back({ FindPlyType(array), array, component });
-    head << "\nproperty " << properties.back().Type.Name << " " << name;
-    size += properties.back().Type.Size;
-  };
-  const vtkIdType points = surface->GetNumberOfPoints();
-  head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
-       << points;
-  vtkPointData* data = surface->GetPointData();
+  const char* const axes[] = { "x", "y", "z" };
+  const char* const colorNames[] = { "red", "green", "blue" };
   vtkNew<vtkFloatArray> nowhere; // for a surface without points
   nowhere->SetNumberOfComponents(3);
-  vtkDataArray* normals = data->GetNormals();
+  vtkDataArray* normals = surface->GetPointData()->GetNormals();
   vtkNew<vtkUnsignedCharArray> colors;
   vtkDataArray* colored = scale.ArrayOf(surface);
   std::vector<unsigned char> mapped = colored ? scale.Map(colored) : std::vector<unsigned char>();
   colors->SetNumberOfComponents(3);
   colors->SetArray(mapped.data(), static_cast<vtkIdType>(mapped.size()), 1);
+  std::vector<Column> columns;
   for (int c = 0; c < 3; ++c)
   {
-    add(surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), c,
-      std::string(1, "xyz"[c]));
+    AddColumn(
+      columns, surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), c, axes[c]);
   }
   for (int c = 0; normals && c < 3; ++c)
   {
-    add(normals, c, std::string("n") + "xyz"[c]);
+    AddColumn(columns, normals, c, std::string("n") + axes[c]);
   }
-  const char* const colorNames[] = { "red", "green", "blue" };
   for (int c = 0; colored && c < 3; ++c)
   {
-    add(colors, c, colorNames[c]);
+    AddColumn(columns, colors, c, colorNames[c]);
   }
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
   {
-    vtkDataArray* array = data->GetArray(i); // .ply has no place for texts
-    const int components = array && array != normals ? array->GetNumberOfComponents() : 0;
-    for (int c = 0; c < components; ++c)
+    std::string name = array->GetName();
+    std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    const bool isHeld = vtkDataArray::SafeDownCast(array) && array != normals; // no place for texts
+    const int components = array->GetNumberOfComponents();
+    for (int c = 0; isHeld && c < components; ++c)
     {
-      add(array, c,
-        array->GetName() +
-          (components == 1      ? ""
-              : components <= 3 ? std::string("_") + "xyz"[c]
-                                : "_" + std::to_string(c)));
+      const std::string letter = components <= 3 ? axes[c] : std::to_string(c);
+      AddColumn(columns, array, c, name + (components == 1 ? "" : "_" + letter));
     }
   }
-  head << "\nelement face " << surface->GetNumberOfPolys()
+  const vtkIdType points = surface->GetNumberOfPoints(), triangles = surface->GetNumberOfPolys();
+  std::ostringstream head;
+  std::vector<PlyType> types;
+  std::size_t size = 0;
+  head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
+       << points;
+  for (const Column& column : columns)
+  {
+    types.push_back(FindPlyType(column.Array));
+    size += types.back().Size;
+    head << "\nproperty " << types.back().Name << " " << column.Name;
+  }
+  head << "\nelement face " << triangles
        << "\nproperty list uchar uint vertex_indices\nend_header\n";
   bytes = head.str();
-  char* next = Grow(bytes,
-    size * static_cast<std::size_t>(points) +
-      13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
+  char* next =
+    Grow(bytes, size * static_cast<std::size_t>(points) + 13 * static_cast<std::size_t>(triangles));
   for (vtkIdType i = 0; i < points; ++i)
   {
-    for (const Property& property : properties)
+    for (std::size_t c = 0; c < columns.size(); ++c)
     {
-      property.Type.PutValue(next, property.Array->GetComponent(i, property.Component));
+      auto* array = static_cast<vtkDataArray*>(columns[c].Array);
+      types[c].PutValue(next, array->GetComponent(i, columns[c].Component));
     }
   }
   ForTriangles(surface,
@@ -261,43 +279,29 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
     });
 }
 
-/// Writes lines: a row for each point of each line, a column for each component. If a column's name
-/// is taken, the column gets another name, because readers go by names.
+/// Writes lines: a row for each point of each line, a column for each component.
 void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
-  struct Column
-  {
-    vtkAbstractArray* Array;
-    int Component;
-  };
-  std::vector<Column> columns;
-  std::set<std::string> names = { "Line" };
-  bytes = "Line";
-  const auto add = [&columns, &names, &bytes](vtkAbstractArray* array, int c, std::string name)
-  {
-    while (!names.insert(name).second)
-    {
-      name += "_";
-    }
-    bytes += "," + TableField(name);
-    columns.push_back({ array, c });
-  };
+  std::vector<Column> columns = { { nullptr, 0, "Line" } };
   for (int c = 0; surface->GetPoints() && c < 3; ++c)
   {
-    add(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
+    AddColumn(columns, surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
   }
-  for (const bool isVector :
-    { true, false }) // vectors first: their columns' names are made of the arrays' names
+  // Vectors come first, because their columns' names are made of the arrays' names.
+  for (const bool isVector : { true, false })
   {
-    for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
+    for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
     {
-      vtkAbstractArray* array = surface->GetPointData()->GetAbstractArray(i);
       const int components = array->GetNumberOfComponents();
       for (int c = 0; (components > 1) == isVector && c < components; ++c)
       {
-        add(array, c, array->GetName() + (isVector ? ":" + std::to_string(c) : ""));
+        AddColumn(columns, array, c, array->GetName() + (isVector ? ":" + std::to_string(c) : ""));
       }
     }
+  }
+  for (const Column& column : columns)
+  {
+    bytes += (column.Array ? "," : "") + TableField(column.Name);
   }
   bytes += "\n";
   vtkNew<vtkIdList> line;
@@ -306,10 +310,10 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     surface->GetLines()->GetCellAtId(l, line);
     for (const vtkIdType point : *line)
     {
-      bytes += std::to_string(l);
       for (const Column& column : columns)
       {
-        bytes += "," + TableField(column.Array, point, column.Component);
+        bytes += column.Array ? "," + TableField(column.Array, point, column.Component)
+                              : std::to_string(l);
       }
       bytes += "\n";
     }
@@ -345,9 +349,9 @@ void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* 
     }
   }
   text << ">\n";
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  for (vtkAbstractArray* array : ArraysOf(arrays))
   {
-    Describe(text, arrays->GetAbstractArray(i), arrays->GetArrayName(i));
+    Describe(text, array, array->GetName());
   }
   text << "    </" << element << ">\n";
 }
@@ -380,18 +384,12 @@ std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const Co
   const Activity writing(file + " could not be written", "memory may have run out");
   const bool isTable = EndsWith(file, ".csv");
   const vtkIdType lines = surface->GetNumberOfLines(), triangles = surface->GetNumberOfPolys();
-  if (lines > 0 && triangles == 0 && !isTable)
-  {
-    FailToWrite(file,
-      "this format cannot hold lines, which particles in a plane give; "
-      "write a .vtp file, or a .csv file of their points");
-  }
-  if (isTable && lines == 0 && triangles > 0)
-  {
-    FailToWrite(file,
-      "this format holds the points of lines, which particles in a plane "
-      "give, but this is a surface; write a .vtp file");
-  }
+  RequireToWrite(lines == 0 || triangles > 0 || isTable || EndsWith(file, ".obj"), file,
+    "this format cannot hold lines, which particles in a plane give; "
+    "write a .vtp file, or a .csv file of their points");
+  RequireToWrite(!isTable || lines > 0 || triangles == 0, file,
+    "this format holds the points of lines, which particles in a plane "
+    "give, but this is a surface; write a .vtp file");
   std::string bytes;
   FindFormat(Formats, file)->Process(surface, colors, bytes);
   return bytes;
@@ -405,10 +403,7 @@ std::string MarkedStep(std::string bytes)
 
 bool IsFilmStep(const std::string& file)
 {
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(256, '\0');
-  stream.read(&head[0], static_cast<std::streamsize>(head.size()));
-  return head.find(FilmMark) != std::string::npos;
+  return BytesOf(file)->substr(0, 256).find(FilmMark) != View::npos;
 }
 
 bool HoldsArrays(const std::string& file)
@@ -420,25 +415,20 @@ std::string LostArrays(
   const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more)
 {
   const bool isPly = EndsWith(file, ".ply");
-  std::string names;
-  for (const std::string& name : more)
+  std::vector<std::string> names = more;
+  for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
   {
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  vtkPointData* arrays = surface->GetPointData();
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    const std::string name = arrays->GetArrayName(i);
-    const bool isHeld = isPly ? arrays->GetArray(i) != nullptr
+    const std::string name = array->GetName();
+    const bool isHeld = isPly ? vtkDataArray::SafeDownCast(array) != nullptr
                               : name == "Normals" || name == "IsoValue" || name == "Widening";
-    names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
+    names.insert(names.end(), isHeld ? 0 : 1, name);
   }
   if ((HoldsArrays(file) && !isPly) || names.empty())
   {
     return "";
   }
   return fs::path(file).extension().string() + " files hold no " + (isPly ? "text" : "arrays") +
-    ", so these are left out: " + names + "; .vtp keeps all" +
+    ", so these are left out: " + Joined(names) + "; .vtp keeps all" +
     (isPly ? "" : ", .ply those of numbers") + ", --no-attributes makes none";
 }
 

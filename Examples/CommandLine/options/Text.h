@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Text_h
+#define Text_h
+
+#include <charconv>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+// ---- Texts for people and files ----
+
+/// Makes text from a file or the command line fit for a terminal and for XML: one line of UTF-8.
+/// Characters that could steer a terminal (control characters, marks that turn the direction of
+/// writing) and bytes that are not UTF-8 become codes, "\x1b" or "\u202e". Other text stays.
+std::string Printable(const std::string& text);
+
+/// Returns the text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
+std::string QuotedForJson(const std::string& text);
+
+/// Writes the program's word for a slot of a sentence of the core, such as --cube-size, as an
+/// mcor_word of mcor.h. Returns 0 if there is none.
+int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
+
+/// Prints an error or a warning as one line on standard error, after the program's name. Names and
+/// files may have put anything into the sentence.
+void Say(const std::string& sentence);
+
+/// Throws std::runtime_error, "FILE cannot be read: WHY".
+[[noreturn]] void FailToRead(const std::string& file, const std::string& why);
+
+/// Throws std::runtime_error unless `isGood`: the sentence, or that the file cannot be read or written.
+///@{
+void Require(bool isGood, const std::string& sentence);
+void RequireToRead(bool isGood, const std::string& file, const std::string& why);
+void RequireToWrite(bool isGood, const std::string& file, const std::string& why);
+///@}
+
+/// Returns why the work failed, in one sentence; empty if it did not fail.
+std::string FailureOf(const std::function<void()>& work);
+
+/// Returns the fewest digits that read back as the same number, in every locale.
+template <typename T>
+std::string DigitsOf(T number)
+{
+  char digits[32];
+  return { digits, std::to_chars(digits, digits + sizeof(digits), number).ptr };
+}
+
+/// Returns the number with this many digits, or fewer, in every locale.
+std::string DigitsOf(double number, int digits);
+
+/// Rounds to 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
+double Rounded(double number);
+
+/// Returns the text as it is written in an attribute of an XML element.
+std::string EscapedForXml(const std::string& text);
+
+/// Returns the texts with this sign between them; "" for none. last: the sign before the last text.
+std::string Joined(const std::vector<std::string>& texts, const std::string& sign = ", ");
+std::string Joined(
+  const std::vector<std::string>& texts, const std::string& sign, const std::string& last);
+
+// ---- Values of options ----
+
+/// Wrong usage; what() is one sentence.
+class UsageError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws a UsageError unless `isGood`: the sentence, or "OPTION needs WORDS, not 'TEXT'".
+void Need(bool isGood, const std::string& sentence);
+void Need(
+  bool isGood, const std::string& option, const std::string& words, const std::string& text);
+
+/// Returns the texts between the signs `sign`.
+std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
+
+/// Returns true, and sets the value, if the whole text is one finite number.
+bool ParseNumber(const std::string& text, double& value);
+
+/// Returns "; did you mean NAME?" with the name that is most like the text; empty if none is near.
+std::string NearestOf(const std::string& text, const std::vector<std::string>& names);
+
+/// These read the text behind an option. If it has no meaning, a UsageError names the option.
+///@{
+double ToNumber(const std::string& option, const std::string& text);
+double ToPositive(const std::string& option, const std::string& text);
+double ToThreshold(const std::string& option, const std::string& text); ///< 0 or greater
+int ToCount(const std::string& option, const std::string& text, int smallest,
+  int largest = std::numeric_limits<int>::max());
+/// Words and their numbers; ToChoice() returns the number of a word.
+using Choices = std::vector<std::pair<const char*, int>>;
+int ToChoice(const std::string& option, const std::string& text, const Choices& choices);
+/// Accepts an array name, or a constant, which must be greater than 0.
+std::string ToQuantity(const std::string& option, const std::string& text);
+double ToLimit(const std::string& option, const std::string& text); ///< may be inf or -inf
+std::vector<double> ToNumbers(const std::string& option, const std::string& text);
+/// Returns x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.
+std::vector<double> ToBox(const std::string& option, const std::string& text);
+///@}
+
+// ---- Names of files ----
+
+inline bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether this is the name of a .pvd file, ParaView's list of files and their times.
+inline bool IsCollectionFile(const std::string& file)
+{
+  return EndsWith(file, ".pvd");
+}
+
+/// Whether this is the name of a list of files and their times: .pvd, .vtk.series, ...
+inline bool IsListOfSteps(const std::string& file)
+{
+  return IsCollectionFile(file) || EndsWith(file, ".series");
+}
+
+/// A file format: the ending of its names, and the function that reads or writes it.
+template <typename FunctionT>
+struct FileFormat
+{
+  const char* Ending;
+  FunctionT Process;
+};
+
+/// Returns the format with the ending of this name; nullptr if there is none.
+template <typename FunctionT>
+const FileFormat<FunctionT>* FindFormat(
+  const std::vector<FileFormat<FunctionT>>& formats, const std::string& file)
+{
+  for (const FileFormat<FunctionT>& format : formats)
+  {
+    if (EndsWith(file, format.Ending))
+    {
+      return &format;
+    }
+  }
+  return nullptr;
+}
+
+/// Returns the endings as ".vtp, .vtu or .vtk".
+template <typename FunctionT>
+std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
+{
+  std::vector<std::string> endings;
+  for (const FileFormat<FunctionT>& format : formats)
+  {
+    endings.push_back(format.Ending);
+  }
+  return Joined(endings, ", ", " or ");
+}
+
+/// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent
+/// sign.
+inline bool HasStepNumber(const std::string& name)
+{
+  const std::size_t percent = name.find('%');
+  const std::size_t letter =
+    percent == std::string::npos ? percent : name.find_first_not_of("0123456789", percent + 1);
+  return letter != std::string::npos && name[letter] == 'd' && letter - percent <= 3 &&
+    std::count(name.begin(), name.end(), '%') == 1;
+}
+
+/// Returns the name of a step: frame_0007.png for frame_%04d.png.
+inline std::string NameOfStep(const std::string& name, std::size_t step)
+{
+  const std::size_t percent = name.find('%');
+  const auto width = static_cast<std::size_t>(std::atoi(name.c_str() + percent + 1));
+  std::string number = std::to_string(step);
+  number.insert(0, width > number.size() ? width - number.size() : 0, '0');
+  return name.substr(0, percent) + number + name.substr(name.find('d', percent) + 1);
+}
+
+#endif

@@ -236,24 +236,24 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
     std::partial_sort(values.begin(), values.begin() + kept, values.end());
     values.resize(static_cast<std::size_t>(kept));
   };
-  std::vector<double> ends[6];
+  std::vector<double> mine[6], ends[6];
   double longest = 0.0;
-  for (int e = 0; e < 6; ++e)
+  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
   {
-    std::vector<double> mine;
-    for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+    const bool isFluid = takeFluid(i);
+    for (int e = 0; e < 6 && isFluid; ++e)
     {
-      if (takeFluid(i))
+      mine[e].push_back(e % 2 ? -x[e / 2] : x[e / 2]);
+      if (static_cast<std::int64_t>(mine[e].size()) > 8 * (far + 1))
       {
-        mine.push_back(e % 2 ? -x[e / 2] : x[e / 2]);
-      }
-      if (static_cast<std::int64_t>(mine.size()) > 8 * (far + 1))
-      {
-        keepLowest(mine); // so that memory does not grow with the particles
+        keepLowest(mine[e]); // so that memory does not grow with the particles
       }
     }
-    keepLowest(mine);
-    for (const std::vector<double>& theirs : run->Gather(mine))
+  }
+  for (int e = 0; e < 6; ++e)
+  {
+    keepLowest(mine[e]);
+    for (const std::vector<double>& theirs : run->Gather(mine[e]))
     {
       ends[e].insert(ends[e].end(), theirs.begin(), theirs.end());
     }

@@ -25,6 +25,17 @@ static bool mcor_may_be_adaptive(const mcor_input* input, const mcor_options* op
   return low > 0 && high >= 2 * low;
 }
 
+bool mcor_has_solids(const mcor_input* input, const mcor_options* options)
+{
+  const mcor_globals* globals = options->globals;
+  bool has = globals && globals->measured.solid_count > 0;
+  for (int64_t i = 0; i < input->count && input->solid && !globals && !has; ++i)
+  {
+    has = input->solid[i] != 0 && input->solid[i] != MCOR_ABSENT;
+  }
+  return has && mcor_uses_solids(input, options);
+}
+
 int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool has_solids)
 {
@@ -69,12 +80,7 @@ static mcor_status mcor_begin_building(
   {
     return MCOR_OK;
   }
-  const bool may_have = input->solid && context->run.uses_solids;
-  bool has_solids = false;
-  for (int64_t i = 0; i < input->count && may_have && !has_solids; ++i)
-  {
-    has_solids = input->solid[i] != 0 && input->solid[i] != MCOR_ABSENT;
-  }
+  const bool has_solids = mcor_has_solids(input, options);
   const mcor_build build = mcor_build_of(options, has_solids);
   return mcor_build_ahead(context, &build, mcor_list_programs(context, input, options, has_solids));
 }

@@ -293,7 +293,9 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift);
 
-/* mcor_extract.c. Returns the programs that a surface needs, for the plane that was found. */
+/* mcor_extract.c. Whether a surface's programs read solids, even if this part has none. */
+bool mcor_has_solids(const mcor_input* input, const mcor_options* options);
+/* Returns the programs that a surface needs, for the plane that was found. */
 int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool has_solids);
 

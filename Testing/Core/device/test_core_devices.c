@@ -147,12 +147,34 @@ static void test_building_ahead(void** state)
   unsetenv("MCOR_THREADS");
 }
 
+/* A part without solids needs the programs of the whole, which has some. */
+static void test_solids_of_parts(void** state)
+{
+  CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
+  uint8_t* solid = oracle_allocate(set.count, 1);
+  const double iso = 2;
+  mcor_input whole = core_input(&set), part = whole;
+  mcor_options options = core_options(&iso);
+  mcor_globals globals;
+  memset(solid, 0, (size_t)set.count);
+  solid[0] = 1;
+  whole.solid = solid;
+  CORE_OK(*state, mcor_measure_globals(*state, &whole, &options, &globals));
+  assert_true(mcor_has_solids(&whole, &options) && !mcor_has_solids(&part, &options));
+  options.globals = &globals;
+  assert_true(mcor_has_solids(&part, &options));
+  part.ignore_solids = 1;
+  assert_false(mcor_has_solids(&part, &options));
+  mcor_free_globals(&globals);
+  free(solid);
+}
+
 int main(void)
 {
   setenv("POCL_DEVICES", "pthread pthread", 1);
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_turns_and_shares),
     cmocka_unit_test(test_named_device), cmocka_unit_test(test_no_such_place),
-    cmocka_unit_test(test_programs_of_runs),
+    cmocka_unit_test(test_programs_of_runs), cmocka_unit_test(test_solids_of_parts),
     cmocka_unit_test(test_building_ahead) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -197,7 +197,7 @@ class Finder:
             name, self.request["fluid_value"] = parse_fluid(fluid)
             self.names["fluid"] = self.add(name, self.take("fluid", name)) if isinstance(name, str) else self.add(
                 "fluid", self.arguments.marks(name, "fluid"))
-        self.request["find_fluid"] = is_auto
+        self.request["find_fluid"] = 2 * is_auto
         self.looks = "fluid" not in self.names and (self.source is not None or is_auto)
         for name in self.others if self.looks else ():
             if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
@@ -267,12 +267,10 @@ def parse_fluid(fluid):
 def parse_range(name, wanted):
     """Returns the lowest and the highest value that `only` wants of this array."""
     ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
-    if len(ends) != 2:
-        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a value, or the lowest and the highest one.")
-    low, high = [convert(float, f"value of '{name}' in only", end) for end in ends]
-    if not low <= high:
-        raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
-    return low, high
+    ends = [convert(float, f"value of '{name}' in only", end) for end in ends]
+    if len(ends) != 2 or not ends[0] <= ends[1]:
+        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one.")
+    return ends
 
 
 def parse_within(within):

@@ -327,7 +327,9 @@ class Refused(unittest.TestCase):
         for kind in (">i4", "i4"):
             marks = {"ParticleType": (wall > 1).astype(kind)}
             self.assertEqual(sphere(fluid="auto", attributes=marks), sphere(fluid="ParticleType=0", attributes=marks))
-        self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
+        with self.assertWarnsRegex(mc.InputWarning, "No array clearly tells .* fluid names an array"):
+            sphere(fluid="auto")
+        self.check(mc.InvalidArgument, ("is nan; it must be a number", {"only": {"a": np.nan}, "attributes": {"a": DISTANCE}}), ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
             "solid": wall, "fluid": ("wall", 1)}), *((r'it must be \("NAME", VALUE\)', {"fluid": fluid}) for fluid in ("wall", 3, ("wall",), {})),
                    ("value of fluid is 'x'", {"fluid": "wall=x"}), call=mc.gauge, positions=POSITIONS,
                    lines=((0, 0, 0), (1, 1, 1)), smoothing_length=H)

@@ -103,8 +103,8 @@ extern "C"
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
     /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
-     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: whether to take
-     * what MCOR_WANT_FLUID finds. */
+     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: take
+     * what MCOR_WANT_FLUID finds; 2: and say so, in unused_type, if it finds nothing. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
@@ -142,7 +142,8 @@ extern "C"
     /* What is still to be summed over neighbours: mcor_take_lengths, mcor_take_densities. */
     int needs_lengths, needs_densities;
     mcor_message error;       /* what is missing or not usable */
-    mcor_message unused_type; /* which array seems to tell fluid from solids, but is not used */
+    mcor_message unused_type; /* which array seems to tell fluid from solids, but is not used; or, see
+                               * find_fluid, that no array tells it */
     mcor_message unused;      /* what is given by hand and has no effect */
     char* no_fluid;           /* why no particle is fluid, without a full stop; NULL: some are */
     char*

@@ -381,6 +381,10 @@ static void test_weights(void** state)
   input.scalar = core_array(set.scalar, 1);
   view.weight = core_array(weight, 1);
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &mean));
+  view.weight = (mcor_array){ .memory = weight }; /* a buffer would be read as no weight */
+  CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_project(*state, &input, &options, &view, &by_mass),
+    "WEIGHT_IN_BUFFER");
+  view.weight = core_array(weight, 1);
   input.mass = core_array(weight, 1); /* Masses would not replace volumes, since these are given. */
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &by_mass));
   int seen = 0, empty = 0;

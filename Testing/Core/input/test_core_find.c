@@ -183,6 +183,15 @@ static void test_fluid(void** state)
   assert_int_equal(find(&request, arrays + 3, 1, &found), MCOR_OK);
   assert_int_equal(found.unused_type.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
   mcor_free_found(&found);
+  for (request.find_fluid = 2; request.find_fluid > 0; --request.find_fluid) /* only 2 tells it */
+  {
+    const mcor_named no_type = real("Mass", mass);
+    assert_int_equal(find(&request, &no_type, 1, &found), MCOR_OK);
+    CORE_CHECK(request.find_fluid == 2 ? core_tells(&found.unused_type, "NO_TYPE|arrays: Mass.")
+                                       : !found.unused_type.text,
+      request.find_fluid, found.unused_type.text);
+    mcor_free_found(&found);
+  }
   double nine[9] = { 8, 7, 6, 5, 4, 3, 2, 1, NAN };
   const mcor_named place = { NULL, MCOR_ELEMENT_FLOAT64, 3, 9, (double[27]){ 0 }, { 0, 0 } },
                    type = { "Type", MCOR_ELEMENT_FLOAT64, 1, 9, nine, { 0, 0 } };
@@ -306,7 +315,8 @@ static void test_errors(void** state)
   const double dp[COUNT] = { 0.5, 0.5, 0.5, 0.5 };
   const mcor_named arrays[] = { real("Rhop", density), real("Idp", speed), real("spacing", dp),
     of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32), of("text", MCOR_ELEMENT_OTHER, 1, NULL),
-    { "short", MCOR_ELEMENT_FLOAT64, 1, 3, speed, { 0, 0 } } };
+    { "short", MCOR_ELEMENT_FLOAT64, 1, 3, speed, { 0, 0 } },
+    of("mass", MCOR_ELEMENT_FLOAT32, 3, v32) };
   const struct
   {
     unsigned wants;
@@ -315,8 +325,9 @@ static void test_errors(void** state)
   } cases[] = {
     { MCOR_WANT_SIZES, MCOR_ROLE_FLUID, NULL,
       "NO_SMOOTHING_LENGTH|coefh x sqrt(3) x dp|'spacing', particles are 0.5 apart: 0.65 "
-      "is|: Rhop, Idp, spacing, Velocity, text, short." },
+      "is|: Rhop, Idp, spacing, Velocity, text, short, mass." },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "Velocity", "ARRAY_OF_VECTORS|'Velocity'|3 " },
+    { MCOR_WANT_SIZES, MCOR_ROLE_MASS, "mass", "ARRAY_OF_VECTORS|The mass has 3 " },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "text", "ARRAY_WITHOUT_NUMBERS|'text'" },
     { MCOR_WANT_SIZES, MCOR_ROLE_SMOOTHING_LENGTH, "short", "ARRAY_TOO_SHORT|3 values for 4 " },
     { 0, MCOR_ROLE_FLUID, "typ", "NO_SUCH_ARRAY|'typ' for the fluid|{fluid}" },
@@ -328,8 +339,9 @@ static void test_errors(void** state)
   {
     mcor_request request = request_of(cases[c].wants);
     request.names[cases[c].role] = cases[c].name;
+    request.values[MCOR_ROLE_SMOOTHING_LENGTH] = cases[c].role == MCOR_ROLE_MASS;
     mcor_found found;
-    assert_int_equal(find(&request, arrays, 6, &found), MCOR_INVALID_ARGUMENT);
+    assert_int_equal(find(&request, arrays, 7, &found), MCOR_INVALID_ARGUMENT);
     CORE_CHECK(core_tells(&found.error, cases[c].words), found.error.text);
     mcor_free_found(&found);
   }

@@ -143,7 +143,7 @@ static void test_neighbours(void** state)
          call.options.vertex_threshold = 0);
   WARNED(
     MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
-    "1 neighbours|no other particle|unit of the positions", call.input.smoothing_length = far_off;
+    "1 neighbour within|no other particle|unit of the positions", call.input.smoothing_length = far_off;
     call.options.cube_size = 1; call.options.node_threshold = 0; call.options.vertex_threshold = 0);
   /* One sentence tells the cause of an empty surface. */
   WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.0013", call.input.smoothing_length = far_off;

@@ -236,6 +236,8 @@ static mcor_status mcor_run_project(
   MCOR_TRY(mcor_check_input(context, input, &checked));
   MCOR_FAIL_IF(view->resolution < 1 || view->resolution > MCOR_MOST_PIXELS, context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(RESOLUTION_ILLEGAL), view->resolution, MCOR_MOST_PIXELS);
+  MCOR_FAIL_IF(view->weight.memory && !view->weight.data, context, MCOR_INVALID_ARGUMENT,
+    MCOR_SAY(WEIGHT_IN_BUFFER), mcor_array_name(&view->weight, ""));
   MCOR_FAIL_IF(view->weight.data && mcor_components(&view->weight) != 1, context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(WEIGHT_COMPONENTS), mcor_array_name(&view->weight, "weight"),
     mcor_components(&view->weight));

@@ -36,8 +36,7 @@ int mcor_refuse(mcor_finder* f, mcor_message message)
   return -1;
 }
 
-/* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
-static const char* mcor_names_of(mcor_finder* f)
+const char* mcor_names_of(mcor_finder* f)
 {
   char* list = mcor_text("%s", f->count > 0 ? "Point arrays: " : "The input has no point arrays.");
   for (int i = 0; i < f->count; ++i)
@@ -215,6 +214,15 @@ int mcor_join_velocity(mcor_finder* f)
   return f->count;
 }
 
+/* Returns "mass array 'M'" or, of values that are given without a name of their own, "mass". */
+static const char* mcor_called(mcor_finder* f, const char* words, const char* name)
+{
+  char* text = strcmp(words, name) == 0 ? NULL : mcor_text("%s array '%s'", words, name);
+  const char* kept = text ? mcor_keep_name(f, text) : words;
+  free(text);
+  return kept ? kept : words;
+}
+
 /* Returns the index if the array exists and has numbers for all particles; else -1. */
 static int mcor_check_named(mcor_finder* f, const char* words, const char* name, int index)
 {
@@ -233,12 +241,12 @@ static int mcor_check_named(mcor_finder* f, const char* words, const char* name,
   name = named->name ? named->name : "";
   if (named->type == MCOR_ELEMENT_OTHER)
   {
-    return mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_WITHOUT_NUMBERS), words, name));
+    return mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_WITHOUT_NUMBERS), mcor_called(f, words, name)));
   }
   if (named->tuples != f->positions->tuples || named->components < 1)
   {
     return mcor_refuse(f,
-      mcor_say(MCOR_SAY(ARRAY_TOO_SHORT), words, name, (long long)named->tuples,
+      mcor_say(MCOR_SAY(ARRAY_TOO_SHORT), mcor_called(f, words, name), (long long)named->tuples,
         (long long)f->positions->tuples));
   }
   return index;
@@ -253,7 +261,7 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
   const int has = index < 0 ? 0 : mcor_named_of(f, index)->components;
   return index < 0 || components != 1 || has == 1
     ? index
-    : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), words, name, has));
+    : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), mcor_called(f, words, name), has));
 }
 
 static const char* const mcor_quantity_words[MCOR_ROLE_VALUES] = { "smoothing length", "volume",
@@ -451,8 +459,8 @@ static void mcor_keep_scalar(mcor_finder* f, mcor_array view)
     (input->scalar_component < MCOR_MAGNITUDE || component >= view.components))
   {
     mcor_refuse(f,
-      mcor_say(
-        MCOR_SAY(NO_SUCH_COMPONENT), view.name ? view.name : "", component, view.components - 1));
+      mcor_say(MCOR_SAY(NO_SUCH_COMPONENT), mcor_called(f, "scalar", view.name ? view.name : ""),
+        component, view.components - 1));
   }
 }
 

@@ -172,6 +172,10 @@ static void mcor_look_for_fluid(mcor_finder* f)
       }
     }
   }
+  if (f->request->find_fluid > 1 && found->unused_type.code == MCOR_SAYS_NOTHING)
+  {
+    found->unused_type = mcor_say(MCOR_SAY(NO_TYPE), mcor_names_of(f));
+  }
 }
 
 void mcor_find_fluid(mcor_finder* f)

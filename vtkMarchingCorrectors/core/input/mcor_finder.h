@@ -58,6 +58,8 @@ int mcor_find_by_name(const mcor_finder* f, const char* name);
  * it must have one number for each particle; 0: any number of components. words: what it is for. */
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
+/* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
+const char* mcor_names_of(mcor_finder* f);
 const mcor_named* mcor_named_of(const mcor_finder* f, int index);
 /* Return an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
  * else a copy. */

@@ -98,7 +98,8 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
     snprintf(times, sizeof times, "%.3g times the distance %.4g of the nearest particle",
       h / spacing, spacing);
   }
-  return mcor_say(MCOR_SAY(NEIGHBOURS_UNUSUAL), n->neighbours_median, h, times,
+  return mcor_say(MCOR_SAY(NEIGHBOURS_UNUSUAL), n->neighbours_median,
+    n->neighbours_median < 1.5 ? "neighbour" : "neighbours", h, times,
     mcor_sph_kernel_name(kernel), usual, wendland ? 2.2 : 1.7,
     why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }

@@ -26,22 +26,6 @@ def fail(sentence):
     sys.exit(f"make_structs.py: {sentence}")
 
 
-def tokens_of(text):
-    """Returns the declarations, with one blank between all tokens, and the comments. A comment's token is @NUMBER; it is
-    @<NUMBER if the comment begins on the line on which a declaration ends, and then belongs to this declaration."""
-    text = re.sub(r"^[ \t]*#(?:.*\\\n)*.*$", "", text, flags=re.M)
-    tokens, comments, end = [], [], 0
-    for token in re.finditer(r'/\*(.*?)\*/|"[^"]*"|\w+|\S', text, re.S):
-        if token.group(1) is None:
-            tokens.append(token.group())
-            end = token.end()
-            continue
-        is_behind = tokens and tokens[-1] == ";" and "\n" not in text[end:token.start()]
-        tokens.append(f"@{'<' if is_behind else ''}{len(comments)}")
-        comments.append(" ".join(re.sub(r"\n\s*\*", " ", token.group(1)).split()))
-    return " ".join(tokens), comments
-
-
 class Header:
     """The enumerations, structures and functions of a header as simple as mcor.h."""
 
@@ -49,13 +33,13 @@ class Header:
         self.constants = {name: int(value) for name, value in
                           re.findall(r"#define (\w+) \(?(-?\d+)\)?", text)}
         self.version = re.search(r'#define MCOR_VERSION "([^"]+)"', text).group(1)
-        tokens, self.comments = tokens_of(text)
-        code = re.sub(r"@<?\d+ ", "", tokens)
+        self.text = re.sub(r"^[ \t]*#(?:.*\\\n)*.*$", "", text, flags=re.M)
+        code = " ".join(re.findall(r'"[^"]*"|\w+|\S', re.sub(r"/\*.*?\*/", "", self.text, flags=re.S)))  # one blank between all tokens
         self.enums = {name: self.read_enum(body)
                       for body, name in re.findall(r"typedef enum \w+ \{ (.*?) \} (\w+) ;", code)}
         self.structs = {}
-        for tag, body, name in re.findall(r"struct (\w+) \{ (.*?) \}(?: (\w+))? ;", tokens):
-            self.structs[name or tag] = self.read_struct(body)
+        for tag, body, name in re.findall(r"struct (\w+) \{ (.*?) \}(?: (\w+))? ;", code):
+            self.structs[name or tag] = [field for each in body.split(" ;") if each.strip() for field in self.read_fields(each.strip())]
         self.functions = {name: [self.parameter_type(each) for each in (result, *parameters.split(" , "))]
                           for result, name, parameters in
                           re.findall(r"(?<=[;{}]) ([\w *]+?) (mcor_\w+) \( (.*?) \) ;", code)}
@@ -69,39 +53,39 @@ class Header:
             next_value += 1
         return values
 
-    def read_struct(self, body):
-        """Returns [(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
-        the next one."""
-        fields, before, behind = [], "", []
-        body = re.sub(r", @<?(\d+) ([^@;]*;)", r", \2 @<\1", body)  # This comment is in the midst of a declaration, and counts as behind it.
-        for is_behind, number, declaration in re.findall(r"@(<?)(\d+)|([^@;]+) ;", body):
-            if declaration:
-                behind = self.read_fields(declaration.strip(), before)
-                fields += behind
-                before = ""
-            elif is_behind:
-                fields[-len(behind):] = [field[:4] + (f"{field[4]} {self.comments[int(number)]}".strip(),)
-                                         for field in fields[-len(behind):]]
-            else:
-                before = self.comments[int(number)]
-        return fields
-
-    def read_fields(self, declaration, comment):
+    def read_fields(self, declaration):
+        """Returns [(field, C type, pointers, array length)]."""
         callback = re.match(r"int \( \* (\w+) \) \(", declaration)
         if callback:
-            return [(callback.group(1), "callback", 0, None, comment)]
+            return [(callback.group(1), "callback", 0, None)]
         base, rest = re.match(r"(?:const )?(\w+)(.*)", declaration).groups()
         fields = []
         for item in rest.split(" ,"):
             match = re.fullmatch(r"((?: \*)*) (\w+)(?: \[ (\w+) \])?", item)
-            if not match or (base != "void" and base not in NUMBERS and base not in self.enums
-                             and base not in self.structs):
+            if not match or base not in {"void", *NUMBERS, *self.enums, *self.structs}:
                 fail(f"cannot read '{declaration}'")
             stars, name, length = match.groups()
             if length:
                 length = int(length) if length.isdigit() else self.constants[length]
-            fields.append((name, base, stars.count("*"), length, comment))
+            fields.append((name, base, stars.count("*"), length))
         return fields
+
+    def shapes_of(self, struct):
+        """Reads the shapes of a structure's arrays in the comments behind their declarations, on the same line, or before: "[count][3], unit L"
+        becomes ("count", 3), and "[attribute_count] -> [count][components]" a list."""
+        body, shapes = re.search(rf"struct\s+{struct}\s*\{{(.*?)\}}\s*{struct}\s*;", self.text, re.S).group(1), {}
+        told = {name: comment for comment, names in re.findall(r"/\*((?:(?!\*/).)*)\*/\s*\w+([\s*\w,]*);", body, re.S)
+                for name in re.findall(r"\w+", names)}
+        told.update(re.findall(r"(\w+)\s*;[ \t]*/\*(.*?)\*/", body, re.S))
+        for name, _, pointers, _ in self.structs[struct]:
+            comment = " ".join(re.sub(r"\n\s*\*", " ", told.get(name, "")).split())
+            match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
+            if pointers and not match:
+                fail(f"the comment on {struct}.{name} does not tell the shape of the array")
+            if pointers:
+                shapes[name] = tuple(int(part) if part.isdigit() else self.constants.get(part, part)
+                                     for part in re.findall(r"->|\w+", match.group()))
+        return shapes
 
     def parameter_type(self, text):
         """Returns the type as ctype() does, but a text that the caller must free keeps its address."""
@@ -180,15 +164,6 @@ def program_options(folder):
     return found
 
 
-def shape_of(struct, name, comment, constants):
-    """Reads a shape: "[count][3], unit L" becomes ("count", 3), and "[attribute_count] -> [count][components]" a list."""
-    match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
-    if not match:
-        fail(f"the comment on {struct}.{name} does not tell the shape of the array")
-    return tuple(int(part) if part.isdigit() else constants.get(part, part)
-                 for part in re.findall(r"->|\w+", match.group()))
-
-
 def python_module(header, rows):
     lines = ['"""Made by make_structs.py from mcor.h; not to be edited."""',
              "import ctypes", "from typing import Literal, Optional, Sequence, TypedDict, Union", "", f"VERSION = {header.version!r}", "",
@@ -198,13 +173,11 @@ def python_module(header, rows):
     for struct, fields in header.structs.items():
         lines += ["", f"class {struct}(ctypes.Structure):", "    _fields_ = ["]
         lines += [f'        ("{name}", {header.ctype(base, pointers, length)}),'
-                  for name, base, pointers, length, _ in fields]
+                  for name, base, pointers, length in fields]
         lines += ["    ]", ""]
-    results = {struct: {name: shape_of(struct, name, comment, header.constants)
-                        for name, _, pointers, _, comment in header.structs[struct] if pointers}
-               for struct in ("mcor_surface", "mcor_samples", "mcor_derivatives", "mcor_flow")}
+    results = {struct: header.shapes_of(struct) for struct in ("mcor_surface", "mcor_samples", "mcor_derivatives", "mcor_flow")}
     kinds = {struct: {name: f"{base}[{length}]" if length else base
-                      for name, base, pointers, length, _ in header.structs[struct] if not pointers}
+                      for name, base, pointers, length in header.structs[struct] if not pointers}
              for struct in ("mcor_options", "mcor_input")}
     lines += ["", "class CoreOptions(TypedDict, total=False):",
               *(f"    {name}: {kind}" for name, kind in rows.types.items()), ""]

@@ -35,11 +35,11 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
-from marchingcorrectors._arrays import QUANTITIES, camel
+from marchingcorrectors._arrays import QUANTITIES
 from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
-from marchingcorrectors._options import BOUNDS, OUTPUTS
+from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
 from marchingcorrectors._find import tells_of_walls
 from marchingcorrectors._vtk_blocks import copy_of, describe_mesh, join_blocks, leaves_of, list_all, sets_of, take_vertices
 from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of,

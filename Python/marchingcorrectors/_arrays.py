@@ -10,9 +10,9 @@ import numpy as np
 
 from . import _structs as c
 from ._device_arrays import on_host
-from ._find import ELEMENTS, as_bytes
+from ._find import ELEMENTS, as_bytes, copy_at
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
-from ._options import BOUNDS, ISOSURFACE, camel, did_you_mean, kind_of, words_of  # noqa: F401  others import camel from here
+from ._options import BOUNDS, ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
@@ -122,15 +122,11 @@ class Arguments:
     def view(self, array, name):
         view = c.mcor_array()
         view.type, view.components = FLOATS[array.dtype], 1 if array.ndim < 2 else array.shape[1]
-        view.data = array.ctypes.data if array.size else ctypes.addressof(self.something())
+        array = array if array.size else np.empty(array.shape, array.dtype)  # NULL would mean a constant.
+        view.data = array.ctypes.data
         view.name = as_bytes(name) if name else None
         self.kept.append(array)
         return view
-
-    def something(self):
-        """Gives an empty array memory to point to, because NULL would mean a constant."""
-        self.kept.append(ctypes.create_string_buffer(32))
-        return self.kept[-1]
 
     def per_particle(self, values, role, name=None):
         """Returns a view of an array of (particles,) or (particles, components)."""
@@ -161,22 +157,21 @@ class Arguments:
         """Sets the attributes, {name: array}, in the order of the core's results."""
         views = [self.per_particle(values, f"attribute '{name}'", str(name))
                  for name, values in attributes.items()]
-        array = (c.mcor_array * max(len(views), 1))(*views)
-        self.kept.append(array)
-        self.input.attributes, self.input.attribute_count = array, len(views)
+        self.set_views(views)
         self.kinds = {name: (() if np.ndim(values) == 1 else (view.components,), view.type)
                       for view, (name, values) in zip(views, attributes.items())}
+
+    def set_views(self, views):
+        self.kept.append((c.mcor_array * max(len(views), 1))(*views))
+        self.input.attributes, self.input.attribute_count = self.kept[-1], len(views)
 
     def set_widening(self, factors, volumes, of_surface):
         """Takes factors of smoothing lengths. of_surface: they also become the last attribute, which has no entry in `kinds`."""
         self.input.widening = self.view(factors, "Widening")
         if volumes is not None:
             self.input.volume = self.view(volumes, None)
-        if not of_surface:
-            return
-        views = [*self.input.attributes[:len(self.kinds)], self.input.widening]
-        self.kept.append((c.mcor_array * len(views))(*views))
-        self.input.attributes, self.input.attribute_count = self.kept[-1], len(views)
+        if of_surface:
+            self.set_views([*self.input.attributes[:len(self.kinds)], self.input.widening])
 
     def set_iso_values(self, values):
         values = contiguous(values, "list of iso values").astype(np.float64)
@@ -292,19 +287,12 @@ def values_of(view, count):
     """Returns a copy of the numbers, (count,), of a mcor_array, or its constant; None if it is not given."""
     if not view.data:
         return view.constant or None
-    kind = next(dtype for dtype, number in FLOATS.items() if number == view.type)
-    return np.frombuffer((ctypes.c_char * (count * kind.itemsize)).from_address(view.data), kind).copy()
+    return copy_at(view.data, next(dtype for dtype, number in FLOATS.items() if number == view.type), (count,))
 
 
 def take(pointer, shape):
-    """Returns a copy of the core's array that NumPy owns, or None if there is none."""
-    if not pointer:
-        return None
-    size = int(np.prod(shape))
-    if size == 0:
-        return np.empty(shape, np.dtype(pointer._type_))
-    address = ctypes.addressof(pointer.contents)
-    return np.frombuffer((pointer._type_ * size).from_address(address), pointer._type_).reshape(shape).copy()
+    """Returns a copy of the core's array, or None if there is none."""
+    return copy_at(ctypes.addressof(pointer.contents), np.dtype(pointer._type_), shape) if pointer else None
 
 
 def take_rows(pointer, count):
@@ -312,19 +300,14 @@ def take_rows(pointer, count):
     return take(pointer, (count,)) if count else np.empty(0, pointer._type_)
 
 
-def take_all(struct, result, sizes):
-    """Returns, by name, the arrays of a result whose shapes follow from `sizes`."""
+def take_all(result):
+    """Returns, by name, the arrays of a result, but for those with one entry for each attribute."""
     arrays = {}
-    for name, shape in c.SHAPES[struct].items():
-        if "->" not in shape and shape[0] in sizes and name != "attribute_not_finite":
-            arrays[name] = take(getattr(result, name), tuple(sizes.get(part, part) for part in shape))
+    for name, (count, *columns) in c.SHAPES[type(result).__name__].items():
+        if count != "attribute_count":
+            size = result.line_count + 1 if count == "offset_count" else getattr(result, count)
+            arrays[name] = take(getattr(result, name), (size, *columns))
     return arrays
-
-
-def take_lines(surface):
-    """Returns the arrays of lines, in two dimensions."""
-    return {"line_offsets": take(surface.line_offsets, (surface.line_count + 1,)),
-            "line_points": take(surface.line_points, (surface.line_point_count,))}
 
 
 def take_each(pointers, arguments, shape, more=()):

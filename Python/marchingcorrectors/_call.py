@@ -15,7 +15,7 @@ import numpy as np
 from . import _structs as c
 from ._arrays import (ABSENT, QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
 from ._context import Context, default_context
-from ._find import ELEMENTS, Found, as_bytes, is_most_usual
+from ._find import ELEMENTS, Found, name_priority
 from ._library import InvalidArgument, InvalidData, lib, say
 from ._options import BOUNDS, OUTPUTS, Function, Options, check_names, did_you_mean, kind_of, show
 from ._units import without_unit
@@ -183,7 +183,8 @@ class Finder:
             array = None if role in self.names or role in self.values else self.source.quantity(role)
             if array is not None:
                 name, array = getattr(self.source, role), array if np.ndim(array) else np.full(self.arguments.count, array)
-                self.add(name if is_most_usual(name, role) else role, self.arguments.shaped(array, role))
+                is_usual = isinstance(name, str) and name_priority(name, role) == 0
+                self.add(name if is_usual else role, self.arguments.shaped(array, role))
         if not self.arguments.count and "smoothing_length" not in self.names:
             self.values["smoothing_length"] = 1.0  # No particle needs it.
 
@@ -200,7 +201,7 @@ class Finder:
         self.request["find_fluid"] = 2 * is_auto
         self.looks = "fluid" not in self.names and (self.source is not None or is_auto)
         for name in self.others if self.looks else ():
-            if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
+            if name_priority(name, "particle_type") >= 0:
                 array = np.ascontiguousarray(self.array_of(name))
                 self.add(name, array.astype(array.dtype.newbyteorder("="), copy=False))
 

@@ -17,7 +17,7 @@ from . import _film, _structs as c, io
 from ._call import Ranges
 from ._find import Found
 from ._functions import free_surface, isosurface, probe
-from ._library import Error, InvalidArgument, Sentence, lib, word_by
+from ._library import InvalidArgument, Sentence, lib, word_by
 from ._meters import gauge
 from .io._outputs import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of

@@ -20,6 +20,12 @@ def as_bytes(text):
     return text.encode(errors="replace")
 
 
+def copy_at(address, kind, shape):
+    """Returns an array that NumPy owns, of the numbers at this address."""
+    size = int(np.prod(shape)) * kind.itemsize
+    return np.frombuffer((ctypes.c_char * size).from_address(address), kind).reshape(shape).copy() if size else np.empty(shape, kind)
+
+
 def list_named(arrays):
     """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers has only a shape there."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
@@ -35,8 +41,9 @@ def list_named(arrays):
     return named, len(pairs)
 
 
-def is_most_usual(name, quantity):
-    return isinstance(name, str) and lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], as_bytes(name)) == 0
+def name_priority(name, quantity):
+    """Returns 0 for the most usual name of a quantity, more for less usual ones, -1 for any other name."""
+    return lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], as_bytes(name))
 
 
 def find_named(arrays, quantity, components, count):
@@ -108,7 +115,4 @@ class Found:
         """Returns (name, a copy of the array)."""
         made = self.found.made[i]
         kind = next(dtype for dtype, number in ELEMENTS.items() if number == made.type)
-        size = made.tuples * made.components
-        data = np.frombuffer((ctypes.c_char * (size * kind.itemsize)).from_address(made.data), kind).copy() if size else \
-            np.empty(0, kind)
-        return made.name.decode(), data.reshape(made.tuples, made.components) if made.components > 1 else data
+        return made.name.decode(), copy_at(made.data, kind, (made.tuples, made.components)[:1 + (made.components > 1)])

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all,
-                      take_each, take_lines)
+from ._arrays import SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all, take_each
 from ._call import called, of_particles, prepare, warn_of_missing
 from ._library import ERRORS, InvalidArgument, lib
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
@@ -144,17 +143,13 @@ def _describe_empty(arguments, found):
 
 def take_surface(surface, arguments):
     """Makes a Surface from the core's mcor_surface."""
-    count = surface.point_count
-    arrays = take_all("mcor_surface", surface,
-                      {"point_count": count, "triangle_count": surface.triangle_count})
-    if arrays["points"] is None:
-        arrays["points"] = np.empty((0, 3))
-    if arrays["triangles"] is None:
-        arrays["triangles"] = np.empty((0, 3), np.int32)
+    count, arrays = surface.point_count, take_all(surface)
+    for name, kind in (("points", np.float64), ("triangles", np.int32)):
+        arrays[name] = np.empty((0, 3), kind) if arrays[name] is None else arrays[name]
     missing, attributes = left_out(surface, arguments), take_each(surface.attributes, arguments, (count,))
     if arguments.input.widening.data and surface.attributes:
         arrays["widening"] = take(surface.attributes[len(arguments.kinds)], (count,))
-    return Surface(**arrays, **take_lines(surface), attributes={name: attributes[name] for name in attributes if name not in missing},
+    return Surface(**arrays, attributes={name: attributes[name] for name in attributes if name not in missing},
                    left_out=missing, statistics=statistics(surface.statistics))
 
 
@@ -206,7 +201,7 @@ def probe(positions: Positions, points: ArrayLike, *,
     where = as_points(where.reshape(-1, 3) if is_whole else where, "points", "(..., 3)")
     view = arguments.view(where, "points")
     with called(lib.mcor_probe, c.mcor_samples, arguments, ctypes.byref(view), len(where)) as samples:
-        arrays = take_all("mcor_samples", samples, {"count": samples.count})
+        arrays = take_all(samples)
         valid = _or_zeros(arrays["valid"], len(where)).astype(bool).reshape(shape)
         result = Samples(
             weight_sum=_or_zeros(arrays["weight_sum"], len(where)).reshape(shape), valid=valid,
@@ -245,10 +240,9 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
     arguments = prepare(Units(positions), words, as_named(attributes), nothing=None)
     chosen = number("form", "mcor_gradient", form)
     with called(lib.mcor_derive, c.mcor_derivatives, arguments, chosen) as result:
-        corrected = take(result.corrected, (result.count,))
         found = Derivatives(
             gradients=take_each(result.gradients, arguments, (result.count,), (3,)),
-            corrected=_or_zeros(corrected, arguments.count).astype(bool), left_out=left_out(result, arguments),
+            corrected=_or_zeros(take_all(result)["corrected"], arguments.count).astype(bool), left_out=left_out(result, arguments),
             statistics=statistics(result.statistics))
     warn_of_missing(found.left_out)
     return found

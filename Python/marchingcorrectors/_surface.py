@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 
 import numpy as np
 
-from ._arrays import camel
+from ._options import camel
 from ._library import InvalidArgument
 from ._warnings import warn
 

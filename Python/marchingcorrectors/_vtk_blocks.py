@@ -7,9 +7,8 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (vtkDataObjectTree, vtkPartitionedDataSet, vtkPointSet, vtkPolyData,
                                            vtkUnstructuredGrid)
 
-from . import _structs as c
-from ._find import tells_of_walls
-from ._library import lib, say
+from ._find import name_priority, tells_of_walls
+from ._library import say
 from ._vtk_particles import WALL_BLOCK, name_of
 from ._vtk_surface import add, add_nearest
 from .io._cells import VERTICES, find_vertices
@@ -129,7 +128,7 @@ def join_array(sets, like, joined):
     made.SetNumberOfComponents(like.GetNumberOfComponents())
     made.CopyComponentNames(like)
     made.SetNumberOfTuples(joined.GetNumberOfPoints())
-    at, is_type = 0, lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], name.encode()) >= 0
+    at, is_type = 0, name_priority(name, "particle_type") >= 0
     for block, wall in sets:
         array, count = block.GetPointData().GetAbstractArray(name), block.GetNumberOfPoints()
         if array is None and wall and not is_type:

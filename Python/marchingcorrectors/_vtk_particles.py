@@ -3,15 +3,15 @@
 """The particles of a VTK data set as arguments of the core, which finds their arrays."""
 import ctypes
 
-import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
-from ._arrays import QUANTITIES, Arguments, camel, place_period
+from ._arrays import QUANTITIES, Arguments, place_period
 from ._find import Found, as_bytes, choose_view, find_named
 from ._library import lib
+from ._options import camel
 
 GHOSTS = "vtkGhostType"
 WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.

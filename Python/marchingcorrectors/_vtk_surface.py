@@ -9,7 +9,8 @@ from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray, vtkIdList, 
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import _structs as c
-from ._arrays import QUANTITIES, camel
+from ._arrays import QUANTITIES
+from ._options import camel
 
 # These options of mcor_options are left out: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")

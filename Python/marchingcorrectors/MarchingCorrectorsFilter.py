@@ -38,14 +38,13 @@ from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import QUANTITIES
 from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
-from marchingcorrectors._library import Sentence, devices, lib, say, take_sentence, take_text
+from marchingcorrectors._library import Sentence, describe_warnings, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
 from marchingcorrectors._find import tells_of_walls
 from marchingcorrectors._vtk_blocks import copy_of, describe_mesh, join_blocks, leaves_of, list_all, sets_of, take_vertices
-from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of,
+from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of, request_of,
                                                varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
-from marchingcorrectors._warnings import describe_warnings
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -82,8 +81,6 @@ WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"),
 # These are findings of a run, which the panel shows.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-
-
 # What a run's data on the device depend on: marks of the particles and of the scalar, options; and its factors of smoothing lengths.
 NO_RUN = None, None, None, None
 
@@ -94,19 +91,27 @@ def snake(name):
 
 
 def with_properties(kind):
-    """Defines SetX, GetX, XOn and XOff, and the property x, for each X of PROPERTIES."""
+    """Defines SetX, GetX, XOn and XOff, and the properties X and x, for each X of PROPERTIES."""
+    def define(name, get, put=None):
+        setattr(kind, "Get" + name, get)
+        setattr(kind, snake(name), property(get, put))
+        if put:
+            setattr(kind, "Set" + name, put)
+            setattr(kind, name, property(get, put))
+
     for name, (_, convert, is_flag, limits) in PROPERTIES.items():
         def set_it(self, value, name=name, convert=convert, limits=limits):
             value = convert(value)
             self._put(name, min(max(value, min(limits)), max(limits)) if limits else value)
 
-        setattr(kind, "Set" + name, set_it)
-        setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
+        define(name, lambda self, name=name: self._values[name], set_it)
         if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
-    for name in (*NOTHING, *SIDES, "ErrorMessage", "MessageCount", "RunStatistics"):
-        setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
+    for name in SIDES:
+        define(name, lambda self, name=name: self._values[name], lambda self, *sides, name=name: self._set_sides(name, sides))
+    for name in (*NOTHING, "ErrorMessage", "MessageCount", "RunStatistics"):
+        define(name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array", "Warning"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in map(camel, QUANTITIES):
@@ -118,17 +123,13 @@ def with_properties(kind):
         setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
         if name != "Kernel":
             setattr(kind, ("TOPOLOGY_" if name == "Topology" else "") + snake(word).upper(), value)
-    for name in SIDES:
-        setattr(kind, "Set" + name, lambda self, *sides, name=name: self._set_sides(name, sides))
     for values, called_here in (("ContourValues", "NumberOfContours"), ("FreeSurfaceValues", "NumberOfFreeSurfaceValues")):
         setattr(kind, "Get" + called_here, lambda self, values=values: getattr(self, values).GetNumberOfContours())
         setattr(kind, "Set" + called_here, lambda self, n, values=values: self._change(values, "SetNumberOfContours", n))
     for method in ("SetValue", "GenerateValues"):
         setattr(kind, method, lambda self, *a, method=method: self._change("ContourValues", method, *a))
     kind.SetInputData, kind.GetOutput = kind.SetInputDataObject, lambda self, port=0: self.GetOutputDataObject(port)
-    for name in (*PROPERTIES, *NOTHING, *SIDES, "FreeSurfaceValue"):
-        setter = getattr(kind, "Set" + name, None)
-        setattr(kind, snake(name), property(getattr(kind, "Get" + name), setter))
+    kind.free_surface_value = property(kind.GetFreeSurfaceValue, kind.SetFreeSurfaceValue)
     return kind
 
 
@@ -143,12 +144,13 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def __init__(self, **properties):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
-        vars(self).update({**NOTHING, **SIDES, **{name: default for name, (default, *_) in PROPERTIES.items()}})
+        self._values = {**SIDES, **{name: default for name, (default, *_) in PROPERTIES.items()}, "ExcludedArrays": [], "Only": []}
+        vars(self).update(NOTHING)
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
         self._kept, self._made = {}, {}  # These are data sets made of the input, and arrays of sums over neighbours.
-        self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName, self.MessageCount = [], [], "", "", 0
+        self.ErrorMessage, self.BlockName, self.MessageCount = "", "", 0
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._in_run = self._release = False
@@ -184,8 +186,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     # -- properties that are more than a value --
 
     def _put(self, name, value):
-        if getattr(self, name) != value:
-            setattr(self, name, value)
+        if self._values[name] != value:
+            self._values[name] = value
             self.Modified()
 
     def _change(self, name, method, *arguments):
@@ -203,6 +205,12 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if into is None:
             return values
         into[:len(values)] = values
+
+    def _levels(self, name):
+        """Lists the values, without NaN, which is an empty row of a panel's list."""
+        values = getattr(self, name)
+        values = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
+        return [value for value in values if value == value]
 
     def SetFreeSurfaceValue(self, *arguments):
         if len(arguments) == 1:
@@ -240,22 +248,22 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return lib.mcor_sph_kernel_name(self.Kernel).decode()
 
     def AddExcludedArray(self, name):
-        self._put("ExcludedArrays", [*self.ExcludedArrays, name])
+        self._put("ExcludedArrays", [*self._values["ExcludedArrays"], name])
 
     def ClearExcludedArrays(self):
         self._put("ExcludedArrays", [])
 
     def AddOnly(self, name, low, high):
-        self._put("Only", [*self.Only, (name, low, high)])
+        self._put("Only", [*self._values["Only"], (name, low, high)])
 
     def ClearOnly(self):
         self._put("Only", [])
 
     def GetNumberOfExcludedArrays(self):
-        return len(self.ExcludedArrays)
+        return len(self._values["ExcludedArrays"])
 
     def GetExcludedArray(self, i):
-        return self.ExcludedArrays[i] if 0 <= i < len(self.ExcludedArrays) else None
+        return dict(enumerate(self._values["ExcludedArrays"])).get(i)
 
     def GetStatistics(self):
         return describe(self.RunStatistics)
@@ -297,8 +305,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         """If nobody chose what to contour, the particles decide."""
         if choice.FreeSurface >= 0:
             return
-        values = [self.ContourValues.GetValue(i) for i in range(self.ContourValues.GetNumberOfContours())]
-        choice.FreeSurface = int(not Request(self, 0, points).name and all(value != value for value in values))
+        choice.FreeSurface = int(not request_of(self, 0, points).name and not self._levels("ContourValues"))
         if choice.FreeSurface:
             with suppress(Unusable, Error):  # The run reports the error.
                 particles = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
@@ -306,7 +313,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _look_at(self, points, ahead):
         """Adds to `ahead` what these points tell: the range needs no smoothing length, the number of cells no scalar."""
-        choice, none = self._choice(), Request(self, 9, points)
+        choice, none = self._choice(), Request()
         self._settle(choice, points)
         with suppress(Unusable):
             fittest = Particles(choice, points, ["fluid", "array"], (none, none))
@@ -329,7 +336,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             ahead["Cells"] += Particles.estimate_cells(given, self._options(choice))
 
     def _find(self, choice, points, wants, **more):
-        requests = Request(self, 0, points), Request(self, 1, points)
+        requests = request_of(self, 0, points), request_of(self, 1, points)
         return Particles(choice, points, [want for want in wants if want != "scalar" or not choice.FreeSurface],
                          None if choice.FreeSurface else requests, **more)
 
@@ -425,10 +432,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.UsedFluid = particles.describe_fluid()
 
     def _choice(self):
-        return SimpleNamespace(Made=self._made, ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,
-                               PeriodicBounds=self.PeriodicBounds, Within=self.Within,
-                               IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE),
-                               **{name: getattr(self, name) for name in PROPERTIES})
+        return SimpleNamespace(Made=self._made, IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE), **self._values)
 
     @staticmethod
     def _options(choice):
@@ -466,9 +470,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     def _extract(self, particles, options, output):
         choice, arguments = particles.choice, particles.arguments()
         arguments.options = options
-        values = self.FreeSurfaceValues if choice.FreeSurface else self.ContourValues
-        iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
-        iso = [value for value in iso if value == value]  # An empty row of a panel's list does not count.
+        iso = self._levels("FreeSurfaceValues" if choice.FreeSurface else "ContourValues")
         if not iso:
             found = (None, 0.5) if choice.FreeSurface else particles.find_iso_value()
             iso = [found[1]] if found else []

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any, List
 
 from ._context import Context
 from ._functions import derivatives, flow, free_surface, isosurface, probe, project, widening
-from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
+from ._library import (Cancelled, DeviceError, Error, InputWarning, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
 from ._meters import Fluxes, Gauges, flux, gauge
 from ._structs import VERSION as __version__
 from ._surface import Derivatives, Projection, Samples, Surface
-from ._warnings import InputWarning
 
 if TYPE_CHECKING:
     import pyvista

@@ -14,11 +14,10 @@ from . import _functions, _meters
 from ._arrays import QUANTITIES, as_points
 from ._call import Shared, own_keywords
 from ._find import Found
-from ._library import InvalidArgument
+from ._library import InvalidArgument, warn
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import GHOSTS, WALL_BLOCK, detect, find_period, name_of, named, to_numpy
-from ._warnings import warn
+from ._vtk_particles import GHOSTS, WALL_BLOCK, find_period, named, to_numpy
 from .io import Particles as FileParticles
 
 if TYPE_CHECKING:
@@ -83,11 +82,10 @@ class PointData(FileParticles):
                                    named(data.GetPointData()), ["sizes", "list", "attributes"], find=True)
         if found.found.made[0].name:
             arrays["Velocity"] = lambda: found.made(0)[1]
-        index = found.which("velocity")
-        self.velocity = "Velocity" if index is None else name_of(data.GetPointData().GetAbstractArray(index)) or "Velocity"
+        self.velocity = found.name("velocity") or "Velocity"
         super().__init__("The data set", "VTK", lambda: np.asarray(data.points), arrays,
                          solid=np.asarray(points[WALL_BLOCK]) if WALL_BLOCK in points else None,
-                         **{name: name_of(detect(data.GetPointData(), data.n_points, name)) or None for name in QUANTITIES})
+                         **{name: found.name(name) or None for name in QUANTITIES})
         self.period, self.cell = find_period(data)
 
     def array(self, name):
@@ -130,9 +128,8 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
 
-        scalar: the name of a point array, or an array. "Density", where there is no such array, is summed from masses.
-        iso: the value of the scalar on the surface, or a list of values; without it one about the median.
-        scalar_dot: a second vector; the scalar is then the dot product.
+        scalar, scalar_dot: names of point arrays, or arrays. "Density", where there is no such array, is summed from masses.
+        iso: as in marchingcorrectors.isosurface().
         """
         particles, words = self._prepare(words)
         return _functions.isosurface(particles, scalar, iso, scalar_dot=scalar_dot, **words).to_pyvista()
@@ -205,10 +202,7 @@ class SphAccessor:
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
 
-        Returns Gauges, as marchingcorrectors.gauge() does.
-
-        lines: (lines, 2, 3): from and to of each; or one line, (2, 3); or {name: (from, to)}.
-        iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+        lines, iso, and the Gauges that are returned: as of marchingcorrectors.gauge().
         """
         particles, words = self._prepare(words, with_attributes=False)
         return _meters.gauge(particles, lines, iso, **words)
@@ -220,16 +214,11 @@ class SphAccessor:
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
 
-        Returns Fluxes, as marchingcorrectors.flux() does.
-
-        sections: as in marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
+        sections, iso, and the Fluxes that are returned: as of marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
         velocity: the name of a point array, or an array; by default the point array with a usual name.
-        iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
         particles, words = self._prepare(words, with_attributes=False)
-        if velocity is None:
-            velocity = particles.velocity
-        return _meters.flux(particles, velocity, _triangles_in(sections), iso, **words)
+        return _meters.flux(particles, particles.velocity if velocity is None else velocity, _triangles_in(sections), iso, **words)
 
     @_method(PROJECT)
     def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
@@ -239,11 +228,8 @@ class SphAccessor:
 
         Example: image = particles.sph.project(direction="z"); plt.imshow(image.values, extent=image.extent, origin="lower")
 
-        Returns a Projection, as marchingcorrectors.project() does.
-
-        scalar: the name of a point array, or an array; without it, the density.
-        direction, resolution, box: as in marchingcorrectors.project().
-        weighted_by: the name of a point array, or an array: the image is the mean of the scalar, with these weights.
+        scalar, weighted_by: names of point arrays, or arrays; without a scalar, the density.
+        direction, resolution, box, and the Projection that is returned: as of marchingcorrectors.project().
         """
         particles, words = self._prepare(words, with_attributes=False)
         return _functions.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _structs as c
 from ._device_arrays import on_host
-from ._find import ELEMENTS, as_bytes, copy_at
+from ._find import ELEMENTS, ROLES, as_bytes, copy_at
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
 from ._options import BOUNDS, ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of
@@ -197,7 +197,7 @@ class Arguments:
     def per_neighbours(self, found, function, *more):
         """Returns numbers, (particles,), which a function of the core sums over neighbours. found: a Found, which has all masses."""
         given, values, why = c.mcor_input.from_buffer_copy(found.found.input), np.empty(self.count), c.mcor_message()
-        given.mass = found.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_MASS"]]
+        given.mass = found.found.views[ROLES["mass"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
         sentence = take_sentence(why)

@@ -3,9 +3,8 @@
 """Particles at times between two stored steps, as vtkSPHTemporalInterpolator makes them."""
 import numpy as np
 
-from ._library import InvalidArgument
+from ._library import InvalidArgument, warn
 from ._usd import find_velocity
-from ._warnings import warn
 from .io._particles import Particles, usual
 
 

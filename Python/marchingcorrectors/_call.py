@@ -16,10 +16,9 @@ from . import _structs as c
 from ._arrays import (ABSENT, QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
 from ._context import Context, default_context
 from ._find import ELEMENTS, Found, name_priority
-from ._library import InvalidArgument, InvalidData, lib, say
+from ._library import InvalidArgument, InvalidData, fill_slots, lib, say, warn, warn_of_particles
 from ._options import BOUNDS, OUTPUTS, Function, Options, check_names, did_you_mean, kind_of, show
 from ._units import without_unit
-from ._warnings import warn, warn_of_particles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -305,7 +304,7 @@ def _warn_of_unused(options, context):
     for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
                         ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
         if options.get(name) and options.get(other):
-            warn(f"{name} is not used, because {other} is given. Leave one of them out.")
+            warn(fill_slots("", f"{{{name}}} is not used, because {{{other}}} is given. Leave one of them out.".encode()))
     versions = [name for name in options if name.endswith("_version") and options[name]]
     if versions and context is None:
         warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from . import _film, _structs as c, io
-from ._call import Ranges
+from ._call import Keywords, Ranges, own_keywords
 from ._find import Found
 from ._functions import free_surface, isosurface, probe
 from ._library import InvalidArgument, Sentence, lib, word_by
@@ -83,9 +83,8 @@ COMMANDS = {
     "gauge": (GAUGE, "water levels along lines", ".csv"),
     "slice": (PROBE, "the field on a plane", ".vti or .npz"),
     "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
-# Options that are not keywords of the functions.
-OWN = {"--smoothing-length", "--dp", "--coefh", "--volume", "--mass", "--density", "--fluid", "--within", "--only", "--walls", "--solids",
-       "--device", "--threads", "--quiet"}
+# Options that are not keywords of the functions: of all commands, and of each.
+OWN = {"--dp", "--coefh", "--walls", "--solids", "--threads", "--quiet"}
 OF = {"surface": {"--scalar", "--iso", "--free-surface", "--curvature", "--cubes", "--times", "--attributes", "--no-attributes"},
       "gauge": {"--iso", "--free-surface", "--gauge"}, "slice": {"--slice", "--resolution", "--attributes", "--no-attributes"},
       "line": {"--line", "--resolution", "--attributes", "--no-attributes"}}
@@ -99,9 +98,33 @@ def keyword_of(option):
 
 def options_of(command):
     """Lists the program's options that this command has."""
-    names = COMMANDS[command][0]
+    names = {*COMMANDS[command][0], *own_keywords(Keywords)}
     return [option for option, (_, _, modes, _) in c.PROGRAM.items() if {command, "film" if command == "surface" else command} & {*modes}
             and (option in OWN or option in OF[command] or keyword_of(option) in names)]
+
+
+class Once(argparse.Action):
+    """Refuses an option that is given twice, as the program does."""
+
+    def __call__(self, parser, given, value, option_string=None):
+        if getattr(given, self.dest) is not None:
+            parser.error(f"{option_string} is given twice")
+        setattr(given, self.dest, value)
+
+
+def reader_of(option, argument):
+    """Returns the function that reads the option's value, and says what it must be. argument: its name in the program's help."""
+    letters = len(re.sub("[^A-Z]", "", argument))
+    read = READERS.get(option, int if argument in ("N", "MIB") else numbers if "," in argument else float if letters < 3 else str)
+    wanted = {int: "a whole number", float: "a number"}.get(read, argument)
+
+    def take(text):
+        try:
+            return read(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"it must be {wanted}, not '{text}'") from None
+
+    return take
 
 
 def add_option(parser, option, is_required):
@@ -114,9 +137,8 @@ def add_option(parser, option, is_required):
         words.update(action="store_true")
     else:
         choices = WORDS.get(option) or (argument.split("|") if re.fullmatch(r"[a-z_]+(\|[a-z_]+)+", argument) else None)
-        letters = len(re.sub("[^A-Z]", "", argument))
-        words.update(choices=choices, metavar=None if choices else argument, required=is_required, type=None if choices else READERS.get(
-            option, int if argument in ("N", "MIB") else numbers if "," in argument else float if letters < 3 else str))
+        words.update(choices=choices, metavar=None if choices else argument, required=is_required, action=Once,
+                     type=None if choices else reader_of(option, argument))
         if option in ("--only", "--walls", "--gauge"):
             words.update(action="append", default=None if is_required else [])
     parser.add_argument(option, **words)
@@ -128,8 +150,9 @@ def make_parser(command):
     several = "a solver's file, or files of bodies that are one set"
     parser.add_argument("input", nargs="+", metavar="IN", help=several + "; for a film its steps" * (command == "surface"))
     parser.add_argument("output", metavar="OUT", help=endings)
+    arrays = parser.add_mutually_exclusive_group()
     for option in options_of(command):
-        add_option(parser, option, option == "--" + command)
+        add_option(arrays if option.endswith("attributes") else parser, option, option == "--" + command)
     if command == "surface":
         _film.add_options(parser)
         parser.add_argument("--spray", metavar="N", nargs="?", const=8, type=int, help="a film: particles of drops of fewer than N (8), "
@@ -162,9 +185,9 @@ def find_words(given, names, particles, command):
     words = {}
     for option in options_of(command):
         keyword, value = keyword_of(option), getattr(given, option[2:].replace("-", "_"), None)
-        if option in OF[command] or value is None or option in ("--walls", "--solids", "--dp", "--coefh", "--threads", "--quiet"):
+        if option in OF[command] or option in OWN or value is None:
             continue
-        if keyword not in names and option not in OWN:
+        if keyword not in names and keyword not in own_keywords(Keywords):
             raise InvalidArgument(f"{option} is not for the free surface: leave it out, or give --scalar.")
         words[keyword] = WORDS[option][value] if option in WORDS else value
     words["only"] = Ranges(given.only) if given.only else None

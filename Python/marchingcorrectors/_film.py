@@ -141,7 +141,6 @@ def fail(error):
 
 
 def to_times(text):
-    """T[,T...]|BEGIN:END:STEP"""
     found = set()
     for part in text.split(","):
         ends = [float(each) for each in part.split(":")]
@@ -149,9 +148,6 @@ def to_times(text):
             raise ValueError(text)
         found.update(ends if len(ends) == 1 else frames(*ends))
     return sorted(found)
-
-
-to_times.__name__ = to_times.__doc__  # argparse names this function where a value is wrong.
 
 
 # -- films of surfaces --
@@ -205,11 +201,8 @@ def read_surface(paths):
                 cells = {}
                 for name in ("Polys", "Lines"):
                     own = {array.name: array for array in piece[name]}
-                    ends = file.values(own["offsets"]) if piece["counts"][name] else np.zeros(0, int)
-                    if len(ends):
-                        own["connectivity"].count = int(ends[-1])
-                        file.check([own["connectivity"]])
-                    cells[name] = ends, file.values(own["connectivity"]) + count if len(ends) else np.zeros(0, int)
+                    ends, corners = file.cells(own) if piece["counts"][name] else (np.zeros(0, int),) * 2
+                    cells[name] = ends, corners + count
                 ends, corners = cells["Polys"]
                 if len(ends) and (np.diff(ends, prepend=0) != 3).any():
                     raise ValueError("it has faces that are no triangles")

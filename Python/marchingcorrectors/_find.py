@@ -105,6 +105,10 @@ class Found:
         index = self.found.which[ROLES[role]]
         return None if index < 0 else index
 
+    def name(self, role):
+        """Returns the name of the role's array, also of one that is not used; "" if there is none."""
+        return (self.found.views[ROLES[role]].name or b"").decode(errors="replace")
+
     def attributes(self):
         return self.found.attributes[:self.found.input.attribute_count]
 

@@ -11,11 +11,10 @@ import numpy as np
 from . import _structs as c
 from ._arrays import SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all, take_each
 from ._call import called, of_particles, prepare, warn_of_missing
-from ._library import ERRORS, InvalidArgument, lib
+from ._library import ERRORS, InvalidArgument, describe_warnings, lib, warn, warn_of_particles
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
 from ._surface import Derivatives, Projection, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
-from ._warnings import describe_warnings, warn, warn_of_particles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -87,6 +86,8 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
         raise InvalidArgument('Give the scalar to contour, or call free_surface().')
     if isinstance(scalar, str) and scalar != SUMMED:
         raise InvalidArgument(f"The scalar is '{scalar}'; it must be an array of numbers, or \"{SUMMED}\", summed from masses.")
+    if is_free and scalar is not None:
+        warn('The scalar is not used, because field is "weight_sum", which is the free surface. Leave one of them out.')
     roles = {} if is_free else {"wants": ["scalar"], "scalar": scalar, "scalar_dot": scalar_dot}
     arguments = prepare(Units(positions), words, real, attributes, **roles)
     arguments.input.scalar.name = None  # Then the core says "the scalar".

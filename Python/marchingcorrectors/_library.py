@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's shared library, its errors, and the devices that it finds."""
+"""The core's shared library, its errors and warnings, and the devices that it finds."""
 import ctypes
 import os
+import sys
 import threading
+import warnings
 from pathlib import Path
 from typing import List
 
@@ -42,10 +44,9 @@ class Cancelled(Error):
     """The progress callback asked to stop."""
 
 
-ERRORS = {"MCOR_INVALID_ARGUMENT": InvalidArgument, "MCOR_INVALID_DATA": InvalidData,
-          "MCOR_OUT_OF_CAPACITY": OutOfCapacity, "MCOR_DEVICE_ERROR": DeviceError,
-          "MCOR_CANCELLED": Cancelled}
-ERRORS = {c.ENUMS["mcor_status"][name]: error for name, error in ERRORS.items()}
+ERRORS = {c.ENUMS["mcor_status"]["MCOR_" + name]: error for name, error in (
+    ("INVALID_ARGUMENT", InvalidArgument), ("INVALID_DATA", InvalidData), ("OUT_OF_CAPACITY", OutOfCapacity),
+    ("DEVICE_ERROR", DeviceError), ("CANCELLED", Cancelled))}
 
 
 def _open():
@@ -102,7 +103,8 @@ def _python_word(name, value):
     return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() or value == "True" else f'{name}="{value}"'
 
 
-def _sentence(code, text):
+def fill_slots(code, text):
+    """Returns a Sentence. text: bytes, with slots such as {cube_size}."""
     sentence = Sentence(take_text(lib.mcor_fill_slots(text, _python_word, None)))
     sentence.code, sentence.text = code, text
     return sentence
@@ -111,14 +113,14 @@ def _sentence(code, text):
 def say(code, *values):
     """Returns a Sentence of the core by its name, with these values."""
     text = lib.mcor_says_text(c.ENUMS["mcor_says"]["MCOR_SAYS_" + code])
-    return _sentence(code, (text.decode().replace("%ll", "%") % values).encode(errors="replace"))
+    return fill_slots(code, (text.decode().replace("%ll", "%") % values).encode(errors="replace"))
 
 
 def take_sentence(message):
     """Returns a message of the core as a Sentence, "" if there is none, and frees it."""
     if not message.code:
         return ""
-    sentence = _sentence(lib.mcor_says_name(message.code).decode(), message.text) if message.text else say("HOST_MEMORY")
+    sentence = fill_slots(lib.mcor_says_name(message.code).decode(), message.text) if message.text else say("HOST_MEMORY")
     lib.mcor_free_message(ctypes.byref(message))
     return sentence
 
@@ -151,3 +153,39 @@ def devices() -> List[str]:
     """
     start()
     return [line.partition(": ")[2] for line in _list().splitlines()]
+
+
+class InputWarning(UserWarning):
+    """Something about the particles or options is legal, but hardly what was meant.
+
+    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for one of this package.
+    """
+
+    code = Error.code
+
+
+def warn(sentence):
+    """Warns at the caller's line, the first one outside of this package."""
+    level, frame = 1, sys._getframe(0)
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, InputWarning, stacklevel=level)
+
+
+def describe_warnings(arguments, surface):
+    """Returns {number: sentence} of what the core finds strange in a surface's input."""
+    found = {}
+    for number in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"]):
+        sentence = take_sentence(lib.mcor_describe_warning(
+            number, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)))
+        if sentence:
+            found[number] = sentence
+    return found
+
+
+def warn_of_particles(arguments, statistics):
+    """Gives the warnings that do not need a surface."""
+    kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
+    for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
+        if kinds[kind] in found:
+            warn(found[kinds[kind]])

@@ -13,7 +13,7 @@ import numpy as np
 from . import _structs as c
 from ._arrays import as_bytes, contiguous, statistics, take_rows
 from ._call import called, of_particles, prepare
-from ._library import InvalidArgument, lib
+from ._library import InvalidArgument, lib, say, warn
 from ._options import GAUGE
 from ._surface import Result
 from ._units import Units, without_unit
@@ -44,6 +44,13 @@ class Gauges(Result):
     def __repr__(self):
         counts = ", ".join(f"{int((self.state == state).sum())} {state}" for state in STATES)
         return f"<Gauges: {len(self.names)} lines, {counts}>"
+
+
+def warn_of_dry(arguments, noun, names, outside):
+    """Warns of places that no particle reaches, unless there is no fluid at all, which has a warning of its own."""
+    dry = [name for name, is_dry in zip(names, outside) if is_dry and arguments.input.count]
+    if dry:
+        warn(say("PLACE_DRY", noun, dry[0]) if len(dry) == 1 else say("PLACES_DRY", len(dry), len(names), noun, dry[0]))
 
 
 def _as_lines(lines, units):
@@ -86,6 +93,7 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     with called(lib.mcor_gauge, c.mcor_gauges, arguments, structures, len(array)) as found:
         rows, crossings = take_rows(found.readings, found.count), take_rows(found.crossings, found.crossing_count)
         columns = {name: rows[name].copy() for name in ("first", "last", "depth", "place")}
+        warn_of_dry(arguments, "gauge", names, rows["outside"])
         return Gauges(
             names=names, state=STATES[rows["state"]], outside=rows["outside"].astype(bool), **columns,
             crossings={name: crossings[row["first_crossing"]:][:row["crossing_count"]].copy() for name, row in zip(names, rows)},
@@ -186,4 +194,5 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:
         rows = take_rows(found.readings, found.count)
         columns = {name: rows[name].copy() for name in ("area", "volume_flux", "mass_flux", "velocity")}
+        warn_of_dry(arguments, "section", names, rows["outside"])
         return Fluxes(names=names, outside=rows["outside"].astype(bool), **columns, statistics=statistics(found.statistics))

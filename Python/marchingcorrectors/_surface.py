@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import dataclass, field as dataclass_field, fields
+from dataclasses import dataclass, field as dataclass_field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 
 import numpy as np
 
 from ._options import camel
-from ._library import InvalidArgument
-from ._warnings import warn
+from ._library import InvalidArgument, warn
 
 if TYPE_CHECKING:
     import os
@@ -164,12 +163,12 @@ class Surface(Result):
         """
         path = Path(path)
         ending = path.suffix.lower()
-        if ending in (".stl", ".obj", ".off") and not len(self.triangles) and (ending != ".obj" or not self.lines):
+        if ending in (".stl", ".obj", ".off") and not len(self.triangles):
             raise InvalidArgument(f"{path.name} was not written, because the surface has no triangles, and files {ending} "
                                   "hold nothing else. Formats that can be empty are .npz, .ply and .vtp.")
         if self.lines and not len(self.triangles) and ending == ".ply":
             raise InvalidArgument(f"{path.name} was not written, because .ply holds no lines, which particles in a plane give. "
-                                  "Formats that do are .vtp, .csv, .obj and .npz.")
+                                  "Formats that do are .vtp, .csv and .npz.")
         if ending == ".npz":
             arrays = {f.name: getattr(self, f.name) for f in fields(self)
                       if isinstance(getattr(self, f.name), np.ndarray)}
@@ -184,7 +183,8 @@ class Surface(Result):
             with Film(path) as film:
                 film.add(self)
         elif ending in (".vtp", ".vtk", ".stl", ".obj"):
-            self.to_pyvista().save(path)
+            surface = self if ending[1] == "v" else replace(self, line_offsets=None, line_points=None, band_value=None)
+            surface.to_pyvista().save(path)
         elif ending:
             import meshio
 

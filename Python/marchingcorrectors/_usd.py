@@ -9,10 +9,9 @@ from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from ._library import InvalidArgument
+from ._library import InvalidArgument, warn
 from ._options import did_you_mean
 from ._surface import Surface
-from ._warnings import warn
 from .io._outputs import Outputs
 from .io._particles import FileError, usual
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The particles of a VTK data set as arguments of the core, which finds their arrays."""
 import ctypes
+from typing import NamedTuple
 
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
@@ -9,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
 from ._arrays import QUANTITIES, Arguments, place_period
-from ._find import Found, as_bytes, choose_view, find_named
+from ._find import ROLES, Found, as_bytes, choose_view
 from ._library import lib
 from ._options import camel
 
@@ -64,11 +65,6 @@ def named(data):
             for array in abstract_arrays_of(data)]
 
 
-def detect(data, count, quantity, components=1):
-    index = find_named(named(data), quantity, components, count)
-    return None if index < 0 else data.GetAbstractArray(index)
-
-
 def choose_array(arrays):
     """Returns the most suitable array to show if the user has chosen none, or None."""
     best = choose_view([(array.GetName(), to_numpy(array)) for array in arrays])
@@ -98,25 +94,26 @@ def find_period(points):
     return bounds, None if bounds else cell
 
 
-class Request:
-    """The point array that SetInputArrayToProcess asks for: its name, or the index of the active array."""
+class Request(NamedTuple):
+    """The point array to contour: its name, or the index of the active array. on_points: whether points have it."""
+    name: str = ""
+    on_points: bool = True
+    active: int = -1
 
-    def __init__(self, algorithm, index, points):
-        self.name, self.on_points, self.active = "", True, -1
-        requests = algorithm.GetInformation().Get(algorithm.INPUT_ARRAYS_TO_PROCESS())
-        if requests is None or index >= requests.GetNumberOfInformationObjects():
-            return
-        info = requests.GetInformationObject(index)
-        name = info.Get(vtkDataObject.FIELD_NAME()) or ""
-        self.name = "" if name == "(automatic)" else name
-        kind, data = vtkDataObject.FIELD_ATTRIBUTE_TYPE(), points.GetPointData()
-        # Arrays of cells may have become the particles' arrays, see take_vertices().
-        if self.name or not name and info.Has(kind):
-            self.on_points = bool(self.name and data.HasArray(self.name)) or info.Get(vtkDataObject.FIELD_ASSOCIATION()) in (
-                vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
-        if self.on_points and not name and info.Has(kind):
-            array = data.GetAbstractAttribute(info.Get(kind))
-            self.active = next((i for i, each in enumerate(abstract_arrays_of(data)) if each is array), -1)
+
+def request_of(algorithm, index, points):
+    """Returns the request that SetInputArrayToProcess makes."""
+    info, kind, data = algorithm.GetInputArrayInformation(index), vtkDataObject.FIELD_ATTRIBUTE_TYPE(), points.GetPointData()
+    name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+    is_chosen, is_active = name not in ("", "(automatic)"), not name and info.Has(kind)
+    if not is_chosen and not is_active:
+        return Request()
+    # Arrays of cells may have become the particles' arrays, see take_vertices().
+    on_points = bool(is_chosen and data.HasArray(name)) or info.Get(vtkDataObject.FIELD_ASSOCIATION()) in (
+        vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
+    array = data.GetAbstractAttribute(info.Get(kind)) if on_points and is_active else None
+    active = next((i for i, each in enumerate(abstract_arrays_of(data)) if each is array), -1)
+    return Request(name if is_chosen else "", on_points, active)
 
 
 class Particles:
@@ -148,8 +145,7 @@ class Particles:
             find_fluid=choice.DetectFluid, ignore_solids=choice.IgnoreSolids, free_surface=choice.FreeSurface,
             scalar_component=component, within=choice.Within, has_iso_values=choice.ComputeScalars, filled=choice.Filled,
             label=None if label is None else as_bytes(label),
-            not_on_points=sum(1 << c.ENUMS["mcor_role"]["MCOR_ROLE_" + role] for role, each in (
-                ("SCALAR", scalar), ("SCALAR_DOT", dot)) if each and not each.on_points))
+            not_on_points=sum(1 << ROLES[role] for role, each in (("scalar", scalar), ("scalar_dot", dot)) if each and not each.on_points))
         self.found, self._summed = self._holder.found, {}
         self.unused_type, self.unused = self._holder.unused_type, self._holder.unused
         self.input = self.found.input
@@ -164,7 +160,7 @@ class Particles:
         self.dot = self.array_for("scalar_dot")
         self.interpolated = {name_of(array): array for array in map(self._array, self._holder.attributes())}
         self.from_nearest = {name_of(array): array for array in map(self._array, self._holder.nearest())}
-        self.fluid_name = (self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_FLUID"]].name or b"").decode(errors="replace")
+        self.fluid_name = self._holder.name("fluid")
         self.scalar_name, self.iso_value_name = self._holder.text("scalar_name"), self._holder.text("iso_value_name")
         whole = self.scalar is not None and self.dot is None and (self.scalar.GetNumberOfComponents() == 1 or component < 0)
         # This is the name of the array that equals the iso value on the surface, if there is one.
@@ -227,7 +223,7 @@ class Particles:
     def has_free_surface(self):
         """Whether the free surface is the thing to see first. A density tells of a liquid even if volumes are not made of it."""
         given = c.mcor_input.from_buffer_copy(self.arguments().input)
-        given.density = self.found.views[c.ENUMS["mcor_role"]["MCOR_ROLE_DENSITY"]]
+        given.density = self.found.views[ROLES["density"]]
         return lib.mcor_has_free_surface(ctypes.byref(given), None)
 
     @staticmethod

@@ -63,6 +63,11 @@ class Command(unittest.TestCase):
         self.assertEqual(mine.splitlines()[0], its.splitlines()[0])
         self.run_it("surface", "a.ply", "--smoothing-length", "0.13", "--scalar", "R", status=1, given=given)
         self.assertIn("a.ply was not written, because .ply holds no lines", self.said)
+        words = ["--smoothing-length", "0.13", "--scalar", "R"]
+        self.run_it("surface", "a.obj", *words, status=1, given=given)
+        self.assertIn("a.obj was not written, because the surface has no triangles", self.said)
+        for path in self.run_it("surface", "a.obj", *words, "--iso", "0.4,0.6", "--filled", given=given):
+            self.assertEqual({line[:2] for line in Path(path).read_text().splitlines()} - {"# "}, {"v ", "vn", "f "}, path)
         paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4", given=given)
         mine, its = (list(csv.reader(Path(path).read_text().splitlines())) for path in paths)
         mine, its = ({column[0]: column[1:] for column in zip(*table)} for table in (mine, its))
@@ -155,6 +160,9 @@ class Command(unittest.TestCase):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
         for words, sentence in ((["--screenshot", "a.png"], "--screenshot is for the program marching-correctors, not for surface; leave it out"),
+                                (["--iso", "1", "--iso", "2"], "--iso is given twice"), (["--cube-size", "abc"], "--cube-size: it must be a number, not 'abc'"),
+                                (["--attributes", "Mass", "--no-attributes"], "--no-attributes: not allowed with argument --attributes"),
+                                (["--within", "0,1;2"], "--within: it must be X0,X1,Y0,Y1,Z0,Z1, not '0,1;2'"),
                                 (["--slice", "z=0"], "--slice is for slice, not for surface"),
                                 (["--threads", "0"], "a whole number from 1, not '0'"), (["--memory-limit", "x"], "a whole number from 1, not 'x'"),
                                 (["--smoth"], "there is no option --smoth. Did you mean '--smooth'?")):
@@ -163,11 +171,14 @@ class Command(unittest.TestCase):
         self.run_it("gauge", "a.vtp", "--gauge", "a=0,0,0:0,0,1", *FLUID, status=1)
         self.assertIn("a .csv file, not 'a.vtp'", self.said)
         self.run_it("slice", "a.npz", "--slice", "z=nan", status=2)
-        self.assertIn("invalid plane value: 'z=nan'", self.said)
+        self.assertIn("--slice: it must be AXIS=PLACE, not 'z=nan'", self.said)
         done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", "--help"], stdout=subprocess.PIPE, text=True)
         self.assertEqual((done.returncode, "--time-step" in done.stdout), (0, True))
         self.run_it("surface", "a.ply", "--preview", program=["--free-surface"])
         self.assertIn("--fluid ParticleType=VALUE", self.said)
+        for words in (["--preview", "--tolerance", "0.1"], ["--cube-size", "0.1", "--cube-factor", "1"]):
+            self.run_it("surface", "a.npz", *FLUID, *words)
+            self.assertIn(f"{words[-2]} is not used, because {words[0]} is given", self.said)
 
 
 if __name__ == "__main__":

@@ -181,6 +181,7 @@ class Layouts(Case):
         self.assertAlmostEqual(particles.parameters["scale_factor"], 0.25)
         self.assertEqual(len(io.read(self.at("snap.hdf5"), types="dark_matter")), 5)
         self.assertEqual(len(io.read(self.at("snap.hdf5"), types=[0, 1])), len(X) + 5)
+        self.assertEqual(set(io.read(self.at("snap.hdf5"), types=["stars", "gas"])), set(io.read(self.at("snap.hdf5"))))
         self.assertTrue((io.read(self.at("snap.hdf5"), types=1).arrays["Masses"] == 2).all())
         self.assert_refused("no type 'water'", self.at("snap.hdf5"), types="water")
         with self.assertRaisesRegex(io.FileError, "Did you mean 'Density'"):

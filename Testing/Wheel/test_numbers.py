@@ -32,7 +32,10 @@ WHOLE = {"box": (0, 1, 0, 1, 0, 1), "smoothing_length": SMALL, "mass": M, "resol
 class Gauge(unittest.TestCase):
     def test_readings(self):
         lines = {"mast": UP, "inside": UP * [1, 1, 0.1] + [0, 0, 0.2], "far": UP + 90}
-        found = mc.gauge(X, lines, **WORDS)
+        with self.assertWarnsRegex(mc.InputWarning, says("PLACE_DRY", "gauge", "far")):
+            found = mc.gauge(X, lines, **WORDS)
+        with self.assertWarnsRegex(mc.InputWarning, says("PLACES_DRY", "2", "3", "gauge", "far")):
+            mc.gauge(X, {**lines, "mast": UP - 90}, **WORDS)
         self.assertEqual(found.names, ["mast", "inside", "far"])
         self.assertEqual(found.state.tolist(), ["wet", "full", "dry"])
         self.assertEqual(found.outside.tolist(), [False, False, True])
@@ -56,7 +59,8 @@ class Flux(unittest.TestCase):
         triangles = cube.points[cube.faces.reshape(-1, 4)[:, 1:]].astype(float)
         sections = {"disc": DISC, "wall": WALL, "box": ("box", (0.3, 0.6, 0.3, 0.7, 0.2, 0.6)), "cube": triangles,
                     "far": WALL + 90}
-        found = mc.flux(X, UNIFORM, sections, density=1000.0, **WORDS)
+        with self.assertWarnsRegex(mc.InputWarning, says("PLACE_DRY", "section", "far")):
+            found = mc.flux(X, UNIFORM, sections, density=1000.0, **WORDS)
         self.assertEqual(found.names, list(sections))
         np.testing.assert_allclose(found.area, [0.04 * np.pi, 0.3, 0.24 + 0.24 + 0.32, 0.54, 0], rtol=1e-6)
         np.testing.assert_allclose(found.volume_flux, [0.12 * np.pi, 0.3, 0, 0, 0], atol=1e-6)

@@ -236,6 +236,7 @@ class Warned(unittest.TestCase):
                                 ({"mass": 1.0}, says("SIZE_BESIDE_VOLUME", "mass is")), ({"mass": 1.0, "density": 1.0}, says("SIZE_BESIDE_VOLUME", "mass and density")),
                                 ({"cube_size": 0.1, "cube_size_factor": 1}, "cube_size_factor is not used, because cube_size is given"),
                                 ({"preview": True, "tolerance": 0.1}, "tolerance is not used, because preview is given"),
+                                ({"field": "weight_sum", "iso": 0.5}, 'scalar is not used, because field is "weight_sum"'),
                                 ({"scalar_version": 1}, "scalar_version is not used without a context")):
             found = caught(sphere, **words)
             self.assertEqual(len(found), 1, [str(each.message) for each in found])

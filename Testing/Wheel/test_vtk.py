@@ -60,6 +60,13 @@ class Test(unittest.TestCase):
         surface.fluid_array_name = "ParticleType"
         self.assertGreater(surface.GetMTime(), before)
         self.assertEqual((surface.GetFluidArrayName(), surface.used_cube_size), ("ParticleType", 0.0))
+        for name in ("Widening", "widening"):
+            with self.assertRaises(ValueError):
+                setattr(surface, name, "a")
+            before = surface.GetMTime()
+            setattr(surface, name, surface.GetWidening() + 1)
+            self.assertGreater(surface.GetMTime(), before)
+        self.assertEqual((surface.GetWidening(), surface.Widening), (3, 3))
         with self.assertRaises(AttributeError):
             surface.used_cube_size = 1.0
         with self.assertRaisesRegex(AttributeError, "'cube'"):

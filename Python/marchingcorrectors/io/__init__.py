@@ -13,7 +13,8 @@ from typing import Any, Iterator, Sequence, Union
 from . import bodies
 from ._bytes import read_head
 from ._particles import FileError, Particles, choose_step
-from .gadget_binary import is_gadget_binary
+from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary
+from .phantom import read_native
 
 HDF5 = (".hdf5", ".h5", ".h5part")
 ENDINGS = (*HDF5, ".bi4", ".bgeo", *bodies.ENDINGS)
@@ -83,7 +84,7 @@ def _read(paths, types, walls, step):
     with open(path, "rb") as file:
         head = file.read(64)
     reader = bodies.reader_of(path)
-    is_hdf5, is_gadget = head.startswith(b"\x89HDF\r\n\x1a\n"), is_gadget_binary(head)
+    is_hdf5, is_gadget = head.startswith(b"\x89HDF\r\n\x1a\n"), order_of(head) is not None
     if reader and (ending == ".vtkhdf" or not is_hdf5 and not is_gadget):
         return bodies.read_bodies(paths, walls, step)
     if len(paths) > 1 or walls:
@@ -95,16 +96,12 @@ def _read(paths, types, walls, step):
     if ending in (".pkl", ".pickle"):
         raise FileError(f"{path.name} is not opened: pickles can run code. Let the solver write HDF5 (PySPH: install h5py).")
     if is_gadget:
-        from .gadget_binary import read_gadget_binary
         return read_gadget_binary(path, types)
     if head.startswith(b"#FileJBD "):
-        from .bi4 import read_bi4
         return read_bi4(path)
-    if head.startswith(b"BgeoV") or read_head(path).startswith(b"BgeoV"):
-        from .bgeo import read_bgeo
+    if read_head(path).startswith(b"BgeoV"):
         return read_bgeo(path)
     if head[4:8] in (b"\x61\xed\0\0", b"\0\0\xed\x61") or head[4:12] == b"\x61\xed\0\0\0\0\0\0":
-        from .phantom import read_native
         return read_native(path)
     raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, .ply, "
                     ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")

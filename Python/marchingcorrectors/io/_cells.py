@@ -3,8 +3,7 @@
 """Finds the particles among the cells of a mesh: the points of its vertices."""
 import numpy as np
 
-from .._library import say
-from .._warnings import warn
+from .._library import say, warn
 
 VERTICES = (1, 2)  # VTK's types of cells that are points
 
@@ -33,21 +32,28 @@ def find_vertices(types, offsets, points, count):
     return found
 
 
-def tell_mesh(body, is_vertex):
-    return body._replace(is_mesh=not is_vertex.any()) if len(is_vertex) else body
-
-
-def take_vertices(file, body, types, offsets, points, cell_arrays):
+def take_vertices(file, body, lists, cell_arrays):
     """Takes only the vertices' points if there are other cells, too: other points are a mesh's. Arrays of cells become
-    arrays of these points, unless points have one of that name; also where each point has a vertex."""
-    is_vertex, count = np.isin(types, VERTICES), len(body.points)
-    body = tell_mesh(body, is_vertex)
-    cell_of = find_vertices(types, offsets, points, count)
-    if not is_vertex.any() or is_vertex.all() and (not cell_arrays or (cell_of < 0).any()):
+    arrays of these points, unless points have one of that name; also where each point has a vertex.
+
+    lists: pairs of cells' types, and a function that returns where the points of each cell end, and these points; cell_arrays: {name: function}
+    """
+    types, count = np.concatenate([np.zeros(0, int), *(types for types, _ in lists)]), len(body.points)
+    is_vertex = np.isin(types, VERTICES)
+    body = body._replace(is_mesh=not is_vertex.any()) if len(types) else body
+    if not is_vertex.any() or is_vertex.all() and not cell_arrays:
+        return body
+    offsets, points = [np.zeros(1, int)], []
+    for _, load in lists:
+        ends, own = load()
+        offsets.append(offsets[-1][-1] + ends)
+        points.append(own)
+    cell_of = find_vertices(types, np.concatenate(offsets), np.concatenate(points), count)
+    if is_vertex.all() and (cell_of < 0).any():
         return body
     if not is_vertex.all():
         warn(say("MESH_NODES", count - np.count_nonzero(cell_of >= 0), count, " of ", file))
-    taken = np.flatnonzero(cell_of >= 0)
-    of_cells = {name: array[cell_of[taken]] for name, array in cell_arrays.items() if len(array) == len(types)}
+    taken, of_cells = np.flatnonzero(cell_of >= 0), {name: load() for name, load in cell_arrays.items()}
+    of_cells = {name: array[cell_of[taken]] for name, array in of_cells.items() if len(array) == len(types)}
     return body._replace(points=body.points[taken],
                          arrays={**of_cells, **{name: array[taken] for name, array in body.arrays.items()}})

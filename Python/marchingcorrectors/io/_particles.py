@@ -9,9 +9,8 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .._find import Found, find_named
-from .._library import Error, InvalidArgument, lib, say
+from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean, words_of
-from .._warnings import warn
 
 # Solvers' names for their kernels begin with these, if only letters and digits count; the first that fits counts. PySPH calls Wendland C2
 # WendlandQuintic.

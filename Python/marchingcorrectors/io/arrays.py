@@ -6,7 +6,7 @@ import zipfile
 
 import numpy as np
 
-from .._warnings import warn
+from .._library import warn
 from ._particles import TIMES, FileError, check_claim, period_of_field, usual
 from .tables import axes_of, body_of
 

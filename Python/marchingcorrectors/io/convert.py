@@ -9,9 +9,9 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from .._warnings import warn
 from . import FileError, count_steps, read
 from ._outputs import STEP_MARK, Outputs
+from .._library import warn
 from ._particles import support_factor
 from .vtk_xml import KINDS
 

@@ -139,16 +139,15 @@ class Legacy:
         self.at = end.end() if end else len(self.data)
 
 
-def cells_of(legacy):
-    """Returns the cells' types, where each cell's points begin, and these points. Lists are in the order of VTK's cells."""
-    types, offsets, points = [], [np.zeros(1, int)], []
+def lists_of(legacy):
+    """Returns the lists of cells as take_vertices() takes them, in the order of VTK's cells."""
+    lists = []
     for name in LISTS:
         if name in legacy.cells and len(legacy.cells[name][0]):
             begins, ids = legacy.cells[name] if legacy.offsets else offsets_of(*legacy.cells[name])
-            types.append(legacy.types if name == "CELLS" else np.full(len(begins) - 1, LISTS[name]))
-            offsets.append(offsets[-1][-1] + begins[1:])
-            points.append(ids)
-    return np.concatenate(types), np.concatenate(offsets), np.concatenate(points)
+            types = legacy.types if name == "CELLS" else np.full(len(begins) - 1, LISTS[name])
+            lists.append((types, lambda begins=begins, ids=ids: (begins[1:], ids)))
+    return lists
 
 
 def read_legacy(path):
@@ -163,6 +162,6 @@ def read_legacy(path):
     body = Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
                 float(np.ravel(time)[0]) if len(time) else None, period_of_field(legacy.field))
     try:
-        return take_vertices(path.name, body, *cells_of(legacy), legacy.cell_arrays) if legacy.cells else body
+        return take_vertices(path.name, body, lists_of(legacy), {name: lambda array=array: array for name, array in legacy.cell_arrays.items()})
     except (ValueError, IndexError):  # Damaged cells tell nothing.
         return body

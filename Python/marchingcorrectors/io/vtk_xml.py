@@ -11,14 +11,14 @@ import json
 import lzma
 import re
 import zlib
+from functools import partial
 from xml.etree.ElementTree import TreeBuilder
 from xml.parsers import expat
 
 import numpy as np
 
-from .._library import say
-from .._warnings import warn
-from ._cells import VERTICES, take_vertices, tell_mesh
+from .._library import say, warn
+from ._cells import take_vertices
 from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
 from ._bytes import parse_numbers
 
@@ -119,31 +119,26 @@ class XmlFile:
             values = np.frombuffer(self.bytes_of(array), self.order + array.kind).astype(array.kind)
         return values.reshape(array.count, array.columns) if array.columns > 1 else values
 
+    def cells(self, arrays):
+        """Returns where the points of each cell end, and these points."""
+        ends, connectivity = self.values(arrays["offsets"]), arrays["connectivity"]
+        connectivity.count = int(ends[-1])
+        self.check([connectivity])
+        return ends, self.values(connectivity)
+
     def body(self, file, piece):
         """Returns the particles of a piece."""
         arrays = by_name(file, ((array.name, array) for array in piece["PointData"]))
         body = Body(self.values(piece["Points"][0]), {name: self.values(array) for name, array in arrays.items()})
         try:
-            return self.without_mesh(file, body, piece)
+            lists = []
+            for name in filter(piece["counts"].get, CELLS):
+                own = {array.name: array for array in piece[name]}
+                types = self.values(own["types"]) if name == "Cells" else np.full(own["offsets"].count, CELLS[name])
+                lists.append((types, partial(self.cells, own)))
+            return take_vertices(file, body, lists, {array.name: partial(self.values, array) for array in piece["CellData"]})
         except (ValueError, LookupError):  # Damaged cells tell nothing.
             return body
-
-    def without_mesh(self, file, body, piece):
-        sections = {name: {array.name: array for array in piece[name]} for name, count in piece["counts"].items() if count}
-        types = [self.values(arrays["types"]) if name == "Cells" else np.full(arrays["offsets"].count, CELLS[name])
-                 for name, arrays in sections.items()]
-        is_vertex = np.isin(np.concatenate(types), VERTICES) if types else np.zeros(0, bool)
-        if not is_vertex.any() or is_vertex.all() and not piece["CellData"]:
-            return tell_mesh(body, is_vertex)
-        offsets, points = [np.zeros(1, int)], []
-        for arrays in sections.values():
-            ends, connectivity = self.values(arrays["offsets"]), arrays["connectivity"]
-            connectivity.count = int(ends[-1])
-            self.check([connectivity])
-            offsets.append(offsets[-1][-1] + ends)
-            points.append(self.values(connectivity))
-        return take_vertices(file, body, np.concatenate(types), np.concatenate(offsets), np.concatenate(points),
-                             {array.name: self.values(array) for array in piece["CellData"]})
 
     def bytes_of(self, array):
         """Returns the array's bytes, by the header before them."""

@@ -35,15 +35,14 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
-from marchingcorrectors._arrays import QUANTITIES
+from marchingcorrectors._arrays import QUANTITIES, find_iso_value
 from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, describe_warnings, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
 from marchingcorrectors._find import tells_of_walls
 from marchingcorrectors._vtk_blocks import copy_of, describe_mesh, join_blocks, leaves_of, list_all, sets_of, take_vertices
-from marchingcorrectors._vtk_particles import (Particles, Request, Unusable, choose_array, find_period, is_single, name_of, request_of,
-                                               varies)
+from marchingcorrectors._vtk_particles import Particles, Unusable, choose_array, find_period, is_single, name_of, request_of, varies
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
 
 BIG = 2147483647
@@ -313,16 +312,16 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _look_at(self, points, ahead):
         """Adds to `ahead` what these points tell: the range needs no smoothing length, the number of cells no scalar."""
-        choice, none = self._choice(), Request()
+        choice = self._choice()
         self._settle(choice, points)
         with suppress(Unusable):
-            fittest = Particles(choice, points, ["fluid", "array"], (none, none))
+            fittest = Particles(choice, points, ["fluid", "array"])
             ahead["Array"] = ahead["Array"] or name_of(fittest.scalar)
         with suppress(Unusable):
             particles = self._find(choice, points, ["fluid", "scalar"])
             ahead["Fluid"] = particles.describe_fluid()
             if not choice.FreeSurface:
-                ends, value = particles.find_iso_value() or ((), 0.0)
+                ends, value = find_iso_value(particles.input) or ((), 0.0)
                 if ends:
                     before = ahead["ScalarRange"] if ahead["IsoValue"] == ahead["IsoValue"] else ()
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
@@ -336,9 +335,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             ahead["Cells"] += Particles.estimate_cells(given, self._options(choice))
 
     def _find(self, choice, points, wants, **more):
-        requests = request_of(self, 0, points), request_of(self, 1, points)
-        return Particles(choice, points, [want for want in wants if want != "scalar" or not choice.FreeSurface],
-                         None if choice.FreeSurface else requests, **more)
+        if choice.FreeSurface:
+            return Particles(choice, points, [want for want in wants if want != "scalar"], **more)
+        return Particles(choice, points, wants, [request_of(self, i, points) for i in range(2)], **more)
 
     # -- a run --
 
@@ -472,7 +471,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         arguments.options = options
         iso = self._levels("FreeSurfaceValues" if choice.FreeSurface else "ContourValues")
         if not iso:
-            found = (None, 0.5) if choice.FreeSurface else particles.find_iso_value()
+            found = (None, 0.5) if choice.FreeSurface else find_iso_value(particles.input)
             iso = [found[1]] if found else []
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)

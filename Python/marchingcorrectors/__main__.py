@@ -11,31 +11,27 @@ import signal
 import sys
 import warnings
 
+from ._command import COMMANDS, in_shell, run
+from ._film import run_convert
 from ._library import Error
-from .io import FileError
 
 
 def main(arguments):
     if arguments[:1] in (["-h"], ["--help"]):
         print(__doc__.strip())
         return 0
-    is_convert = arguments[:1] == ["convert"]
-    if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
+    if not arguments or arguments[0] not in ("convert", *COMMANDS):
         print(__doc__.strip(), file=sys.stderr)
         return 2
     for name in ("SIGTERM", "SIGHUP"):  # If the process is ended like this, it leaves no file behind.
         number = getattr(signal, name, None)
         if number and signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, lambda number, _: sys.exit(128 + number))
-    warnings.showwarning = lambda sentence, *_: print(f"marchingcorrectors: warning: {sentence}", file=sys.stderr)
+    warnings.showwarning = lambda warning, *_: print(f"marchingcorrectors: warning: {in_shell(warning)}", file=sys.stderr)
     try:
-        if is_convert:
-            from ._film import run_convert
-
+        if arguments[0] == "convert":
             run_convert(arguments[1:])
         else:
-            from ._command import run
-
             run(arguments)
     except ImportError as error:
         print(f'marchingcorrectors: this needs the package {error.name}: pip install {error.name}',
@@ -43,9 +39,7 @@ def main(arguments):
         return 1
     except KeyboardInterrupt:
         return 130
-    except (Error, FileError, OSError) as error:
-        from ._command import in_shell
-
+    except (Error, OSError) as error:
         print(f"marchingcorrectors: {in_shell(error)}", file=sys.stderr)
         return 1
     except MemoryError:

@@ -131,8 +131,7 @@ class SphAccessor:
         scalar, scalar_dot: names of point arrays, or arrays. "Density", where there is no such array, is summed from masses.
         iso: as in marchingcorrectors.isosurface().
         """
-        particles, words = self._prepare(words)
-        return _functions.isosurface(particles, scalar, iso, scalar_dot=scalar_dot, **words).to_pyvista()
+        return _functions.isosurface(scalar=scalar, iso=iso, scalar_dot=scalar_dot, **self._prepare(words)).to_pyvista()
 
     @_method(FREE_SURFACE)
     def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
@@ -143,8 +142,7 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
         """
-        particles, words = self._prepare(words)
-        return _functions.free_surface(particles, iso, **words).to_pyvista()
+        return _functions.free_surface(iso=iso, **self._prepare(words)).to_pyvista()
 
     @_method(PROBE)
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
@@ -158,11 +156,11 @@ class SphAccessor:
 
         points: a data set, or an array (points, 3).
         """
-        particles, keywords = self._prepare(words)
-        keywords["attributes"] = [name for name in keywords["attributes"] if particles.array(name).dtype.kind in "fiub"]
+        keywords = self._prepare(words)
+        keywords["attributes"] = [name for name in keywords["attributes"] if keywords["positions"].array(name).dtype.kind in "fiub"]
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(
             as_points(points, "points", "(points, 3)"))
-        found = _functions.probe(particles, result.points, **keywords)
+        found = _functions.probe(points=result.points, **keywords)
         for name, values in found._point_arrays().items():
             result.point_data[name] = values.reshape(len(values), -1) if values.ndim > 2 else values
         return result
@@ -179,8 +177,8 @@ class SphAccessor:
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
         """
-        particles, words = self._prepare(words, with_attributes=False)
-        found = _functions.derivatives(particles, {"array": particles.array(array)}, form=form, **words)
+        keywords = self._prepare(words, with_attributes=False)
+        found = _functions.derivatives(attributes={"array": keywords["positions"].array(array)}, form=form, **keywords)
         gradients = found.gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
@@ -202,10 +200,11 @@ class SphAccessor:
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
 
-        lines, iso, and the Gauges that are returned: as of marchingcorrectors.gauge().
+        Returns Gauges, as marchingcorrectors.gauge() does.
+
+        lines, iso: as of marchingcorrectors.gauge().
         """
-        particles, words = self._prepare(words, with_attributes=False)
-        return _meters.gauge(particles, lines, iso, **words)
+        return _meters.gauge(lines=lines, iso=iso, **self._prepare(words, with_attributes=False))
 
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
@@ -214,11 +213,14 @@ class SphAccessor:
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
 
-        sections, iso, and the Fluxes that are returned: as of marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
+        Returns Fluxes, as marchingcorrectors.flux() does.
+
+        sections, iso: as of marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
         velocity: the name of a point array, or an array; by default the point array with a usual name.
         """
-        particles, words = self._prepare(words, with_attributes=False)
-        return _meters.flux(particles, particles.velocity if velocity is None else velocity, _triangles_in(sections), iso, **words)
+        keywords = self._prepare(words, with_attributes=False)
+        velocity = keywords["positions"].velocity if velocity is None else velocity
+        return _meters.flux(velocity=velocity, sections=_triangles_in(sections), iso=iso, **keywords)
 
     @_method(PROJECT)
     def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
@@ -228,21 +230,21 @@ class SphAccessor:
 
         Example: image = particles.sph.project(direction="z"); plt.imshow(image.values, extent=image.extent, origin="lower")
 
+        Returns a Projection, as marchingcorrectors.project() does.
+
         scalar, weighted_by: names of point arrays, or arrays; without a scalar, the density.
-        direction, resolution, box, and the Projection that is returned: as of marchingcorrectors.project().
+        direction, resolution, box: as of marchingcorrectors.project().
         """
-        particles, words = self._prepare(words, with_attributes=False)
-        return _functions.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
-                                **words)
+        return _functions.project(scalar=scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
+                                **self._prepare(words, with_attributes=False))
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
-        """Returns particles, and keywords for the functions that take NumPy arrays."""
-        particles, words = PointData(self._particles), dict(given)
+        """Returns keywords for the functions that take NumPy arrays; their positions are particles."""
+        words = {"periodic": None, **given, "positions": PointData(self._particles)}  # Without "auto", a period in the field data is ignored.
         names = words.pop("attributes", None)
-        words.setdefault("periodic", None)  # Without "auto", a period in the field data is ignored.
         if with_attributes:
-            words["attributes"] = list(particles.arrays if names is None else names)
-        return particles, words
+            words["attributes"] = list(words["positions"].arrays if names is None else names)
+        return words
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)

@@ -26,10 +26,6 @@ OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                                       words_of("sph_kernel")))}
 
 
-def is_real(array):
-    return array.dtype.kind == "f"
-
-
 def as_array(values, role):
     """Calls np.asarray, and raises one sentence if this fails or would lose something. Arrays on a CUDA device are copied to the host."""
     if np.ma.is_masked(values):
@@ -113,20 +109,16 @@ class Arguments:
     """Fills the structures for one call, and keeps alive the arrays that the core borrows."""
 
     def __init__(self, positions):
-        self.kept, self.present, self.kinds, self.widening = [], None, {}, None
+        self.kept, self.kinds, self.widening = [], {}, None
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
         array = as_points(positions, "positions", "(particles, 3)")
         self.positions, self.count = array, len(array)
 
     def view(self, array, name):
-        view = c.mcor_array()
-        view.type, view.components = FLOATS[array.dtype], 1 if array.ndim < 2 else array.shape[1]
-        array = array if array.size else np.empty(array.shape, array.dtype)  # NULL would mean a constant.
-        view.data = array.ctypes.data
-        view.name = as_bytes(name) if name else None
-        self.kept.append(array)
-        return view
+        self.kept.append(array if array.size else np.empty(array.shape, array.dtype))  # NULL would mean a constant.
+        return c.mcor_array(type=FLOATS[array.dtype], components=1 if array.ndim < 2 else array.shape[1],
+                            data=self.kept[-1].ctypes.data, name=as_bytes(name) if name else None)
 
     def per_particle(self, values, role, name=None):
         """Returns a view of an array of (particles,) or (particles, components)."""
@@ -138,12 +130,6 @@ class Arguments:
             raise InvalidArgument(f"The {role} has the shape {array.shape}; for {self.count} particles it is "
                                   f"({self.count},) or ({self.count}, components).")
         return array
-
-    def constant(self, value, role):
-        value = convert(float, role, value.item())
-        if not value > 0:
-            raise InvalidArgument(f"The {role} is {value:g}; it must be greater than 0.")
-        return value
 
     def marks(self, solid, keyword="solid"):
         """Returns an array that tells solid from fluid particles."""
@@ -214,7 +200,9 @@ class Arguments:
             return period
         lengths = np.ravel(contiguous(period, "list of numbers of periodic")).astype(np.float64)
         extent = [0.0] * 6
-        positions = self.positions if self.present is None else self.positions[self.present]
+        positions = self.positions
+        if self.input.solid and self.count:
+            positions = positions[np.ctypeslib.as_array(self.input.solid, (self.count,)) != ABSENT]
         if len(positions):
             extent = np.stack([positions.min(axis=0), positions.max(axis=0)], axis=1).ravel().tolist()
         return place_period(lengths, extent)
@@ -281,6 +269,13 @@ def number(name, kind, value):
         except TypeError:
             pass
     return convert(int, name, value)
+
+
+def find_iso_value(given):
+    """Returns the range of the scalar at fluid particles, and the default iso value; None if no value is finite. given: mcor_input"""
+    ends, value = (ctypes.c_double * 2)(), ctypes.c_double()
+    found = lib.mcor_find_iso_value(ctypes.byref(given), None, ends, ctypes.byref(value))
+    return (tuple(ends), value.value) if found else None
 
 
 def values_of(view, count):

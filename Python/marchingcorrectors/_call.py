@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Unio
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (ABSENT, QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
+from ._arrays import (QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
 from ._context import Context, default_context
 from ._find import ELEMENTS, Found, name_priority
 from ._library import InvalidArgument, InvalidData, fill_slots, lib, say, warn, warn_of_particles
@@ -175,7 +175,9 @@ class Finder:
                 continue
             array = as_array(array, words)
             if array.ndim == 0 and role in QUANTITIES:
-                self.values[role] = self.arguments.constant(array, words)
+                self.values[role] = convert(float, words, array.item())
+                if not self.values[role] > 0:
+                    raise InvalidArgument(f"The {words} is {self.values[role]:g}; it must be greater than 0.")
             else:
                 self.names[role] = self.add(words, self.arguments.shaped(array, words))
         for role in ("volume", "mass", "density") if self.source else ():
@@ -206,7 +208,10 @@ class Finder:
 
     def add_choice(self, within, only):
         if within is not None:
-            self.request["within"] = parse_within(within)
+            sides = np.ravel(contiguous(within, "list of numbers of within")).tolist()
+            if len(sides) != 6 or not all(low <= high for low, high in zip(sides[::2], sides[1::2])):
+                raise InvalidArgument(f"within is {within!r}; it must be {BOUNDS}, the lower ones first.")
+            self.request["within"] = sides if any(sides) else [-5e-324, *sides[1:]]  # For the core zeros mean no choice.
         if isinstance(only, (Mapping, Ranges)):
             for name, wanted in only.items() if isinstance(only, Mapping) else only:
                 array = self.take("only", name, "fiubUSO" if isinstance(wanted, str) else "fiub")
@@ -236,8 +241,6 @@ class Finder:
         for sentence in filter(None, (found.unused, found.unused_type)):
             warn(sentence)
         arguments.input, why = found.found.input, found.text("no_fluid")
-        if arguments.input.solid and arguments.count:
-            arguments.present = np.ctypeslib.as_array(arguments.input.solid, (arguments.count,)) != ABSENT
         for name in self.marks:  # The core's sentence has name=value.
             why = why.replace(f"{name}=1", name)
         arguments.set_options(options)
@@ -271,13 +274,6 @@ def parse_range(name, wanted):
     if len(ends) != 2 or not ends[0] <= ends[1]:
         raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one.")
     return ends
-
-
-def parse_within(within):
-    sides = np.ravel(contiguous(within, "list of numbers of within")).tolist()
-    if len(sides) != 6 or not all(low <= high for low, high in zip(sides[::2], sides[1::2])):
-        raise InvalidArgument(f"within is {within!r}; it must be {BOUNDS}, the lower ones first.")
-    return sides if any(sides) else [-5e-324, *sides[1:]]  # For the core zeros mean no choice.
 
 
 def _list_outputs(words, options):

@@ -7,8 +7,6 @@ import ctypes
 import csv
 import os
 import re
-import sys
-import warnings
 from functools import partial
 
 import numpy as np
@@ -336,16 +334,13 @@ def run(arguments):
     if given.threads is not None:
         os.environ["MCOR_THREADS"] = str(given.threads)
     output = given.output
-    with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_: print(f"marchingcorrectors: warning: {in_shell(message)}", file=sys.stderr)
-        if arguments[0] == "surface" and is_usd(output):
-            said = _film.run_particles(given, partial(surface_of, given))
-        else:
-            _film.refuse_options(given)
-            with Outputs([*given.input, *given.walls], [output]) as files:
-                particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
-                given.output = files.beside(output)
-                said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](
-                    given, particles)
+    if arguments[0] == "surface" and is_usd(output):
+        said = _film.run_particles(given, partial(surface_of, given))
+    else:
+        _film.refuse_options(given)
+        with Outputs([*given.input, *given.walls], [output]) as files:
+            particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
+            given.output = files.beside(output)
+            said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](given, particles)
     if not given.quiet:
         print(f"{output}: {said}")

@@ -16,7 +16,7 @@ from ._spray import take_spray
 from ._surface import Surface
 from ._usd import Film, find_velocity, is_usd
 from .io._particles import TIMES
-from .io.vtk_xml import XmlFile, list_pieces, list_times
+from .io.vtk_files import XmlFile, list_pieces, list_times
 
 # Options of films: name, name of the value, type, and meaning.
 OPTIONS = (("--fps", "N", float, "frames of a second of film (24)"),

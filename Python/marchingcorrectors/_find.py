@@ -46,17 +46,6 @@ def name_priority(name, quantity):
     return lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], as_bytes(name))
 
 
-def find_named(arrays, quantity, components, count):
-    """Returns the index of the array with the most usual name for a quantity, or -1."""
-    named, many = list_named(arrays)
-    return lib.mcor_find_named(named, many, c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], components, count)
-
-
-def choose_view(arrays, active=-1):
-    """Returns the index of the array to show if the user has chosen none, or -1 if none is suitable."""
-    return lib.mcor_choose_view(*list_named(arrays), active, None)
-
-
 def tells_of_walls(name):
     """Returns whether a block or body of this name holds walls."""
     return bool(lib.mcor_tells_of_walls(as_bytes(name)))

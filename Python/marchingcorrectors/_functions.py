@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 import numpy as np
 
 from . import _structs as c
-from ._arrays import SUMMED, as_named, as_points, contiguous, is_real, left_out, number, set_option, statistics, take, take_all, take_each
+from ._arrays import SUMMED, as_named, as_points, contiguous, find_iso_value, left_out, number, set_option, statistics, take, take_all, take_each
 from ._call import called, of_particles, prepare, warn_of_missing
 from ._library import ERRORS, InvalidArgument, describe_warnings, lib, warn, warn_of_particles
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
@@ -79,7 +79,7 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
 
 def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     attributes = as_named(attributes)
-    real = {name: array for name, array in attributes.items() if is_real(array)}
+    real = {name: array for name, array in attributes.items() if array.dtype.kind == "f"}
     scalar, scalar_dot, iso = scalar_and_iso(scalar, scalar_dot, iso)
     is_free = number("field", "mcor_field", words.get("field", "shepard")) == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
     if scalar is None and not is_free:
@@ -91,7 +91,10 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     roles = {} if is_free else {"wants": ["scalar"], "scalar": scalar, "scalar_dot": scalar_dot}
     arguments = prepare(Units(positions), words, real, attributes, **roles)
     arguments.input.scalar.name = None  # Then the core says "the scalar".
-    arguments.set_iso_values(find_iso_value(arguments, is_free) if iso is None else iso)
+    if iso is None:
+        found = ((), 0.5) if is_free else find_iso_value(arguments.input)
+        iso = [found[1]] if found else []
+    arguments.set_iso_values(iso)
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = [name for name in attributes if name not in real]
     for name in from_nearest:
@@ -113,13 +116,6 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
         if sentence:
             warn(sentence)
     return found
-
-
-def find_iso_value(arguments, is_free):
-    """Returns a list with the default iso value: 0.5 for the free surface, about the median for a scalar."""
-    ends, value = (ctypes.c_double * 2)(), ctypes.c_double(0.5)
-    found = is_free or lib.mcor_find_iso_value(ctypes.byref(arguments.input), None, ends, ctypes.byref(value))
-    return [value.value] if found else []
 
 
 def _describe_empty(arguments, found):

@@ -49,15 +49,9 @@ ERRORS = {c.ENUMS["mcor_status"]["MCOR_" + name]: error for name, error in (
     ("DEVICE_ERROR", DeviceError), ("CANCELLED", Cancelled))}
 
 
-def _open():
-    library = ctypes.CDLL(str(Path(__file__).with_name("_mcor.dll" if os.name == "nt" else "_mcor.so")))
-    for name, (result, arguments) in c.FUNCTIONS.items():
-        function = getattr(library, name)
-        function.restype, function.argtypes = result, arguments
-    return library
-
-
-lib = _open()
+lib = ctypes.CDLL(str(Path(__file__).with_name("_mcor.dll" if os.name == "nt" else "_mcor.so")))
+for _name, (_result, _arguments) in c.FUNCTIONS.items():
+    getattr(lib, _name).restype, getattr(lib, _name).argtypes = _result, _arguments
 _free = ctypes.CDLL("ucrtbase" if os.name == "nt" else None).free  # This is the C library that the core uses.
 _free.restype, _free.argtypes = None, [ctypes.c_void_p]
 

@@ -11,7 +11,7 @@ from ._find import name_priority, tells_of_walls
 from ._library import say
 from ._vtk_particles import WALL_BLOCK, name_of
 from ._vtk_surface import add, add_nearest
-from .io._cells import VERTICES, find_vertices
+from .io.vtk_files import VERTICES, find_vertices
 
 
 def walk(tree, empty=False):

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
 from ._arrays import QUANTITIES, Arguments, place_period
-from ._find import ROLES, Found, as_bytes, choose_view
+from ._find import ROLES, Found, as_bytes, list_named
 from ._library import lib
 from ._options import camel
 
@@ -41,11 +41,6 @@ def abstract_arrays_of(data):
     return [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
 
 
-def arrays_of(data):
-    """Returns the arrays that hold numbers."""
-    return [array for array in abstract_arrays_of(data) if isinstance(array, vtkDataArray)]
-
-
 def is_single(array):
     return array.GetDataTypeAsString() == "float"
 
@@ -67,7 +62,7 @@ def named(data):
 
 def choose_array(arrays):
     """Returns the most suitable array to show if the user has chosen none, or None."""
-    best = choose_view([(array.GetName(), to_numpy(array)) for array in arrays])
+    best = lib.mcor_choose_view(*list_named([(array.GetName(), to_numpy(array)) for array in arrays]), -1, None)
     return None if best < 0 else arrays[best]
 
 
@@ -83,9 +78,10 @@ def varies(array, on_surface):
 def find_period(points):
     """Returns the six bounds in the field data, or None; and the nine numbers of a tilted cell, or None."""
     found, period, cell = [], (ctypes.c_double * 6)(), None
-    for array in arrays_of(points.GetFieldData()):
-        name, numbers = as_bytes(name_of(array)), to_numpy(array).ravel()
-        if lib.mcor_tells_of_period(name):
+    for array in abstract_arrays_of(points.GetFieldData()):
+        name = as_bytes(name_of(array))
+        if isinstance(array, vtkDataArray) and lib.mcor_tells_of_period(name):
+            numbers = to_numpy(array).ravel()
             cell = numbers.tolist() if len(numbers) == 9 else cell
             values = (ctypes.c_double * max(len(numbers), 1))(*numbers[:9])
             found.append(c.mcor_field_data(name=name, values=values, count=len(numbers)))
@@ -116,52 +112,42 @@ def request_of(algorithm, index, points):
     return Request(name if is_chosen else "", on_points, active)
 
 
-class Particles:
+class Particles(Found):
     """The quantities that the core finds among the point arrays. Raises Unusable if something is missing.
 
-    choice: a copy of the filter's properties; wants: names of mcor_want; requests: for the scalar and the second vector;
+    choice: a copy of the filter's properties; wants: names of mcor_want; requests: of the scalar and of the second vector;
     options: the core's options for sums over neighbours.
     """
 
-    def __init__(self, choice, points, wants, requests=None, taken=(), options=None):
-        scalar, dot = requests or (None, None)
-        self.choice, self.points, data = choice, points, points.GetPointData()
-        self._arrays = abstract_arrays_of(data)
-        self.positions = points.GetPoints().GetData()
+    def __init__(self, choice, points, wants, requests=(Request(), Request()), taken=(), options=None):
+        (scalar, dot), data, component = requests, points.GetPointData(), choice.ScalarComponent
+        self.choice, self.points, self.positions, self._arrays = choice, points, points.GetPoints().GetData(), abstract_arrays_of(data)
         names = {name: getattr(choice, camel(name) + "ArrayName") for name in (*QUANTITIES, "fluid")}
-        if scalar:
-            names.update(scalar=scalar.name, scalar_dot=dot.name)
-        index = scalar.active if scalar and scalar.active >= 0 else -1
-        chosen = data.GetAbstractArray(scalar.name) if scalar and scalar.name else None if index < 0 else self._arrays[index]
-        component = choice.ScalarComponent
+        chosen = data.GetAbstractArray(scalar.name) if scalar.name else None if scalar.active < 0 else self._arrays[scalar.active]
         label = chosen.GetComponentName(component) if chosen is not None and component >= 0 else None
-        self._holder = Found(
-            to_numpy(self.positions), named(data), wants, names,
+        super().__init__(
+            to_numpy(self.positions), named(data), wants, {**names, "scalar": scalar.name, "scalar_dot": dot.name},
             {name: getattr(choice, camel(name)) for name in ("smoothing_length", "mass", "density")},
-            only=choice.Only, taken=taken, excluded=choice.ExcludedArrays, find=choice.DetectArrays, active=index,
-            compute_volumes=choice.ComputeVolumes, particle_volume=choice.ParticleVolume,
-            estimate_smoothing_length=choice.EstimateSmoothingLength, lengths_by_neighbours=choice.SmoothingLengthEstimate,
-            smoothing_length_is_support_radius=choice.SmoothingLengthIsSupportRadius, fluid_value=choice.FluidValue,
-            find_fluid=choice.DetectFluid, ignore_solids=choice.IgnoreSolids, free_surface=choice.FreeSurface,
-            scalar_component=component, within=choice.Within, has_iso_values=choice.ComputeScalars, filled=choice.Filled,
+            only=choice.Only, taken=taken, excluded=choice.ExcludedArrays, find=choice.DetectArrays, active=scalar.active,
+            lengths_by_neighbours=choice.SmoothingLengthEstimate, find_fluid=choice.DetectFluid, has_iso_values=choice.ComputeScalars,
+            **{name: getattr(choice, camel(name)) for name in (
+                "compute_volumes", "particle_volume", "estimate_smoothing_length", "smoothing_length_is_support_radius", "fluid_value",
+                "ignore_solids", "free_surface", "scalar_component", "within", "filled")},
             label=None if label is None else as_bytes(label),
-            not_on_points=sum(1 << ROLES[role] for role, each in (("scalar", scalar), ("scalar_dot", dot)) if each and not each.on_points))
-        self.found, self._summed = self._holder.found, {}
-        self.unused_type, self.unused = self._holder.unused_type, self._holder.unused
-        self.input = self.found.input
-        self._made = [self._wrap(*self._holder.made(i)) if self.found.made[i].name else None for i in range(2)]
-        if self._holder.error:
-            raise Unusable(self._holder.error, self)
+            not_on_points=(not scalar.on_points) << ROLES["scalar"] | (not dot.on_points) << ROLES["scalar_dot"])
+        self.input, self._summed, self.interpolated = self.found.input, {}, {}
+        self._made = [self._wrap(*self.made(i)) if self.found.made[i].name else None for i in range(2)]
+        if self.error:
+            raise Unusable(self.error, self)
         if self.found.needs_lengths:
             self._sum(options, "SmoothingLength", lib.mcor_find_smoothing_lengths, lib.mcor_take_lengths, choice.NeighborRatio)
         if self.found.needs_densities:
             self._sum(options, "Density", lib.mcor_sum_densities, lib.mcor_take_densities)
         self.scalar = self._summed.get("Density") or self.array_for("scalar")
         self.dot = self.array_for("scalar_dot")
-        self.interpolated = {name_of(array): array for array in map(self._array, self._holder.attributes())}
-        self.from_nearest = {name_of(array): array for array in map(self._array, self._holder.nearest())}
-        self.fluid_name = self._holder.name("fluid")
-        self.scalar_name, self.iso_value_name = self._holder.text("scalar_name"), self._holder.text("iso_value_name")
+        self.interpolated = {name_of(array): array for array in map(self._array, self.attributes())}
+        self.from_nearest = {name_of(array): array for array in map(self._array, self.nearest())}
+        self.scalar_name, self.iso_value_name = self.text("scalar_name"), self.text("iso_value_name")
         whole = self.scalar is not None and self.dot is None and (self.scalar.GetNumberOfComponents() == 1 or component < 0)
         # This is the name of the array that equals the iso value on the surface, if there is one.
         self.contoured = name_of(self.scalar) if whole else None
@@ -176,7 +162,7 @@ class Particles:
         return self._arrays[index] if index < len(self._arrays) else self._made[index - len(self._arrays)]
 
     def array_for(self, role):
-        index = self._holder.which(role)
+        index = self.which(role)
         return None if index is None else self._array(index)
 
     @property
@@ -193,10 +179,6 @@ class Particles:
             found["density"] = self._summed["Density"]
         return found
 
-    def text(self, member):
-        """Returns a text of the core's result, such as no_fluid."""
-        return self._holder.text(member)
-
     def describe_fluid(self):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
@@ -207,17 +189,17 @@ class Particles:
         key = (*self.signatures()[0], options.sph_kernel, options.dimension, *options.periodic, *more)
         made = self.choice.Made.get(name, (None, None))
         if made[0] != key:
-            made = self.choice.Made[name] = key, self._wrap(name, given.per_neighbours(self._holder, function, *more))
+            made = self.choice.Made[name] = key, self._wrap(name, given.per_neighbours(self, function, *more))
         self._summed[name] = made[1]
         take(ctypes.byref(self.found), to_numpy(made[1]).ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 
     def arguments(self):
         result = Arguments(to_numpy(self.positions))
-        result.kept += [self._holder, self._summed]
+        result.kept.append(self)
         result.input = self.input
         result.kinds = {name: ((array.GetNumberOfComponents(),) if array.GetNumberOfComponents() > 1 else (),
                                c.ENUMS["mcor_type"]["MCOR_FLOAT32" if is_single(array) else "MCOR_FLOAT64"])
-                        for name, array in self.interpolated.items()} if hasattr(self, "interpolated") else {}
+                        for name, array in self.interpolated.items()}
         return result
 
     def has_free_surface(self):
@@ -245,9 +227,3 @@ class Particles:
                       tuple(choice.Within), *choice.Only]
         scalars = getattr(self, "scalar", None), getattr(self, "dot", None)
         return particles, [*map(sign, scalars), given.scalar_component]
-
-    def find_iso_value(self):
-        """Returns the range of the scalar at fluid particles, and the default iso value; None if no value is finite."""
-        ends, value = (ctypes.c_double * 2)(), ctypes.c_double()
-        found = lib.mcor_find_iso_value(ctypes.byref(self.input), None, ends, ctypes.byref(value))
-        return (tuple(ends), value.value) if found else None

@@ -125,7 +125,7 @@ def add_parameters(data, particles, arguments, wall_share):
     for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", *["ignore_solids"] * has_fluid):
         add(data, camel(name), [getattr(given, name)])
     add(data, "Scalar", particles.scalar_name)
-    add(data, "FluidArray", particles.fluid_name)
+    add(data, "FluidArray", particles.name("fluid"))
     if has_fluid:
         add(data, "FluidValue", [particles.found.fluid_value])
         add(data, "WallShare", [wall_share])

@@ -194,8 +194,7 @@ class Convert(unittest.TestCase):
             with self.subTest(name), self.assertWarnsRegex(InputWarning, f"the array '{name}' .* is left out"):
                 self.assertFalse(to_vtk(particles(**{name: values})).GetPointData().HasArray(name))
         for kind in (np.float16, np.longdouble, ">f4", int):
-            made = particles()
-            made._all = {"": np.arange(9).reshape(3, 3).astype(kind)}
+            made = Particles("a.x", "test", lambda kind=kind: np.arange(9).reshape(3, 3).astype(kind), {})
             self.assertEqual(vtk_to_numpy(to_vtk(made).GetPoints().GetData()).ravel().tolist(), list(range(9)))
 
     def test_smoothing_lengths(self):

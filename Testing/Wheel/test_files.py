@@ -585,9 +585,9 @@ class Layouts(Case):
         """No array is read before it is used."""
         write_gadget(self.at("snap.hdf5"))
         particles = io.read(self.at("snap.hdf5"))
-        self.assertEqual(particles._all._kept, {})
+        self.assertEqual((particles._positions._kept, particles.arrays._kept), ({}, {}))
         particles.positions
-        self.assertEqual(list(particles._all._kept), [""])
+        self.assertEqual((list(particles._positions._kept), particles.arrays._kept), ([""], {}))
 
     def test_kernels(self):
         """Each solver's kernel name gives the surface of sph_kernel, with half of the support radius or the file's own h."""

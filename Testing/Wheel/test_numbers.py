@@ -34,7 +34,7 @@ class Gauge(unittest.TestCase):
         lines = {"mast": UP, "inside": UP * [1, 1, 0.1] + [0, 0, 0.2], "far": UP + 90}
         with self.assertWarnsRegex(mc.InputWarning, says("PLACE_DRY", "gauge", "far")):
             found = mc.gauge(X, lines, **WORDS)
-        with self.assertWarnsRegex(mc.InputWarning, says("PLACES_DRY", "2", "3", "gauge", "far")):
+        with self.assertWarnsRegex(mc.InputWarning, says("PLACES_DRY", "2", "3", "gauge", "mast")):
             mc.gauge(X, {**lines, "mast": UP - 90}, **WORDS)
         self.assertEqual(found.names, ["mast", "inside", "far"])
         self.assertEqual(found.state.tolist(), ["wet", "full", "dry"])

@@ -13,8 +13,7 @@ from typing import Any, Iterator, Sequence, Union
 from . import bodies
 from ._bytes import read_head
 from ._particles import FileError, Particles, choose_step
-from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary
-from .phantom import read_native
+from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary, read_phantom_dump
 
 HDF5 = (".hdf5", ".h5", ".h5part")
 ENDINGS = (*HDF5, ".bi4", ".bgeo", *bodies.ENDINGS)
@@ -102,6 +101,6 @@ def _read(paths, types, walls, step):
     if read_head(path).startswith(b"BgeoV"):
         return read_bgeo(path)
     if head[4:8] in (b"\x61\xed\0\0", b"\0\0\xed\x61") or head[4:12] == b"\x61\xed\0\0\0\0\0\0":
-        return read_native(path)
+        return read_phantom_dump(path)
     raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, .ply, "
                     ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")

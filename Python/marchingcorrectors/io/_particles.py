@@ -8,7 +8,8 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .._find import Found, find_named
+from .. import _structs as c
+from .._find import Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean, words_of
 
@@ -37,12 +38,6 @@ def find_kernel(name):
     """Returns the word of sph_kernel for a file's name of its kernel, or None."""
     plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
     return next((word for start, word in KERNELS.items() if plain.startswith(start)), None)
-
-
-def support_factor(name):
-    """Returns support radius / smoothing length for a file's name of its kernel; 2, as most have, if it is unknown."""
-    known = find_kernel(name)
-    return lib.mcor_support_factor(words_of("sph_kernel")[known]) if known else 2.0
 
 
 class Lazy(Mapping):
@@ -105,8 +100,8 @@ class Particles:
     def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
                  **more: Any) -> None:
         self.file, self.layout = str(file), layout
-        self._all = Lazy({"": positions, **arrays}, file)
-        self.arrays: Mapping[str, np.ndarray] = Lazy({name: lambda n=name: self._all[n] for name in arrays}, file)
+        self._positions = Lazy({"": positions}, file)
+        self.arrays: Mapping[str, np.ndarray] = Lazy(arrays, file)
         self.smoothing_length: Union[None, str, float] = None
         self.mass: Union[None, str, float] = None
         self.volume: Union[None, str, float] = None
@@ -129,7 +124,7 @@ class Particles:
 
     @property
     def positions(self) -> np.ndarray:
-        positions = self._all[""]
+        positions = self._positions[""]
         if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
             raise FileError(f"{self.file}: positions have the shape {positions.shape} and the type {positions.dtype}.")
         return positions
@@ -210,7 +205,8 @@ class Particles:
 
 def usual(names, quantity):
     """Returns the name that the core knows as most usual for a quantity, or None."""
-    best = find_named([(name, NO_VALUE) for name in names], quantity, 1, 0)
+    named, count = list_named([(name, NO_VALUE) for name in names])
+    best = lib.mcor_find_named(named, count, c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], 1, 0)
     return None if best < 0 else names[best]
 
 

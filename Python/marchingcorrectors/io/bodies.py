@@ -19,7 +19,7 @@ PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # These endings may b
 
 def read_list(path, step):
     """Reads one step of a .pvd or .series file, which lists files of several times."""
-    from .vtk_xml import list_series, list_times
+    from .vtk_files import list_series, list_times
     times = (list_times if ending_of(path) == ".pvd" else list_series)(path)
     time = list(times)[choose_step(path.name, step, times)]
     body = join_bodies([load(each, 0) for each in check_parts(path, times[time])])
@@ -27,16 +27,16 @@ def read_list(path, step):
 
 
 def read_pieces(path):
-    from .vtk_xml import list_pieces, read_xml
+    from .vtk_files import list_pieces, read_xml
     return join_bodies([read_xml(piece) for piece in check_parts(path, list_pieces(path))])
 
 
 # The module and the function that read a file, and whether it may hold several steps.
-READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{ending: ("tables", "read_xyz", True) for ending in XYZ},
-           **{ending: ("tables", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
-           ".data": ("molecules", "read_data", False), ".ply": ("ply", "read_ply", False), ".npz": ("arrays", "read_arrays", False),
-           ".npy": ("arrays", "read_arrays", False), ".vtp": ("vtk_xml", "read_xml", False), ".vtu": ("vtk_xml", "read_xml", False),
-           ".vtk": ("legacy", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("bodies", "read_pieces", False),
+READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{ending: ("molecules", "read_xyz", True) for ending in XYZ},
+           **{ending: ("molecules", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
+           ".data": ("molecules", "read_data", False), ".ply": ("tables", "read_ply", False), ".npz": ("tables", "read_arrays", False),
+           ".npy": ("tables", "read_arrays", False), ".vtp": ("vtk_files", "read_xml", False), ".vtu": ("vtk_files", "read_xml", False),
+           ".vtk": ("vtk_files", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("bodies", "read_pieces", False),
            ".pvtu": ("bodies", "read_pieces", False), ".pvd": ("bodies", "read_list", True), ".series": ("bodies", "read_list", True)}
 ENDINGS = (*READERS, ".gz")
 

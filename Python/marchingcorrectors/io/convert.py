@@ -11,21 +11,18 @@ import numpy as np
 
 from . import FileError, count_steps, read
 from ._outputs import STEP_MARK, Outputs
-from .._library import warn
-from ._particles import support_factor
-from .vtk_xml import KINDS
+from .._library import lib, warn
+from .._options import words_of
+from ._particles import find_kernel
+from .vtk_files import KINDS
 
 XML_NAMES = {numpy: name for name, numpy in KINDS.items()}
 BLOCK = 1 << 20  # bytes that are packed at a time
 
 
 def plain(values):
-    """Returns the array in a type that VTK has: half precision becomes single, long double becomes double."""
-    values = np.asarray(values)
-    kind, size = values.dtype.kind, values.dtype.itemsize
-    if kind == "f" and size not in (4, 8):
-        return values.astype(np.float32 if size < 4 else np.float64)
-    return np.ascontiguousarray(values, np.uint8 if kind == "b" else values.dtype.newbyteorder("="))
+    """Returns the array in one piece, in a type that VTK has."""
+    return np.ascontiguousarray(values, np.uint8 if values.dtype.kind == "b" else values.dtype.newbyteorder("="))
 
 
 def describe(particles):
@@ -36,7 +33,9 @@ def describe(particles):
     if h is not None:
         if isinstance(particles.smoothing_length, str):
             arrays.pop(particles.smoothing_length)
-        factor = support_factor(particles.kernel) if particles.support_radius else 1
+        kernel = find_kernel(particles.kernel)
+        radius = lib.mcor_support_factor(words_of("sph_kernel")[kernel]) if kernel else 2.0  # as most kernels have
+        factor = radius if particles.support_radius else 1
         arrays["SmoothingLength"] = np.broadcast_to(np.asarray(h, float) / factor, len(positions))
     if isinstance(particles.mass, float):
         arrays.setdefault("Mass", np.full(len(positions), particles.mass))

@@ -12,8 +12,7 @@ import numpy as np
 
 from .._find import tells_of_walls
 from ._particles import Body, FileError, Particles, check_claim, add_velocity, choose_step, find_kernel, usual_quantities
-from .binary import files_of, no_particles, numbers_of
-from .phantom import make_phantom
+from .binary import files_of, make_phantom, no_particles, numbers_of
 
 KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or add a checksum.
 

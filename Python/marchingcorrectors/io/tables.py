@@ -1,16 +1,19 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads particles from text, one in each line: .csv (commas, semicolons or tabs), columns between blanks with comments
-behind #, .xyz and extended XYZ, dumps of LAMMPS. Columns whose names end in :0, _x, .x, [0], X, ... form one array."""
+"""Reads particles from tables: text, one in each line, with commas, semicolons or tabs between columns, or with blanks and comments behind #;
+.ply, of which VTK's own reader leaves out properties; and NumPy's .npz and .npy of plain arrays. Arrays of objects hold pickles, which are not
+opened. Columns whose names end in :0, _x, .x, [0], X, ... form one array."""
 import csv
+import io
 import re
+import zipfile
 
 import numpy as np
 
 from .._find import as_bytes
-from .._library import lib, say
+from .._library import lib, say, warn
 from ._bytes import ending_of, read_bytes
-from ._particles import Body, FileError, choose_step, usual
+from ._particles import TIMES, Body, FileError, check_claim, period_of_field, usual
 
 MOST_COLUMNS = 10000
 COMPONENT = re.compile(r"(.+?)(?:[:_.]([0-8xyzXYZ])|[\[(]([0-8])[\])]|(?<=[a-z])([XYZ]))")
@@ -200,144 +203,102 @@ def read_table(path):
         return body_of(path.name, columns, names[:3])
 
 
-def whole_number(file, lines, i):
-    if i >= len(lines) or not re.fullmatch(r"\s*\d{1,18}\s*", lines[i][:40]):
-        raise FileError(say("STEP_WITHOUT_COUNT", file, f"line {i + 1}"))
-    return int(lines[i])
+PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
+         "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4",
+         "float64": "f8"}
+PLY_ORDERS = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def rows_of(file, lines, begin, count):
-    if begin + count > len(lines):
-        raise FileError(f"{file} ends too early: its step at line {begin} claims {count} particles.")
-    return lines[begin:begin + count]
-
-
-def take_step(file, step, steps):
-    """Returns what the chosen step holds, and the words of Body for its time. steps: pairs (time, or None for its number; what it holds)."""
-    times = [float(i) if time is None else time for i, (time, _) in enumerate(steps)]
-    i = choose_step(file, step, times)
-    return steps[i][1], {"time": times[i], "times": times}
-
-
-def value_of(comment, key):
-    """Returns the text behind KEY= in the second line of extended XYZ, with or without quotes."""
-    found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
-    return (found[1] if found[1] is not None else found[2]) if found else ""
-
-
-def numbers_of(text):
-    numbers = [to_number(word) for word in text.split()]
-    return [] if None in numbers else numbers
-
-
-def read_xyz(path, step):
-    lines, at, steps = lines_of(path), 0, []
-    while at < len(lines):
-        if lines[at].strip():
-            if steps and len(lines[at].split()) == len(lines[at - 1].split()) > 1:
-                raise FileError(f"{path.name}: line {at + 1} is one more than the {count} particles that the step says it "
-                                "has; correct that number.")
-            count = whole_number(path.name, lines, at)
-            rows_of(path.name, lines, at + 2, count)
-            time = value_of(lines[at + 1], "time")
-            steps.append((to_number(time) if time else None, at))
-            at += 1 + count
-        at += 1
-    begin, times = take_step(path.name, step, steps)
-    count, comment, properties = whole_number(path.name, lines, begin), lines[begin + 1], []
-    parts = value_of(comment, "properties").split(":")
-    for name, width in zip(parts[0::3], parts[2::3]):
-        if not width.isdigit() or not 0 < int(width) <= 100:
-            raise FileError(f"{path.name}: its Properties give '{name}' {width} columns.")
-        properties += [name] if width == "1" else [f"{name}:{i}" for i in range(int(width))]
-        check_width(path.name, len(properties))
-    rows = rows_of(path.name, lines, begin + 2, count)
-    if not properties:
-        width = len(rows[0].split()) if rows else 3
-        check_width(path.name, width)
-        properties = ["species", *number_columns(width - 1)] if width > 3 else number_columns(width)
-    told = {"lattice": numbers_of(value_of(comment, "lattice")), "pbc": value_of(comment, "pbc").split(),
-            "origin": numbers_of(value_of(comment, "origin"))}
-    for key, values in told.items():
-        if value_of(comment, key) and len(values) != (9 if key == "lattice" else 3):
-            raise FileError(f"{path.name}: line {begin + 2} has {len(values)} values as its {key}, which are "
-                            f"{9 if key == 'lattice' else 3}.")
-    period = period_of(np.reshape(told["lattice"], (-1, 3)), told["origin"] or [0.0] * 3,
-                       [flag not in ("F", "0", "False") for flag in told["pbc"] or "TTT"])
-    return body_of(path.name, columns_of(path.name, rows, properties), period=period, **times)
-
-
-def period_of(cell, origin, is_periodic):
-    """Returns six bounds, 0 for axes without a period; or the cell's sides, nine numbers, if a side with a period is tilted."""
-    bounds = [0.0] * 6
-    for a, side in enumerate(cell):
-        if is_periodic[a] and any(side[b] for b in range(3) if b != a):
-            return np.ravel(cell).tolist()
-        if is_periodic[a] and side[a] > 0 and np.isfinite([origin[a], side[a]]).all():
-            bounds[2 * a:2 * a + 2] = origin[a], origin[a] + side[a]
-    return bounds if any(bounds) else None
-
-
-def read_box(file, words, lines, at):
-    """Returns the cell's sides as vectors, where the cell begins, and which sides are periods. A dump has a cell along the axes; or a tilted cell
-    (xy xz yz), where the first two numbers of a line are the bounds of the box around it; or vectors with their origin (abc origin)."""
-    flags = words[-3:] if len(words) >= 3 and all(re.fullmatch("[pfsm]{2}", word) for word in words[-3:]) else []
-    kind = " ".join(words[:len(words) - len(flags)])
-    if kind not in ("", "xy xz yz", "abc origin"):
-        raise FileError(f"{file}: line {at} begins a box of a kind that is not known here.")
-    sides = [numbers_of(line) for line in rows_of(file, lines, at, 3)]
-    count = {"": 2, "xy xz yz": 3, "abc origin": 4}[kind]
-    odd = next((i for i, side in enumerate(sides) if len(side) != count), None)
-    if odd is not None:
-        raise FileError(f"{file}: line {at + odd + 1} has {len(sides[odd])} numbers, where a side of its box has {count}.")
-    sides, periodic = np.array(sides), [flag == "pp" for flag in flags] or [False] * 3
-    if kind == "abc origin":
-        return sides[:, :3], sides[:, 3], periodic
-    low, high, (xy, xz, yz) = sides[:, 0].copy(), sides[:, 1].copy(), sides[:, 2] if kind else (0.0, 0.0, 0.0)
-    low[:2] -= min(0.0, xy, xz, xy + xz), min(0.0, yz)
-    high[:2] -= max(0.0, xy, xz, xy + xz), max(0.0, yz)
-    return np.array([[high[0] - low[0], 0, 0], [xy, high[1] - low[1], 0], [xz, yz, high[2] - low[2]]]), low, periodic
-
-
-def read_lammps(path, step):
-    """Reads the items of a dump: a line with the name, then lines with the content. TIME is in the run's unit, TIMESTEP is a number."""
-    lines, at, steps, head = lines_of(path), 0, [], {}
-    while at < len(lines):
-        words, at = lines[at].split(), at + 1
-        if not words:
+def read_ply(path):
+    data = read_bytes(path)
+    head = re.match(rb"ply\r?\n(.*?)end_header\r?\n", data[:1 << 20], re.DOTALL)
+    if not head:
+        raise FileError(f"{path.name} is no .ply file, or its beginning is damaged.")
+    form, elements = None, []  # [name, count, [(property, type, or None of a list)]]
+    for line in head[1].decode(errors="replace").splitlines():
+        words = line.split()
+        if words[:1] == ["format"] and len(words) > 1 and words[1] in PLY_ORDERS:
+            form = words[1]
+        elif words[:1] == ["element"] and len(words) == 3 and re.fullmatch("[0-9]{1,15}", words[2]):
+            elements.append([words[1], int(words[2]), []])
+        elif words[:1] == ["property"] and elements and (len(words) == 3 and words[1] in PLY_TYPES or words[1:2] == ["list"]):
+            elements[-1][2].append((words[-1], PLY_TYPES.get(words[1])))
+        elif words and words[0] not in ("comment", "obj_info"):
+            raise FileError(say("PLY_HEAD", path.name, line))
+    if form is None:
+        raise FileError(f"{path.name} does not tell its format: ascii or binary.")
+    at = head.end()
+    for name, count, properties in elements:
+        if not count and name != "vertex":
             continue
-        if words[0] != "ITEM:" or len(words) < 2:
-            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS.")
-        if words[1] in ("TIMESTEP", "TIME"):
-            time = to_number(lines[at]) if at < len(lines) else None
-            if time is None:
-                raise FileError(f"{path.name}: line {at + 1} is no time.")
-            head[words[1]] = time
-        elif words[1:3] == ["NUMBER", "OF"]:
-            head["count"] = whole_number(path.name, lines, at)
-        elif words[1:3] == ["BOX", "BOUNDS"]:
-            head["box"] = read_box(path.name, words[3:], lines, at)
-            at += 2
-        elif words[1] == "ATOMS":
-            rows_of(path.name, lines, at, head.get("count", 0))
-            steps.append((head.get("TIME", head.get("TIMESTEP")), (at, words[2:], head)))
-            at, head = at + head.get("count", 0) - 1, {}
-        elif words[1:] != ["UNITS"]:
-            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS that is known here.")
-        at += 1
-    if not steps:
-        raise FileError(f"{path.name} has no particles.")
-    (begin, words, head), times = take_step(path.name, step, steps)
-    names = name_columns(path.name, words)
-    columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
-    cell, origin, periodic = head.get("box", (np.empty((0, 3)), None, None))
-    found = [axes_of(columns, kind) for kind in ("", "u", "s", "su")]  # Positions may be plain, unwrapped, or shares of the cell's sides.
-    positions = next((each for each in found if len(each) == 3), ())
-    if positions in found[2:]:
-        if origin is None:
-            raise FileError(f"{path.name}: its positions are shares of a box (xs, ys, zs), and it has no box.")
-        shares = [columns[name] for name in positions]
-        for a, name in enumerate(positions):
-            columns[name] = origin[a] + sum(share * side[a] for share, side in zip(shares, cell))
-    period = period_of(cell, origin, periodic)
-    return body_of(path.name, columns, positions, period=period, **times)
+        if any(kind is None for _, kind in properties):
+            raise FileError(say("PLY_LISTS", path.name, name))
+        check_width(path.name, len(properties))
+        if form == "ascii":
+            end = at
+            for _ in range(min(count, len(data)) if name != "vertex" else 0):
+                end = data.find(b"\n", end) + 1 or len(data)
+        else:
+            kind = np.dtype([(str(i), PLY_ORDERS[form] + kind) for i, (_, kind) in enumerate(properties)])
+            end = at + count * kind.itemsize
+        if name == "vertex":
+            break
+        at = end
+    else:
+        raise FileError(f"{path.name} has no vertices.")
+    names = [name for name, _ in properties]
+    if len(set(names)) < len(names):
+        raise FileError(say("PLY_NAMES", path.name))
+    if form == "ascii":
+        rows = [row for row in data[at:].decode(errors="replace").split("\n") if row.strip()][:count]
+        columns = columns_of(path.name, rows, names)
+    elif end <= len(data):
+        rows = np.frombuffer(data, kind, count, at)
+        columns = {name: rows[str(i)].astype(rows.dtype[i].newbyteorder("=")) for i, name in enumerate(names)}
+    if form != "ascii" and end > len(data) or len(rows) < count:
+        raise FileError(f"{path.name} ends too early: it claims {count} vertices.")
+    return body_of(path.name, columns, is_mesh=True if any(name == "face" and many for name, many, _ in elements) else None)
+
+
+def array_of(file, name, data):
+    """Reads an array from the bytes of a .npy file."""
+    stream = io.BytesIO(data)
+    version = np.lib.format.read_magic(stream)
+    read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
+    shape, by_columns, kind = read(stream)
+    if kind.hasobject:
+        raise FileError(f"{file} is not opened: its array '{name}' holds Python's objects, which are pickles, which can run code. Let "
+                        "the solver write HDF5 (PySPH: install h5py), or plain arrays.")
+    count = int(np.prod(shape, dtype=object))
+    if min(shape, default=0) < 0 or count * kind.itemsize > len(data) - stream.tell() or kind.itemsize == 0:
+        raise FileError(f"{file}: its array '{name}' claims {shape} values, for which it is too short.")
+    values = np.frombuffer(data, kind, count, stream.tell())
+    return values.reshape(shape[::-1]).T if by_columns else values.reshape(shape)
+
+
+def read_arrays(path):
+    if path.suffix.lower() == ".npy":
+        found = {"positions": array_of(path.name, path.stem, path.read_bytes())}
+        if found["positions"].dtype.names:
+            found = {name: found["positions"][name] for name in found["positions"].dtype.names}
+    else:
+        with zipfile.ZipFile(path) as packed:
+            members = packed.infolist()
+            check_claim(path.name, "its arrays together", sum(each.file_size for each in members), path.stat().st_size)
+            found = {each.filename[:-4]: array_of(path.name, each.filename[:-4], packed.read(each)) for each in members
+                     if each.filename.endswith(".npy")}
+    places = [usual([name for name in found if found[name].ndim == 2], "position"), *(name for name in axes_of(found) if found[name].ndim == 1)]
+    place = next((name for name in places if name is not None), None)
+    count = -1 if place is None else len(found[place])
+    plain = {name: np.ascontiguousarray(values, values.dtype.newbyteorder("=")) for name, values in found.items()
+             if values.ndim in (1, 2) and len(values) == count}
+    if place is not None and found[place].ndim == 2 and found[place].shape[1] == 2:
+        plain[place] = np.pad(plain[place], ((0, 0), (0, 1)))  # The positions lie in a plane.
+    body = body_of(path.name, {name: np.empty(0) for name in found} if place is None else plain)
+    alone = {name: values for name, values in found.items() if name not in plain}
+    time = next((values for name, values in alone.items() if name.lower() in ("t", *(each.lower() for each in TIMES))
+                 and values.size == 1 and values.dtype.kind in "fiu"), None)
+    others = [name for name, values in alone.items() if values is not time and name != "PeriodicBounds"]
+    if others:
+        warn(f"{path.name}: no value for each of {count} particles have {', '.join(others)[:200]}, which are left out.")
+    return body._replace(time=None if time is None else float(np.ravel(time)[0]), period=period_of_field(alone))

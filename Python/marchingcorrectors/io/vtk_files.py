@@ -1,26 +1,81 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads VTK's XML files (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd): points and their arrays, of all pieces. VTK's own
-reader believes the lengths in a damaged file, and ends Python; here all lengths are checked. An array is text, or base64 in
-the file, or base64 or bytes at an offset behind an underscore in <AppendedData>. Bytes begin with their number; packed
-bytes begin with the number of blocks, the bytes of a block, the bytes of the last block if it is shorter (else 0), and the
-packed bytes of each block."""
+"""Reads VTK's files: points and their arrays, of XML (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd) and of the legacy format (.vtk). VTK's own
+readers believe the lengths in a damaged file, and end Python, or give random values; here all lengths are checked against the file."""
 import binascii
 import bisect
 import json
-import lzma
 import re
 import zlib
 from functools import partial
+from urllib.parse import unquote_to_bytes
 from xml.etree.ElementTree import TreeBuilder
 from xml.parsers import expat
 
 import numpy as np
 
 from .._library import say, warn
-from ._cells import take_vertices
-from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
 from ._bytes import parse_numbers
+from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
+
+VERTICES = (1, 2)  # VTK's types of cells that are points
+
+
+def offsets_of(cells, count):
+    """cells: each cell's number of points, then its points. Returns where cells begin, and the list without these numbers."""
+    width = len(cells) // count if count else 0
+    if count and width * count == len(cells) and (cells[::width] == width - 1).all():
+        return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()
+    begins, at = [], 0
+    while at < len(cells):
+        begins.append(at)
+        at += 1 + max(int(cells[at]), 0)
+    begins = np.array(begins + [len(cells)], int)
+    if at != len(cells) or len(begins) != count + 1:
+        raise ValueError("a list of cells is damaged")
+    return begins - np.arange(count + 1), np.delete(cells, begins[:-1])
+
+
+def find_vertices(types, offsets, points, count):
+    """Returns, for each point, the first vertex that uses it, or -1."""
+    cells = np.repeat(np.arange(len(types)), np.diff(offsets))
+    used = np.isin(types, VERTICES)[cells] & (points >= 0) & (points < count)
+    found = np.full(count, -1)
+    found[points[used][::-1]] = cells[used][::-1]  # If several vertices use a point, the first counts.
+    return found
+
+
+def take_vertices(file, body, lists, cell_arrays):
+    """Takes only the vertices' points if there are other cells, too: other points are a mesh's. Arrays of cells become
+    arrays of these points, unless points have one of that name; also where each point has a vertex.
+
+    lists: pairs of cells' types, and a function that returns where the points of each cell end, and these points; cell_arrays: {name: function}
+    """
+    types, count = np.concatenate([np.zeros(0, int), *(types for types, _ in lists)]), len(body.points)
+    is_vertex = np.isin(types, VERTICES)
+    body = body._replace(is_mesh=not is_vertex.any()) if len(types) else body
+    if not is_vertex.any() or is_vertex.all() and not cell_arrays:
+        return body
+    offsets, points = [np.zeros(1, int)], []
+    for _, load in lists:
+        ends, own = load()
+        offsets.append(offsets[-1][-1] + ends)
+        points.append(own)
+    cell_of = find_vertices(types, np.concatenate(offsets), np.concatenate(points), count)
+    if is_vertex.all() and (cell_of < 0).any():
+        return body
+    if not is_vertex.all():
+        warn(say("MESH_NODES", count - np.count_nonzero(cell_of >= 0), count, " of ", file))
+    taken, of_cells = np.flatnonzero(cell_of >= 0), {name: load() for name, load in cell_arrays.items()}
+    of_cells = {name: array[cell_of[taken]] for name, array in of_cells.items() if len(array) == len(types)}
+    return body._replace(points=body.points[taken],
+                         arrays={**of_cells, **{name: array[taken] for name, array in body.arrays.items()}})
+
+
+# -- XML --
+# An array is text, or base64 in the file, or base64 or bytes at an offset behind an underscore in <AppendedData>. Bytes begin with their number;
+# packed bytes begin with the number of blocks, the bytes of a block, the bytes of the last block if it is shorter (else 0), and the packed bytes
+# of each block.
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
@@ -36,6 +91,12 @@ def decode_base64(text):
     return b"".join(map(binascii.a2b_base64, re.findall(b"[^=]+=*", text)))
 
 
+def unpack_lzma(packed, size):
+    import lzma  # Some Pythons are built without it.
+
+    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=2 ** 28).decompress(packed, size)
+
+
 def unpack_lz4(packed, size):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
@@ -47,9 +108,7 @@ def unpack_lz4(packed, size):
 
 
 UNPACK = {"vtkZLibDataCompressor": lambda packed, size: zlib.decompressobj().decompress(packed, size),
-          "vtkLZMADataCompressor": lambda packed, size: lzma.LZMADecompressor(
-              lzma.FORMAT_XZ, memlimit=2 ** 28).decompress(packed, size),
-          "vtkLZ4DataCompressor": unpack_lz4}
+          "vtkLZMADataCompressor": unpack_lzma, "vtkLZ4DataCompressor": unpack_lz4}
 
 
 def refuse(*_):
@@ -247,3 +306,161 @@ def list_times(path):
     if not times:
         raise FileError(f"{path.name} lists no files.")
     return times
+
+
+# -- the legacy format --
+
+LEGACY_KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
+         "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
+         **{f"vtktype{sign}int{bits}": f"{'u' if sign else 'i'}{bits // 8}" for sign in ("u", "") for bits in (8, 16, 32, 64)}}
+LEGACY_CELLS = {"VERTICES": 1, "LINES": 3, "POLYGONS": 7, "TRIANGLE_STRIPS": 6, "CELLS": 0}  # These are VTK's types of such cells.
+LEGACY_COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS": 1, "PEDIGREE_IDS": 1, "EDGE_FLAGS": 1}
+
+
+class Legacy:
+    def __init__(self, path):
+        self.name, self.data, self.at = path.name, path.read_bytes(), 0
+        self.points, self.arrays, self.field, self.cell_arrays = None, [], [], []  # Arrays are pairs (name, values).
+        self.cells, self.types = {}, None  # {name: (values, number)}
+        head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\n"
+                        rb"DATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n", self.data)
+        if not head:
+            raise FileError(f"{self.name} is no file of VTK's with particles (poly data or an unstructured grid), or its "
+                            "beginning is damaged.")
+        self.at, self.text, self.offsets = head.end(), head[2] == b"ASCII", int(head[1]) > 4
+        into = self.field
+        while True:
+            words = self.line()
+            if not words:
+                break
+            into = self.section(words, into)
+        if self.points is None or not len(self.points) or (self.types is None) != (head[3] == b"POLYDATA"):
+            raise self.damaged()
+        self.arrays, self.field, self.cell_arrays = by_name(self.name, self.arrays), dict(self.field), dict(self.cell_arrays)
+
+    def damaged(self):
+        return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
+
+    def line(self):
+        """Returns the words of the next line that has some."""
+        while self.at < len(self.data):
+            end = self.data.find(b"\n", self.at, self.at + 1000)
+            end = min(len(self.data), self.at + 1000) if end < 0 else end
+            words, self.at = self.data[self.at:end].split(), end + 1
+            if words:
+                return [word.decode(errors="replace") for word in words]
+        return []
+
+    def values(self, kind, count, columns=1):
+        kind, count, columns = kind.lower(), int(count), int(columns)
+        code, left = LEGACY_KINDS.get(kind), len(self.data) - self.at
+        if kind in ("string", "utf8_string", "variant"):
+            return self.skip_strings(count * columns, self.text or kind == "variant")
+        if kind == "bit" and not self.text:
+            return self.values("unsigned_char", (count * columns + 7) // 8)[:0]
+        if code is None or count < 0 or not 0 < columns <= 1000:
+            raise self.damaged()
+        size = count * columns * (2 if self.text else np.dtype(code).itemsize)
+        if size > left + self.text:  # As text, each number has a digit and a blank; the last has no blank.
+            raise self.damaged()
+        if self.text:
+            values, end = parse_numbers(memoryview(self.data)[self.at:], code, count * columns)
+            self.at += end
+        else:
+            values = np.frombuffer(self.data, ">" + code, count * columns, self.at).astype(code)
+            self.at += size
+        return values.reshape(count, columns) if columns > 1 else values
+
+    def skip_strings(self, count, in_lines):
+        """Skips texts: in text files, one on each line; in others, each behind its length, whose first two bits tell its own size: 8, 4, 2 or 1 bytes."""
+        for _ in range(count):
+            if in_lines:
+                self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1
+            else:
+                size = 8 >> (self.data[self.at] >> 6)
+                self.at += size + (int.from_bytes(self.data[self.at:self.at + size], "big") & (1 << (8 * size - 2)) - 1)
+            if self.at > len(self.data):
+                raise self.damaged()
+        return np.empty(0)
+
+    def section(self, words, into):
+        """Reads the section that these words begin. into: where its arrays go. Returns where the next section's arrays go."""
+        word, rest = words[0].upper(), words[1:]
+
+        def put(name, *how):  # VTK writes %20 for a blank in a name.
+            into.append((unquote_to_bytes(name).decode(errors="replace"), self.values(*how)))
+
+        if word == "POINTS":
+            self.points = self.values(rest[1], rest[0], 3)
+        elif word in LEGACY_CELLS and not self.offsets:
+            self.cells[word] = self.values("int", rest[1]), int(rest[0])
+        elif word in LEGACY_CELLS:
+            self.cells[word] = [self.values(self.line()[1], count) for count in rest[:2]]
+        elif word == "CELL_TYPES":
+            self.types = self.values("int", rest[0])
+        elif word in ("POINT_DATA", "CELL_DATA"):
+            self.count = int(rest[0])
+            if word == "POINT_DATA" and (self.points is None or self.count != len(self.points)):
+                raise self.damaged()
+            return self.arrays if word == "POINT_DATA" else self.cell_arrays
+        elif word == "FIELD":
+            for _ in range(int(rest[1])):
+                name, columns, count, kind = self.next_array()
+                put(name, kind, count, columns)
+        elif word == "SCALARS":
+            if self.line()[0].upper() != "LOOKUP_TABLE":
+                raise self.damaged()
+            put(rest[0], rest[1], self.count, rest[2] if len(rest) > 2 else 1)
+        elif word in LEGACY_COLUMNS:
+            put(rest[0], rest[1], self.count, LEGACY_COLUMNS[word])
+        elif word == "TEXTURE_COORDINATES":
+            put(rest[0], rest[2], self.count, rest[1])
+        elif word == "COLOR_SCALARS":
+            put(rest[0], "float" if self.text else "unsigned_char", self.count, rest[1])
+        elif word == "LOOKUP_TABLE":
+            self.values("float" if self.text else "unsigned_char", rest[1], 4)
+        elif word == "METADATA":
+            self.skip_metadata()
+        else:
+            raise self.damaged()
+        return into
+
+    def next_array(self):
+        words = self.line()
+        if words == ["METADATA"]:
+            self.skip_metadata()
+            words = self.line()
+        return words
+
+    def skip_metadata(self):
+        """Skips metadata, which end with an empty line."""
+        end = re.compile(rb"\n\r?\n").search(self.data, self.at)
+        self.at = end.end() if end else len(self.data)
+
+
+def lists_of(legacy):
+    """Returns the lists of cells as take_vertices() takes them, in the order of VTK's cells."""
+    lists = []
+    for name in LEGACY_CELLS:
+        if name in legacy.cells and len(legacy.cells[name][0]):
+            begins, ids = legacy.cells[name] if legacy.offsets else offsets_of(*legacy.cells[name])
+            types = legacy.types if name == "CELLS" else np.full(len(begins) - 1, LEGACY_CELLS[name])
+            lists.append((types, lambda begins=begins, ids=ids: (begins[1:], ids)))
+    return lists
+
+
+def read_legacy(path):
+    try:
+        legacy = Legacy(path)
+    except (FileError, MemoryError):
+        raise
+    except Exception:  # Some words are no numbers, or there are too few.
+        raise FileError(f"{path.name} is damaged, or ends too early.") from None
+    count = len(legacy.points)
+    time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
+    body = Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
+                float(np.ravel(time)[0]) if len(time) else None, period_of_field(legacy.field))
+    try:
+        return take_vertices(path.name, body, lists_of(legacy), {name: lambda array=array: array for name, array in legacy.cell_arrays.items()})
+    except (ValueError, IndexError):  # Damaged cells tell nothing.
+        return body

@@ -163,12 +163,12 @@ class Surface(Result):
         """
         path = Path(path)
         ending = path.suffix.lower()
-        if ending in (".stl", ".obj", ".off") and not len(self.triangles):
+        if ending in (".stl", ".obj", ".off") and not len(self.triangles) and (ending != ".obj" or not self.lines):
             raise InvalidArgument(f"{path.name} was not written, because the surface has no triangles, and files {ending} "
                                   "hold nothing else. Formats that can be empty are .npz, .ply and .vtp.")
         if self.lines and not len(self.triangles) and ending == ".ply":
             raise InvalidArgument(f"{path.name} was not written, because .ply holds no lines, which particles in a plane give. "
-                                  "Formats that do are .vtp, .csv and .npz.")
+                                  "Formats that do are .vtp, .csv, .obj and .npz.")
         if ending == ".npz":
             arrays = {f.name: getattr(self, f.name) for f in fields(self)
                       if isinstance(getattr(self, f.name), np.ndarray)}
@@ -183,7 +183,8 @@ class Surface(Result):
             with Film(path) as film:
                 film.add(self)
         elif ending in (".vtp", ".vtk", ".stl", ".obj"):
-            surface = self if ending[1] == "v" else replace(self, line_offsets=None, line_points=None, band_value=None)
+            has_lines = ending[1] == "v" or not len(self.triangles)
+            surface = self if has_lines else replace(self, line_offsets=None, line_points=None, band_value=None)
             surface.to_pyvista().save(path)
         elif ending:
             import meshio

@@ -64,10 +64,12 @@ class Command(unittest.TestCase):
         self.run_it("surface", "a.ply", "--smoothing-length", "0.13", "--scalar", "R", status=1, given=given)
         self.assertIn("a.ply was not written, because .ply holds no lines", self.said)
         words = ["--smoothing-length", "0.13", "--scalar", "R"]
-        self.run_it("surface", "a.obj", *words, status=1, given=given)
-        self.assertIn("a.obj was not written, because the surface has no triangles", self.said)
-        for path in self.run_it("surface", "a.obj", *words, "--iso", "0.4,0.6", "--filled", given=given):
-            self.assertEqual({line[:2] for line in Path(path).read_text().splitlines()} - {"# "}, {"v ", "vn", "f "}, path)
+        for more, kinds in ((["--filled"], {"v", "vn", "f"}), ([], {"v", "l"})):
+            mine, its = ([line.split() for line in Path(path).read_text().splitlines()] for path in self.run_it(
+                "surface", "a.obj", *words, "--iso", "0.4,0.6", *more, given=given))
+            for rows in (mine, its):
+                self.assertEqual({row[0] for row in rows if row} - {"#"}, kinds)
+            self.assertEqual(*([row[1:] for row in rows if row and row[0] in "lf"] for rows in (mine, its)))
         paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4", given=given)
         mine, its = (list(csv.reader(Path(path).read_text().splitlines())) for path in paths)
         mine, its = ({column[0]: column[1:] for column in zip(*table)} for table in (mine, its))

@@ -205,25 +205,18 @@ static mcor_status mcor_run_derive(
 {
   mcor_derive_run run = *(const mcor_derive_run*)data;
   mcor_derivatives* d = run.derivatives;
-  const size_t n = (size_t)input->count, arrays = (size_t)input->attribute_count;
   run.input = input;
   mcor_free_derivatives(d); /* results of an earlier attempt */
   d->statistics.dimension = options->dimension;
   MCOR_TRY(mcor_check_input(context, input, options));
   d->count = input->count;
   d->attribute_count = input->attribute_count;
-  d->gradients = calloc(arrays + 1, sizeof(double*));
-  d->corrected = calloc(n + 1, 1);
-  d->attribute_not_finite = calloc(arrays + 1, sizeof(int64_t));
-  MCOR_TRY(mcor_allocated(context, d->gradients && d->corrected && d->attribute_not_finite));
+  d->corrected = calloc((size_t)input->count + 1, 1);
+  d->attribute_not_finite = calloc((size_t)input->attribute_count + 1, sizeof(int64_t));
+  MCOR_TRY(mcor_allocated(context, d->corrected && d->attribute_not_finite));
   MCOR_TRY(mcor_list_components(context, input, false, d->attribute_not_finite));
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const size_t width = (size_t)mcor_components(&input->attributes[a]);
-    const bool some = d->attribute_not_finite[a] < 0;
-    d->gradients[a] = some ? calloc(n + 1, 3 * width * sizeof(double)) : NULL;
-    MCOR_TRY(mcor_allocated(context, !some || d->gradients[a]));
-  }
+  MCOR_TRY(
+    mcor_make_arrays(context, input, d->attribute_not_finite, input->count, 3, &d->gradients));
   if (context->attributes.varying_count == 0 || input->count == 0)
   {
     return MCOR_OK;
@@ -276,11 +269,7 @@ void mcor_free_derivatives(mcor_derivatives* derivatives)
   {
     return;
   }
-  for (int a = 0; derivatives->gradients && a < derivatives->attribute_count; ++a)
-  {
-    free(derivatives->gradients[a]);
-  }
-  free(derivatives->gradients);
+  mcor_free_arrays(derivatives->gradients, derivatives->attribute_count);
   free(derivatives->corrected);
   free(derivatives->attribute_not_finite);
   *derivatives = (mcor_derivatives){ 0 };

@@ -15,8 +15,8 @@
 
 /* Longest side of a cell, in smallest scaled smoothing lengths. */
 #define MCOR_FLUX_CELL 0.75
-/* Most cells near particles, of all sections together; the farthest that a section may be from the
- * origin, in cells, so that doubles can tell the corners of cells apart. */
+/* Most cells near particles, of all sections together; most cells of a piece along a side, so that
+ * doubles can tell the corners of cells apart. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
 /* A piece's accuracy is relative to its greatest speed and density, but at least to this share of
@@ -152,7 +152,11 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       int side = 0;
       mcor_place_sample(job->form, &piece, job->form->points - 1, middle);
       const bool is_near = mcor_is_near(job, &piece);
-      if (is_near && mcor_longest_side(job, &piece, &side) > cell)
+      const double cells = mcor_longest_side(job, &piece, &side) / cell;
+      MCOR_FAIL_IF(is_near && cells > MCOR_FLUX_MOST_ALONG, context, MCOR_INVALID_ARGUMENT,
+        MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece.section).text, cells,
+        context->measure.h_min, MCOR_FLUX_MOST_ALONG);
+      if (is_near && cells > 1)
       {
         MCOR_TRY(mcor_halve_piece(job, &piece));
         continue;
@@ -354,7 +358,7 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 /* ---- the call ---- */
 
 /* Finds where pieces are sampled; the lattice must be known. */
-static mcor_status mcor_bound_pieces(mcor_flux_job* job)
+static void mcor_bound_pieces(mcor_flux_job* job)
 {
   mcor_context* context = job->base.context;
   const mcor_lattice* lattice = &context->lattice;
@@ -374,15 +378,6 @@ static mcor_status mcor_bound_pieces(mcor_flux_job* job)
     job->low[a] = boxed ? fmax(low, box[2 * a] - 2 * cell) : low;
     job->high[a] = boxed ? fmin(high, box[2 * a + 1] + 2 * cell) : high;
   }
-  for (int64_t i = 0; i < 9 * job->pieces.count; ++i)
-  {
-    const mcor_flux_piece* piece = &job->pieces.of[i / 9];
-    const double cells = fabs(piece->corner[i / 3 % 3][i % 3]) / cell;
-    MCOR_FAIL_IF(!(cells <= MCOR_FLUX_MOST_ALONG), context, MCOR_INVALID_ARGUMENT,
-      MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece->section).text, cells,
-      context->measure.h_min, MCOR_FLUX_MOST_ALONG);
-  }
-  return MCOR_OK;
 }
 
 /* Sets the floors of speed and density, and the units in which sums are whole numbers, from the
@@ -472,7 +467,7 @@ static mcor_status mcor_flux_particles(
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_bound_pieces(job));
+  mcor_bound_pieces(job);
   return mcor_run_points(&job->base, input, mcor_add_fluxes);
 }
 

@@ -369,7 +369,6 @@ mcor_status mcor_run_points(
 static mcor_status mcor_gauge_particles(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
-  context->attributes.kept = 0;
   MCOR_TRY(mcor_list_components(context, input, false, NULL));
   if (input->count == 0 || job->line_count == 0)
   {

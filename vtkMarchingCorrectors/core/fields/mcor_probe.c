@@ -42,60 +42,37 @@ typedef struct mcor_probe_job
   double threshold;
 } mcor_probe_job;
 
-/* A chunk of the batch's points: their weights, and their numbers in the caller's order. */
-typedef struct mcor_probe_chunk
-{
-  int64_t first;
-  int count;
-  double weight[MCOR_CHUNK];
-  int64_t to[MCOR_CHUNK];
-  bool valid[MCOR_CHUNK];
-} mcor_probe_chunk;
-
-/* Writes component c of the attributes on the device, and its gradient, to the results. The
+/* Writes component c of the attributes on the device, and its gradient, at point i of the batch,
+ * which is point `to` of the caller. weight: the weight sum there; slope: its gradient. The
  * component's scale is a power of 2, so dividing by the scale is exact. */
-static void mcor_put_component(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
+static void mcor_put_component(
+  const mcor_probe_job* job, int64_t i, int64_t to, int c, double weight, const double slope[3])
 {
   const mcor_context* context = job->run->context;
   const mcor_attributes* attributes = &context->attributes;
   const mcor_component* component = &attributes->varying[attributes->first + c];
-  const int width = mcor_components(&job->run->input->attributes[component->attribute]);
+  const mcor_samples* samples = job->run->samples;
+  const int attribute = component->attribute;
+  const int64_t at = i * attributes->count + c,
+                place = to * mcor_components(&job->run->input->attributes[attribute]) +
+    component->component;
   const double shift = component->shift, unscale = 1 / component->scale;
+  const double sum = mcor_get_real(context, job->sums, at), mean = sum / weight;
   const bool is_sum = job->run->is_sum;
   /* Rounding must not take a mean out of the range of its values. Only with M'4, which is partly
    * negative, can a mean lie there. */
   const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
-  const mcor_samples* samples = job->run->samples;
-  double* values = samples->values[component->attribute] + component->component;
-  for (int i = 0; i < chunk->count; ++i)
+  const double value = is_sum ? sum * unscale + shift * weight : mean * unscale + shift;
+  samples->values[attribute][place] = value < low ? low : value > high ? high : value;
+  for (int a = 0; a < 3 && samples->gradients; ++a)
   {
-    if (chunk->valid[i])
-    {
-      const double sum =
-        mcor_get_real(context, job->sums, (chunk->first + i) * attributes->count + c);
-      const double weight = chunk->weight[i];
-      const double value = is_sum ? sum * unscale + shift * weight : sum / weight * unscale + shift;
-      values[chunk->to[i] * width] = value < low ? low : value > high ? high : value;
-    }
-  }
-  for (int i = 0; i < 3 * chunk->count && samples->gradients; ++i)
-  {
-    const int p = i / 3, a = i % 3;
-    const int64_t point = chunk->first + p, at = point * attributes->count + c;
-    const double weight = chunk->weight[p];
-    const double mean = mcor_get_real(context, job->sums, at) / weight;
-    const double slope = mcor_get_real(context, job->gradients, 3 * at + a);
-    const double weight_slope = mcor_get_real(context, job->weight_gradient, 3 * point + a);
-    if (chunk->valid[p])
-    {
-      samples
-        ->gradients[component->attribute][3 * (chunk->to[p] * width + component->component) + a] =
-        (is_sum ? slope / component->scale + shift * weight_slope
-                : (slope - mean * weight_slope) / weight / component->scale) /
-        context->lattice.cube;
-    }
+    const double rise = mcor_get_real(context, job->gradients, 3 * at + a);
+    samples->gradients[attribute][3 * place + a] =
+      (is_sum ? rise / component->scale + shift * slope[a]
+              : (rise - mean * slope[a]) / weight / component->scale) /
+      context->lattice.cube;
   }
 }
 
@@ -105,35 +82,26 @@ static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
   const mcor_probe_run* run = job->run;
   const mcor_context* context = run->context;
   const mcor_samples* samples = run->samples;
-  mcor_probe_chunk chunk;
-  for (chunk.first = first; chunk.first < last; chunk.first += MCOR_CHUNK)
+  for (int64_t i = first; i < last; ++i)
   {
-    chunk.count = mcor_chunk_of(last - chunk.first);
-    for (int i = 0; i < chunk.count; ++i)
+    const int64_t to = run->first + ((const cl_int*)job->order)[i];
+    const double weight = mcor_get_real(context, job->weight, i);
+    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
+    double slope[3] = { 0 };
+    samples->weight_sum[to] = weight;
+    samples->valid[to] = valid;
+    if (run->weights_with_solids)
     {
-      const int64_t to = run->first + ((const cl_int*)job->order)[chunk.first + i];
-      const double weight = mcor_get_real(context, job->weight, chunk.first + i);
-      const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
-      chunk.weight[i] = weight;
-      chunk.to[i] = to;
-      chunk.valid[i] = valid;
-      samples->weight_sum[to] = weight;
-      samples->valid[to] = valid;
-      if (run->weights_with_solids)
-      {
-        run->weights_with_solids[to] =
-          mcor_get_real(context, job->weight_with_solids, chunk.first + i);
-      }
-      for (int a = 0; a < 3 && samples->weight_gradient; ++a)
-      {
-        samples->weight_gradient[3 * to + a] =
-          mcor_get_real(context, job->weight_gradient, 3 * (chunk.first + i) + a) /
-          context->lattice.cube;
-      }
+      run->weights_with_solids[to] = mcor_get_real(context, job->weight_with_solids, i);
     }
-    for (int c = 0; c < context->attributes.count; ++c)
+    for (int a = 0; a < 3 && samples->weight_gradient; ++a)
     {
-      mcor_put_component(job, &chunk, c);
+      slope[a] = mcor_get_real(context, job->weight_gradient, 3 * i + a);
+      samples->weight_gradient[3 * to + a] = slope[a] / context->lattice.cube;
+    }
+    for (int c = 0; c < context->attributes.count && valid; ++c)
+    {
+      mcor_put_component(job, i, to, c, weight, slope);
     }
   }
   (void)slice;
@@ -182,18 +150,14 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
   mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
-  mcor_mapping views[6] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
-    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums } };
-  int count = 3;
-  if (run->weights_with_solids)
-  {
-    views[count++] = (mcor_mapping){ &run->weight_with_solids, n * real, &job.weight_with_solids };
-  }
-  if (run->samples->weight_gradient)
-  {
-    views[count++] = (mcor_mapping){ &run->weight_gradient, n * 3 * real, &job.weight_gradient };
-    views[count++] = (mcor_mapping){ &run->gradients, n * 3 * arrays * real, &job.gradients };
-  }
+  const size_t solids = run->weights_with_solids ? n * real : 0;
+  const size_t slopes = run->samples->weight_gradient ? n * 3 * real : 0;
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
+    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
+    { &run->weight_with_solids, solids, &job.weight_with_solids },
+    { &run->weight_gradient, slopes, &job.weight_gradient },
+    { &run->gradients, slopes * arrays, &job.gradients } };
+  const int count = sizeof views / sizeof *views;
   mcor_status status = mcor_map_all(context, views, count);
   MCOR_THEN(status,
     mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));
@@ -244,10 +208,27 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
   return MCOR_OK;
 }
 
-/* Allocates zeros. Returns NULL only if memory runs out. */
-static void* mcor_zeros(size_t count, size_t size)
+mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
+  const int64_t* not_finite, int64_t count, int numbers, double*** arrays)
 {
-  return calloc(count + 1, size);
+  *arrays = calloc((size_t)input->attribute_count + 1, sizeof **arrays);
+  bool complete = *arrays;
+  for (int a = 0; a < input->attribute_count && complete; ++a)
+  {
+    const size_t width = (size_t)numbers * (size_t)mcor_components(&input->attributes[a]);
+    (*arrays)[a] = not_finite[a] < 0 ? calloc((size_t)count + 1, width * sizeof(double)) : NULL;
+    complete = (*arrays)[a] || not_finite[a] >= 0;
+  }
+  return mcor_allocated(context, complete);
+}
+
+void mcor_free_arrays(double** arrays, int count)
+{
+  for (int a = 0; a < count && arrays; ++a)
+  {
+    free(arrays[a]);
+  }
+  free(arrays);
 }
 
 /* Lists the components of the attributes, and allocates the results. Points that no particle
@@ -255,42 +236,29 @@ static void* mcor_zeros(size_t count, size_t size)
 static mcor_status mcor_make_samples(
   mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
 {
-  const size_t n = (size_t)s->count, arrays = (size_t)input->attribute_count;
-  s->weight_sum = mcor_zeros(n, sizeof(double));
-  s->valid = mcor_zeros(n, 1);
-  s->weight_gradient = gradients ? mcor_zeros(n, 3 * sizeof(double)) : NULL;
-  s->values = mcor_zeros(arrays, sizeof(double*));
-  s->gradients = gradients ? mcor_zeros(arrays, sizeof(double*)) : NULL;
-  s->attribute_not_finite = mcor_zeros(arrays, sizeof(int64_t));
+  const size_t n = (size_t)s->count + 1,
+               numbers = ((size_t)input->attribute_count + 1) * sizeof(int64_t);
+  s->weight_sum = calloc(n, sizeof(double));
+  s->valid = calloc(n, 1);
+  s->weight_gradient = gradients ? calloc(n, 3 * sizeof(double)) : NULL;
+  s->attribute_not_finite = malloc(numbers);
   s->attribute_count = input->attribute_count;
   MCOR_TRY(mcor_allocated(context,
-    s->weight_sum && s->valid && s->values && s->attribute_not_finite &&
-      (!gradients || (s->weight_gradient && s->gradients))));
+    s->weight_sum && s->valid && s->attribute_not_finite && (s->weight_gradient || !gradients)));
+  memset(s->attribute_not_finite, -1, numbers);
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input) ||
     context->run.options->globals || input->attribute_count != context->kept.input.attribute_count)
   {
     context->attributes.kept = 0;
   }
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    s->attribute_not_finite[a] = -1;
-  }
   if (!mcor_has_attributes(context, input))
   {
     MCOR_TRY(mcor_list_components(context, input, false, s->attribute_not_finite));
   }
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const size_t width = (size_t)mcor_components(&input->attributes[a]);
-    const bool some = s->attribute_not_finite[a] < 0;
-    s->values[a] = some ? mcor_zeros(n, width * sizeof(double)) : NULL;
-    if (some && gradients)
-    {
-      s->gradients[a] = mcor_zeros(n, 3 * width * sizeof(double));
-    }
-    MCOR_TRY(mcor_allocated(context, !some || (s->values[a] && (!gradients || s->gradients[a]))));
-  }
-  return MCOR_OK;
+  MCOR_TRY(mcor_make_arrays(context, input, s->attribute_not_finite, s->count, 1, &s->values));
+  return gradients
+    ? mcor_make_arrays(context, input, s->attribute_not_finite, s->count, 3, &s->gradients)
+    : MCOR_OK;
 }
 
 static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* options)
@@ -424,13 +392,8 @@ void mcor_free_samples(mcor_samples* samples)
   {
     return;
   }
-  for (int a = 0; a < samples->attribute_count; ++a)
-  {
-    free(samples->values ? samples->values[a] : NULL);
-    free(samples->gradients ? samples->gradients[a] : NULL);
-  }
-  free(samples->values);
-  free(samples->gradients);
+  mcor_free_arrays(samples->values, samples->attribute_count);
+  mcor_free_arrays(samples->gradients, samples->attribute_count);
   free(samples->attribute_not_finite);
   free(samples->weight_sum);
   free(samples->weight_gradient);

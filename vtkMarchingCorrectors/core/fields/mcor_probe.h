@@ -36,6 +36,11 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
 /* mcor_probe.c. Evaluates the attributes on the device at points [first, last). */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
+/* Allocates zeros: [attribute_count] -> [count][components][numbers], NULL for attributes that are
+ * not finite. Free them with mcor_free_arrays, even after a failure. */
+mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
+  const int64_t* not_finite, int64_t count, int numbers, double*** arrays);
+void mcor_free_arrays(double** arrays, int count);
 /* Ends a call without a surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 

@@ -338,7 +338,6 @@ struct mcor_context
   mcor_buffer scan_sums;
   mcor_sort_data sort;
   double report_interval; /* seconds between progress reports, at least */
-  int probe_batch;        /* points of a probe's batch; 0 before the first probe */
 
   /* The particles. */
   mcor_kept kept;

@@ -105,9 +105,12 @@ static mcor_status mcor_halve_piece(mcor_flux_job* job, const mcor_flux_piece* p
   return MCOR_OK;
 }
 
-/* Whether particles, and this call's share of the section, may be near a piece. */
+/* Whether particles may be near a piece. There are particles all along a period. */
 static bool mcor_is_near(const mcor_flux_job* job, const mcor_flux_piece* piece)
 {
+  const mcor_measure* measure = &job->base.context->measure;
+  const mcor_lattice* lattice = &job->base.context->lattice;
+  bool near = true;
   for (int a = 0; a < 3; ++a)
   {
     double low = INFINITY, high = -INFINITY;
@@ -116,12 +119,11 @@ static bool mcor_is_near(const mcor_flux_job* job, const mcor_flux_piece* piece)
       low = fmin(low, piece->corner[c][a]);
       high = fmax(high, piece->corner[c][a]);
     }
-    if (high < job->low[a] || low > job->high[a])
-    {
-      return false;
-    }
+    near = near &&
+      (lattice->period[a] > 0 ||
+        (high >= measure->low[a] - lattice->cube && low <= measure->high[a] + lattice->cube));
   }
-  return true;
+  return near;
 }
 
 /* Finds sample k of a piece. */
@@ -161,7 +163,7 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
         MCOR_TRY(mcor_halve_piece(job, &piece));
         continue;
       }
-      if (!is_near || (job->base.has_box && !mcor_owns_point(context, middle, job->owned)))
+      if (!is_near || !mcor_owns_point(&job->base, middle))
       {
         job->area_done += mcor_piece_size(job, &piece);
         continue;
@@ -357,29 +359,6 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 
 /* ---- the call ---- */
 
-/* Finds where pieces are sampled; the lattice must be known. */
-static void mcor_bound_pieces(mcor_flux_job* job)
-{
-  mcor_context* context = job->base.context;
-  const mcor_lattice* lattice = &context->lattice;
-  const double* box = job->base.box;
-  job->smoothing_length = context->run.options->h_scale * context->measure.h_min;
-  const double cell = MCOR_FLUX_CELL * job->smoothing_length;
-  if (job->base.has_box)
-  {
-    mcor_own_cells(context, box, job->owned);
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool periodic = lattice->period[a] > 0; /* there are particles all along a period */
-    const bool boxed = job->base.has_box && !periodic;
-    const double low = periodic ? -INFINITY : context->measure.low[a] - lattice->cube;
-    const double high = periodic ? INFINITY : context->measure.high[a] + lattice->cube;
-    job->low[a] = boxed ? fmax(low, box[2 * a] - 2 * cell) : low;
-    job->high[a] = boxed ? fmin(high, box[2 * a + 1] + 2 * cell) : high;
-  }
-}
-
 /* Sets the floors of speed and density, and the units in which sums are whole numbers, from the
  * ranges of velocity and density. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
@@ -467,7 +446,7 @@ static mcor_status mcor_flux_particles(
   {
     return MCOR_OK;
   }
-  mcor_bound_pieces(job);
+  job->smoothing_length = options->h_scale * context->measure.h_min;
   return mcor_run_points(&job->base, input, mcor_add_fluxes);
 }
 

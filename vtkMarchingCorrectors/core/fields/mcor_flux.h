@@ -45,8 +45,6 @@ typedef struct mcor_flux_job
   double speed_floor, density_floor;
   mcor_flux_section* found; /* [section_count] */
   mcor_findings around;     /* ranges along x, y, z that hold all sections */
-  double low[3], high[3];   /* pieces beyond are nobody's, or of other ranks */
-  double owned[3][2];       /* the cells of the box, if there is one */
   double cells, area_done;  /* how many cells there were so far; area of the pieces that are done */
   MCOR_LIST(mcor_flux_piece) pieces; /* to do */
   mcor_flux_piece* batch;            /* pieces under way */

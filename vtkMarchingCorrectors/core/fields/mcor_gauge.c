@@ -3,8 +3,9 @@
 
 /* Gauges: where lines cross the free surface. The probe evaluates the weight sums.
  *
- * Ranks share lines sample by sample. A rank owns the samples in cells of its box. It also
- * evaluates two more samples on either side, so it finds the same crossings as one process does. */
+ * Ranks share lines sample by sample. A rank owns the samples in cells of its box: the extrema at
+ * them, and the crossings between each and the next sample. It has the particles around two more
+ * samples on either side, so it finds the same crossings as one process does. */
 
 #include "mcor_gauge.h"
 #include "mcor_box.h"
@@ -56,16 +57,30 @@ mcor_gauge_label mcor_label_gauge(const char* name, int64_t number)
   return label;
 }
 
-static mcor_status mcor_check_line(
-  mcor_context* context, const mcor_gauge_line* line, int64_t number)
+/* Checks a line, and turns it into the plane z = 0, if the particles lie in a plane. */
+static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
 {
-  const mcor_gauge_label label = mcor_label_gauge(line->name, number);
-  const double *from = line->from, *to = line->to, length = mcor_gauge_length(line);
+  mcor_context* context = job->base.context;
+  const mcor_plane* plane = &context->plane;
+  const mcor_gauge_line* given = &job->given[number];
+  const mcor_gauge_label label = mcor_label_gauge(given->name, number);
+  const double *from = given->from, *to = given->to, length = mcor_gauge_length(given);
+  mcor_gauge_line* line = &job->lines[number];
+  *line = *given;
   for (int a = 0; a < 3; ++a)
   {
+    const int axis = mcor_plane_axis(plane, a);
+    const double shift = a == 2 ? plane->at : 0;
     MCOR_FAIL_IF(!isfinite(from[a]) || !isfinite(to[a]), context, MCOR_INVALID_ARGUMENT,
       MCOR_SAY(GAUGE_NOT_FINITE), label.text, from[0], from[1], from[2], to[0], to[1], to[2]);
+    line->from[a] = from[axis] - shift;
+    line->to[a] = to[axis] - shift;
+    mcor_add_range(
+      &job->around, a, fmin(line->from[a], line->to[a]), fmax(line->from[a], line->to[a]));
   }
+  MCOR_FAIL_IF(mcor_is_plane(context) && (line->from[2] != 0 || line->to[2] != 0), context,
+    MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE), label.text,
+    'x' + mcor_plane_axis(plane, 2), plane->at);
   MCOR_FAIL_IF(!(length > 0), context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_WITHOUT_LENGTH),
     label.text, from[0], from[1], from[2]);
   MCOR_FAIL_IF(
@@ -81,22 +96,10 @@ static double mcor_gauge_step(double h_scale, double smoothing_length_min)
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
 }
 
-void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2])
+bool mcor_owns_point(const mcor_level_job* job, const double point[3])
 {
-  const mcor_lattice* lattice = &context->lattice;
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool periodic = lattice->period[a] > 0;
-    cells[a][0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    cells[a][1] = periodic ? cells[a][0] + lattice->period[a] : (double)lattice->last[a];
-    mcor_place_sides(lattice, a, box, cells[a]);
-  }
-}
-
-bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2])
-{
-  const mcor_lattice* lattice = &context->lattice;
-  for (int a = 0; a < 3; ++a)
+  const mcor_lattice* lattice = &job->context->lattice;
+  for (int a = 0; a < 3 && job->has_box; ++a)
   {
     double cell = floor(point[a] / lattice->edge[a] - (double)lattice->origin[a]);
     if (lattice->period[a] > 0)
@@ -107,45 +110,12 @@ bool mcor_owns_point(const mcor_context* context, const double point[3], double 
     {
       cell = fmin(fmax(cell, (double)lattice->first[a]), (double)lattice->last[a] - 1);
     }
-    if (cell < cells[a][0] || cell >= cells[a][1])
+    if (cell < job->owned[a][0] || cell >= job->owned[a][1])
     {
       return false;
     }
   }
   return true;
-}
-
-/* Appends the owned samples of a line, each run of them with up to two neighbours on either side. */
-static mcor_status mcor_append_owned(mcor_gauge_job* job, const mcor_gauge_samples* whole)
-{
-  double cells[3][2], point[3];
-  const mcor_gauge_line* line = &job->lines[whole->line];
-  mcor_gauge_samples samples = *whole;
-  bool was_owned = false;
-  samples.begin = whole->first;
-  if (job->base.has_box)
-  {
-    mcor_own_cells(job->base.context, job->base.box, cells);
-  }
-  for (int64_t i = whole->first; i <= whole->last + 1; ++i)
-  {
-    mcor_point_between(line->from, line->to, (double)i / (double)whole->steps, point);
-    const bool owned =
-      i <= whole->last && (!job->base.has_box || mcor_owns_point(job->base.context, point, cells));
-    if (owned && !was_owned)
-    {
-      samples.own_first = i;
-      samples.first = i - 2 > whole->first ? i - 2 : whole->first;
-    }
-    else if (!owned && was_owned)
-    {
-      samples.own_last = i - 1;
-      samples.last = i + 1 < whole->last ? i + 1 : whole->last;
-      MCOR_APPEND(job->base.context, &job->samples, samples);
-    }
-    was_owned = owned;
-  }
-  return MCOR_OK;
 }
 
 /* Appends the samples of a line where particles may reach it. The lattice must be known. */
@@ -194,7 +164,8 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     whole.first = whole.first >= 2 ? whole.last - 2 : 0;
     whole.last = whole.first + 2;
   }
-  return mcor_append_owned(job, &whole);
+  MCOR_APPEND(context, &job->samples, whole);
+  return MCOR_OK;
 }
 
 /* ---- readings ---- */
@@ -268,7 +239,7 @@ static mcor_status mcor_read_lines(
         gauges->crossings[gauges->crossing_count++] = sorted[i].place;
       }
     }
-    mcor_read_line(&job->lines[l], full, reading, gauges->crossings);
+    mcor_read_line(&job->given[l], full, reading, gauges->crossings);
   }
   free(sorted);
   return MCOR_OK;
@@ -354,6 +325,15 @@ mcor_status mcor_run_points(
   job->run = &run;
   job->with_solids =
     mcor_ends_at_solids(context) ? malloc(MCOR_GAUGE_BATCH * sizeof *places) : NULL;
+  for (int a = 0; a < 3 && job->has_box; ++a)
+  {
+    const mcor_lattice* lattice = &context->lattice;
+    const bool periodic = lattice->period[a] > 0;
+    double* cells = job->owned[a];
+    cells[0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
+    cells[1] = periodic ? cells[0] + lattice->period[a] : (double)lattice->last[a];
+    mcor_place_sides(lattice, a, job->box, cells);
+  }
   mcor_status status =
     mcor_allocated(context, places && valid && (job->with_solids || !mcor_ends_at_solids(context)));
   MCOR_THEN(status, mcor_load_attributes(context, input, 0));
@@ -369,22 +349,20 @@ mcor_status mcor_run_points(
 static mcor_status mcor_gauge_particles(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
+  MCOR_TRY(mcor_check_input(context, input, options));
+  for (int64_t i = 0; i < job->line_count; ++i)
+  {
+    MCOR_TRY(mcor_take_line(job, i));
+  }
   MCOR_TRY(mcor_list_components(context, input, false, NULL));
   if (input->count == 0 || job->line_count == 0)
   {
     return MCOR_OK;
   }
-  mcor_findings around = mcor_no_findings();
-  for (int64_t i = 0; i < 3 * job->line_count; ++i)
-  {
-    const mcor_gauge_line* line = &job->lines[i / 3];
-    const double from = line->from[i % 3], to = line->to[i % 3];
-    mcor_add_range(&around, (int)(i % 3), fmin(from, to), fmax(from, to));
-  }
   const double margin = options->globals
     ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
     : 0;
-  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &around));
+  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &job->around));
   MCOR_TRY(mcor_prepare(context, input, options));
   for (int64_t i = 0; i < job->line_count && context->grid.count > 0; ++i)
   {
@@ -393,60 +371,22 @@ static mcor_status mcor_gauge_particles(
   return context->grid.count > 0 ? mcor_run_points(&job->base, input, mcor_gauge_all) : MCOR_OK;
 }
 
-/* Turns the lines into the plane z = 0. */
-static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* lines)
-{
-  const mcor_plane* plane = &job->base.context->plane;
-  const int w = mcor_plane_axis(plane, 2);
-  for (int64_t i = 0; i < job->line_count; ++i)
-  {
-    const mcor_gauge_line* line = &job->lines[i];
-    const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
-      (line->from[w] != plane->at || line->to[w] != plane->at);
-    MCOR_FAIL_IF(off, job->base.context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE),
-      mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
-    lines[i] = *line;
-    for (int a = 0; a < 3; ++a)
-    {
-      const double shift = a == 2 ? plane->at : 0;
-      lines[i].from[a] = line->from[mcor_plane_axis(plane, a)] - shift;
-      lines[i].to[a] = line->to[mcor_plane_axis(plane, a)] - shift;
-    }
-  }
-  job->lines = lines;
-  return MCOR_OK;
-}
-
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_gauge_job job = *(const mcor_gauge_job*)data;
-  mcor_gauge_line* flat = malloc((size_t)job.line_count * sizeof *flat + 1);
   const void* all = NULL;
   int64_t count = 0;
   mcor_free_gauges(job.gauges); /* results of an earlier attempt */
-  mcor_status status = mcor_allocated(context, flat);
-  if (mcor_is_plane(context))
-  {
-    MCOR_THEN(status, mcor_flatten_lines(&job, flat));
-  }
-  MCOR_THEN(status, mcor_check_input(context, input, options));
-  for (int64_t i = 0; i < job.line_count; ++i)
-  {
-    MCOR_THEN(status, mcor_check_line(context, &job.lines[i], i));
-  }
+  job.lines = malloc((size_t)job.line_count * sizeof *job.lines + 1);
+  mcor_status status = mcor_allocated(context, job.lines);
   MCOR_THEN(status, mcor_gauge_particles(context, input, options, &job));
   MCOR_THEN(status,
     mcor_gather_records(
       context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));
   MCOR_THEN(status, mcor_read_lines(&job, all, count));
-  for (int64_t i = 0; i < job.gauges->count; ++i)
-  {
-    double* place = job.gauges->readings[i].place; /* NaN where dry */
-    mcor_unflatten_doubles(&context->plane, place, 1, place[2] + context->plane.at);
-  }
   mcor_free_gauge_parts(&job);
-  free(flat);
+  free(job.lines);
   return status != MCOR_OK || input->count == 0 || job.line_count == 0 ? status
                                                                        : mcor_finish_field(context);
 }
@@ -492,9 +432,10 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   mcor_input without = *input;
   without.attribute_count = 0;
   mcor_gauge_job job = { .base = { .context = context, .who = "Gauges", .body = mcor_run_gauge },
-    .lines = lines,
+    .given = lines,
     .line_count = count,
-    .gauges = gauges };
+    .gauges = gauges,
+    .around = mcor_no_findings() };
   const mcor_status status = mcor_call_level(&job.base, &without, options, &gauges->statistics);
   if (status != MCOR_OK)
   {

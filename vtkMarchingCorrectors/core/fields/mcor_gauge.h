@@ -18,13 +18,10 @@ typedef struct mcor_gauge_part
 
 typedef MCOR_LIST(mcor_gauge_part) mcor_gauge_parts;
 
-/* Samples of a line, or of a part of one: at i / steps for first <= i <= last; no particle
- * reaches the rest. This call owns samples own_first to own_last: the extrema at them, and the
- * crossings between each and the next sample. */
+/* Samples of a line: at i / steps for first <= i <= last; no particle reaches the rest. */
 typedef struct mcor_gauge_samples
 {
-  int64_t line, steps, first, last, own_first, own_last;
-  int64_t begin; /* first sample of the whole line */
+  int64_t line, steps, first, last;
 } mcor_gauge_samples;
 
 /* A place on a line. A record's place is a crossing or, below 0, one of these facts. */
@@ -47,6 +44,7 @@ typedef struct mcor_level_job
   double level;
   bool has_box;
   double box[6];       /* the box of what this call owns, in the call's coordinates */
+  double owned[3][2];  /* its cells along x, y, z */
   mcor_probe_run* run; /* evaluates the field */
   double* with_solids; /* [MCOR_GAUGE_BATCH], weight sums of fluid and solids; NULL: no solids */
 } mcor_level_job;
@@ -55,9 +53,11 @@ typedef struct mcor_level_job
 typedef struct mcor_gauge_job
 {
   mcor_level_job base;          /* must be first */
-  const mcor_gauge_line* lines; /* [line_count] */
+  const mcor_gauge_line* given; /* [line_count] */
+  mcor_gauge_line* lines;       /* [line_count] the same in the device's coordinates */
   int64_t line_count;
   mcor_gauges* gauges;
+  mcor_findings around; /* ranges along x, y, z that hold all lines */
   MCOR_LIST(mcor_gauge_samples) samples;
   mcor_gauge_places records;
   mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
@@ -92,10 +92,8 @@ mcor_status mcor_run_points(
  * near solids so that they fall below the level where the fluid ends at them. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
-/* mcor_own_cells finds the cells of a box along x, y, z; mcor_owns_point tells whether a point is
- * in one of them. */
-void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);
-bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2]);
+/* Whether a point is in a cell that this call owns. */
+bool mcor_owns_point(const mcor_level_job* job, const double point[3]);
 
 /* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
  * results to its records. */

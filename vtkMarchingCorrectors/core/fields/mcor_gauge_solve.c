@@ -61,15 +61,27 @@ static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 typedef struct mcor_gauge_row
 {
   int64_t line, count;
-  int64_t own_first, own_last; /* see mcor_gauge_samples; counted in this row */
-  int64_t before;              /* number of places on the line before this row */
-  double first, step, last;    /* the line's first place; the step; this row's last place */
-  const double* weight;        /* [count] */
+  const mcor_gauge_samples* samples; /* whose row this is; NULL: a part's */
+  double first, step, last;          /* the first place; the step; the last place */
+  const double* weight;              /* [count] */
 } mcor_gauge_row;
 
 static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 {
-  return i + 1 == row->count ? row->last : row->first + (double)(row->before + i) * row->step;
+  return i + 1 == row->count ? row->last : row->first + (double)i * row->step;
+}
+
+/* Whether this call owns place i of a row. */
+static bool mcor_owns_place(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+{
+  double point[3];
+  if (!row->samples || !job->base.has_box)
+  {
+    return true;
+  }
+  const double place = (double)(row->samples->first + i) / (double)row->samples->steps;
+  mcor_point_between(job->lines[row->line].from, job->lines[row->line].to, place, point);
+  return mcor_owns_point(&job->base, point);
 }
 
 static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
@@ -109,21 +121,18 @@ static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects, bool* found)
 {
+  const double level = job->base.level;
   *found = false;
-  for (int64_t i = row->own_first; i <= row->own_last && i + 1 < row->count; ++i)
+  for (int64_t i = 0; i < row->count; ++i)
   {
-    if ((row->weight[i] >= job->base.level) != (row->weight[i + 1] >= job->base.level))
+    const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
+    const bool crossed = (row->weight[i] >= level) != (row->weight[high] >= level);
+    const bool suspect = suspects && mcor_row_suspect(level, row, i);
+    if ((crossed || suspect) && mcor_owns_place(job, row, i))
     {
-      *found = true;
-      MCOR_TRY(mcor_append_part(job, &job->changed, row, i, i + 1));
-    }
-  }
-  for (int64_t i = row->own_first; i <= row->own_last && suspects; ++i)
-  {
-    if (mcor_row_suspect(job->base.level, row, i))
-    {
-      const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
-      MCOR_TRY(mcor_append_part(job, suspects, row, low, high));
+      *found = *found || crossed;
+      MCOR_TRY(crossed ? mcor_append_part(job, &job->changed, row, i, high) : MCOR_OK);
+      MCOR_TRY(suspect ? mcor_append_part(job, suspects, row, low, high) : MCOR_OK);
     }
   }
   return MCOR_OK;
@@ -157,7 +166,7 @@ static mcor_status mcor_look_closer(
     weight[0] = part->low_weight;
     memcpy(weight + 1, job->weights + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
     weight[sections] = part->high_weight;
-    const mcor_gauge_row row = { part->line, sections + 1, 0, sections, 0, part->low,
+    const mcor_gauge_row row = { part->line, sections + 1, NULL, part->low,
       (part->high - part->low) / sections, part->high, weight };
     const int64_t before = parts->count;
     bool found = false;
@@ -187,22 +196,22 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   for (int64_t l = first; l < last; ++l)
   {
     const mcor_gauge_samples* s = &job->samples.of[l];
-    const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
-    const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
-      s->own_last - s->first, s->first - s->begin, begin, step,
-      begin + (double)(s->last - s->begin) * step, weight };
+    const double begin = (double)s->first / (double)s->steps, step = 1 / (double)s->steps;
+    const int64_t end = s->last - s->first;
+    const mcor_gauge_row row = { s->line, end + 1, s, begin, step, begin + (double)end * step,
+      weight };
     bool found, reached = false;
     MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
-    for (int64_t i = row.own_first; i <= row.own_last; ++i)
+    for (int64_t i = 0; i <= end && !reached; ++i)
     {
-      reached = reached || weight[i] != 0;
+      reached = weight[i] != 0;
     }
     if (reached)
     {
       MCOR_APPEND(
         job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
     }
-    if (s->own_last == s->steps && weight[row.own_last] >= job->base.level)
+    if (s->last == s->steps && weight[end] >= job->base.level && mcor_owns_place(job, &row, end))
     {
       MCOR_APPEND(
         job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });

@@ -14,13 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points on the device at a time. Their number is adapted until a batch takes about
- * MCOR_BATCH_SECONDS, because a run can be cancelled between batches. In a smaller batch of
- * unordered points, fewer points are near each other: a fourth of the points takes a tenth
- * longer in all. */
-#define MCOR_MOST_IN_BATCH (1 << 20)
-#define MCOR_LEAST_IN_BATCH (1 << 14)
-#define MCOR_BATCH_SECONDS 0.1
+/* Points on the device at a time. In a smaller batch of unordered points, fewer points are near each
+ * other. */
+#define MCOR_PROBE_BATCH (1 << 18)
 
 /* Fluid weight below which a mean has no digits; MCOR_LEAST_SUM in mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
@@ -179,30 +175,19 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
   const int arrays = context->attributes.varying_count;
   const double rounds = ceil(fmax(arrays, 1) / MCOR_ATTRIBUTE_LIMIT);
   double done = 0.2;
-  if (context->probe_batch == 0)
-  {
-    context->probe_batch = MCOR_MOST_IN_BATCH / 4;
-  }
   for (int array = 0; array == 0 || array < arrays; array += MCOR_ATTRIBUTE_LIMIT)
   {
     if (!mcor_has_attributes(context, run->input))
     {
       MCOR_TRY(mcor_load_attributes(context, run->input, array));
     }
-    int64_t count = 0;
-    for (int64_t first = 0; first < points; first += count)
+    for (int64_t first = 0, last; first < points; first = last)
     {
-      const int64_t rest = points - first;
-      const double before = done, begin = mcor_seconds() - context->cl.build_seconds;
-      const int size = context->probe_batch;
-      count = rest < size ? rest : size;
-      done += 0.8 * (double)count / (double)points / rounds;
+      const double before = done;
+      last = points - first < MCOR_PROBE_BATCH ? points : first + MCOR_PROBE_BATCH;
+      done += 0.8 * (double)(last - first) / (double)points / rounds;
       MCOR_TRY(mcor_report(context, "probe", before, done));
-      MCOR_TRY(mcor_probe_batch(run, first, first + count));
-      const double seconds = mcor_seconds() - context->cl.build_seconds - begin;
-      const bool halves = seconds > 1.5 * MCOR_BATCH_SECONDS && size > MCOR_LEAST_IN_BATCH;
-      const bool doubles = seconds < 0.5 * MCOR_BATCH_SECONDS && size < MCOR_MOST_IN_BATCH;
-      context->probe_batch = count < size ? size : halves ? size / 2 : doubles ? 2 * size : size;
+      MCOR_TRY(mcor_probe_batch(run, first, last));
     }
   }
   return MCOR_OK;

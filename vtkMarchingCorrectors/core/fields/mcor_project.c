@@ -221,15 +221,10 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
 static mcor_status mcor_run_project(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  mcor_project_job* job = data;
+  mcor_project_job copy = *(const mcor_project_job*)data, *job = &copy;
   const mcor_view* view = job->view;
-  *job = (mcor_project_job){ .context = context,
-    .input = input,
-    .view = view,
-    .out = job->out,
-    .places_only = job->places_only,
-    .h_scale = options->h_scale,
-    .channels = view->weight.data ? 2 : 1 };
+  job->input = input;
+  job->h_scale = options->h_scale;
   mcor_free_projection(job->out); /* results of an earlier attempt */
   mcor_options checked = *options;
   checked.field = mcor_projects_density(input) || job->places_only ? MCOR_WEIGHT_SUM : MCOR_SUM;
@@ -281,14 +276,13 @@ static mcor_status mcor_call_project(mcor_context* context, const mcor_input* in
   without.attribute_count = 0;
   const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
   own.ranks = options->ranks;
-  mcor_project_job* job = malloc(sizeof *job);
-  MCOR_TRY(mcor_allocated(context, job));
-  job->view = view;
-  job->out = projection;
-  job->places_only = places_only;
+  mcor_project_job job = { .context = context,
+    .view = view,
+    .out = projection,
+    .places_only = places_only,
+    .channels = view->weight.data ? 2 : 1 };
   const mcor_status status = mcor_run_call(
-    context, &without, &own, uses_solids, &projection->statistics, mcor_run_project, job);
-  free(job);
+    context, &without, &own, uses_solids, &projection->statistics, mcor_run_project, &job);
   if (status != MCOR_OK)
   {
     mcor_free_projection(projection);

@@ -66,6 +66,7 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
     context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list, &run->outside);
   mcor_release_batch(context, &run->batch);
   free(run->originals);
+  run->originals = NULL;
 }
 
 /* Finds the factors of the sorted particles, and which particles they leave outside. `limited`
@@ -189,6 +190,25 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
+static mcor_status mcor_widen_particles(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_widen_run* run)
+{
+  MCOR_TRY(mcor_check_input(context, input, options));
+  if (input->count == 0) /* no device code is chosen that could count for the statistics */
+  {
+    return MCOR_OK;
+  }
+  mcor_bound_by_box(context, options);
+  MCOR_TRY(mcor_prepare(context, input, options));
+  if (context->grid.count > 0)
+  {
+    MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8));
+    MCOR_TRY(mcor_find_factors(context, run));
+    MCOR_TRY(mcor_deliver_factors(context, input, run));
+  }
+  return mcor_finish_field(context);
+}
+
 /* Finds the factors of all particles. A box without globals only tells which particles are too far
  * away to matter, see mcor_leave_out_far. */
 static mcor_status mcor_run_widen(
@@ -212,27 +232,8 @@ static mcor_status mcor_run_widen(
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
   context->run.options = &own;
-  mcor_status status = mcor_check_input(context, input, &own);
-  if (status == MCOR_OK && options->globals && mcor_has_box(options))
-  {
-    mcor_bound_by_box(context, options);
-  }
-  if (input->count > 0)
-  {
-    MCOR_THEN(status, mcor_prepare(context, input, &own));
-  }
-  if (status == MCOR_OK && input->count > 0 && context->grid.count > 0)
-  {
-    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8);
-    MCOR_THEN(status, mcor_find_factors(context, run));
-    MCOR_THEN(status, mcor_deliver_factors(context, input, run));
-    mcor_release_run(context, run);
-  }
-  if (input->count > 0) /* else no device code was chosen that could count for the statistics */
-  {
-    MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-    MCOR_THEN(status, mcor_finish_statistics(context));
-  }
+  const mcor_status status = mcor_widen_particles(context, input, &own, run);
+  mcor_release_run(context, run);
   context->run.options = options;
   return status;
 }
@@ -248,23 +249,6 @@ static double mcor_widen_iso(const mcor_options* options)
     iso = i == 0 ? options->iso_values[0] : fmax(iso, options->iso_values[i]);
   }
   return iso;
-}
-
-/* Selects the input and options that factors depend on. Returns whether solids are used. */
-static bool mcor_choose_widening(
-  const mcor_input* input, const mcor_options* options, mcor_input* particles, mcor_options* own)
-{
-  *particles = *input;
-  *own = *options;
-  particles->widening = (mcor_array){ 0 };
-  particles->attribute_count = 0;
-  own->widen = 1;
-  own->compact = own->smooth = 0;
-  own->node_threshold = 0;
-  own->outputs = 0;
-  mcor_evaluate_without_scalar(input, own);
-  memcpy(own->box, options->box, sizeof own->box);
-  return mcor_uses_solids(input, options);
 }
 
 mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
@@ -290,12 +274,20 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
   widening->volume = mcor_needs_density(input) ? malloc(n * sizeof(double) + 1) : NULL;
   mcor_status status = mcor_allocated(context,
     widening->factor && widening->outside && (widening->volume || !mcor_needs_density(input)));
-  mcor_input particles;
-  mcor_options own;
-  const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
+  /* Factors depend on these particles and options alone. */
+  mcor_input particles = *input;
+  mcor_options own = *options;
+  particles.widening = (mcor_array){ 0 };
+  particles.attribute_count = 0;
+  own.widen = 1;
+  own.compact = own.smooth = 0;
+  own.node_threshold = 0;
+  own.outputs = 0;
+  mcor_evaluate_without_scalar(&particles, &own);
+  memcpy(own.box, options->box, sizeof own.box);
   MCOR_THEN(status,
-    mcor_run_call(
-      context, &particles, &own, uses_solids, &widening->statistics, mcor_run_widen, &run));
+    mcor_run_call(context, &particles, &own, mcor_uses_solids(input, options),
+      &widening->statistics, mcor_run_widen, &run));
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   if (status != MCOR_OK)
   {

@@ -2,9 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_ranks.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Ends the round if all ranks have come. The caller holds the lock. */
 static void end_round_where_all_came(core_world* world)
 {
@@ -34,9 +31,8 @@ static int wait_for_all(core_world* world)
   return failed;
 }
 
-void core_leave(core_rank* rank)
+static void leave(core_world* world)
 {
-  core_world* world = rank->world;
   pthread_mutex_lock(&world->lock);
   ++world->left;
   end_round_where_all_came(world);
@@ -48,7 +44,6 @@ static int show(core_rank* rank, const void* value, int64_t size)
 {
   rank->world->value[rank->number] = value;
   rank->world->size[rank->number] = size;
-  ++rank->world->calls[rank->number];
   return wait_for_all(rank->world);
 }
 
@@ -121,8 +116,19 @@ typedef struct core_thread
 static void* run_rank(void* data)
 {
   core_thread* thread = data;
-  thread->body(&thread->rank, thread->data);
-  free(thread->rank.gathered);
+  core_rank* rank = &thread->rank;
+  core_world* world = rank->world;
+  mcor_status* status = &world->status[rank->number];
+  *status = mcor_create_context(NULL, &rank->context);
+  MCOR_THEN(*status, thread->body(rank, thread->data));
+  snprintf(
+    world->error[rank->number], sizeof world->error[0], "%s", mcor_last_error(rank->context));
+  if (*status != MCOR_OK)
+  {
+    leave(world);
+  }
+  mcor_free_context(rank->context);
+  free(rank->gathered);
   return NULL;
 }
 
@@ -152,4 +158,12 @@ void core_run_ranks(int count, core_rank_body body, void* data, core_world* worl
   }
   pthread_mutex_destroy(&world->lock);
   pthread_cond_destroy(&world->all_came);
+}
+
+void core_expect_ranks(const core_world* world, const char* name)
+{
+  for (int r = 0; r < world->count; ++r)
+  {
+    CORE_CHECK(world->status[r] == MCOR_OK, name, r, world->count, world->error[r]);
+  }
 }

@@ -5,7 +5,7 @@
 
 /* Runs ranks as threads of one process. */
 
-#include "mcor_parts.h"
+#include "core_fixture.h"
 
 #include <pthread.h>
 
@@ -16,10 +16,11 @@ typedef struct core_world
   int count;
   pthread_mutex_t lock;
   pthread_cond_t all_came;
-  int came, round, failed, left; /* left: ranks that gave up and take part no longer */
-  int64_t calls[CORE_MOST_RANKS];
+  int came, round, failed, left;      /* left: ranks that gave up and take part no longer */
   const void* value[CORE_MOST_RANKS]; /* what each rank shows in the present exchange */
   int64_t size[CORE_MOST_RANKS];
+  mcor_status status[CORE_MOST_RANKS]; /* what each rank returned, and its last error */
+  char error[CORE_MOST_RANKS][400];
 } core_world;
 
 typedef struct core_rank
@@ -27,15 +28,16 @@ typedef struct core_rank
   core_world* world;
   int number;
   void* gathered;
+  mcor_context* context;
   mcor_ranks ranks; /* for options.ranks */
 } core_rank;
 
 /* What a rank does in its thread. */
-typedef void (*core_rank_body)(core_rank* rank, void* data);
+typedef mcor_status (*core_rank_body)(core_rank* rank, void* data);
 
-/* Runs `count` ranks until all have ended. After a rank has called core_leave, exchanges of the
- * other ranks fail. */
+/* Runs `count` ranks until all have ended. After a rank has failed, exchanges of the other ranks fail. */
 void core_run_ranks(int count, core_rank_body body, void* data, core_world* world);
-void core_leave(core_rank* rank);
+/* Fails unless every rank has succeeded. */
+void core_expect_ranks(const core_world* world, const char* name);
 
 #endif

@@ -121,34 +121,30 @@ void fuzz_check_bits(const void* a, const void* b, size_t bytes)
   FUZZ_CHECK(!a || bytes == 0 || memcmp(a, b, bytes) == 0);
 }
 
-void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
+void fuzz_check_same(const mcor_surface* one, const mcor_surface* other)
 {
-  FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
-  const mcor_statistics *p = &a->statistics, *q = &b->statistics;
+  mcor_surface a = *one, b = *other;
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS], others[MCOR_SURFACE_ARRAYS];
+  FUZZ_CHECK(a.point_count == b.point_count && a.triangle_count == b.triangle_count);
+  const mcor_statistics *p = &a.statistics, *q = &b.statistics;
   FUZZ_CHECK(p->seed_cells == q->seed_cells && p->cells_used == q->cells_used);
   FUZZ_CHECK(p->seed_cells_not_intersected == q->seed_cells_not_intersected);
-  const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
-  fuzz_check_bits(a->points, b->points, n * 3 * sizeof(double));
-  fuzz_check_bits(a->triangles, b->triangles, t * 3 * sizeof(int32_t));
-  FUZZ_CHECK(a->line_count == b->line_count && a->line_point_count == b->line_point_count);
-  fuzz_check_bits(a->line_offsets, b->line_offsets, ((size_t)a->line_count + 1) * sizeof(int64_t));
-  fuzz_check_bits(a->line_points, b->line_points, (size_t)a->line_point_count * sizeof(int32_t));
-  fuzz_check_bits(a->band_value, b->band_value, t * sizeof(double));
-  fuzz_check_bits(a->normals, b->normals, n * 3 * sizeof(float));
-  fuzz_check_bits(a->gradients, b->gradients, n * 3 * sizeof(double));
-  fuzz_check_bits(a->weight_sum, b->weight_sum, n * sizeof(float));
-  fuzz_check_bits(a->boundary_eigenvalue, b->boundary_eigenvalue, n * sizeof(float));
-  fuzz_check_bits(a->correction_length, b->correction_length, n * sizeof(float));
-  fuzz_check_bits(a->residual, b->residual, n * sizeof(float));
-  fuzz_check_bits(a->boundary_flag, b->boundary_flag, n);
-  fuzz_check_bits(a->iso_value, b->iso_value, n * sizeof(double));
-  fuzz_check_bits(a->nearest_particle, b->nearest_particle, n * sizeof(int64_t));
-  fuzz_check_bits(a->mean_curvature, b->mean_curvature, n * sizeof(double));
-  fuzz_check_bits(a->point_keys, b->point_keys, n * MCOR_POINT_KEY * sizeof(uint64_t));
-  fuzz_check_bits(a->triangle_keys, b->triangle_keys, t * MCOR_TRIANGLE_KEY * sizeof(uint64_t));
-  FUZZ_CHECK(a->attribute_count == b->attribute_count);
-  for (int i = 0; i < a->attribute_count; ++i)
+  const size_t n = (size_t)a.point_count, t = (size_t)a.triangle_count;
+  fuzz_check_bits(a.triangles, b.triangles, t * 3 * sizeof(int32_t));
+  FUZZ_CHECK(a.line_count == b.line_count && a.line_point_count == b.line_point_count);
+  fuzz_check_bits(a.line_offsets, b.line_offsets, ((size_t)a.line_count + 1) * sizeof(int64_t));
+  fuzz_check_bits(a.line_points, b.line_points, (size_t)a.line_point_count * sizeof(int32_t));
+  fuzz_check_bits(a.band_value, b.band_value, t * sizeof(double));
+  fuzz_check_bits(a.triangle_keys, b.triangle_keys, t * MCOR_TRIANGLE_KEY * sizeof(uint64_t));
+  mcor_list_surface_arrays(&a, arrays);
+  mcor_list_surface_arrays(&b, others);
+  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
   {
-    fuzz_check_bits(a->attributes[i], b->attributes[i], n * (i ? 3 : 1) * sizeof(double));
+    fuzz_check_bits(*arrays[i].array, *others[i].array, n * arrays[i].width);
+  }
+  FUZZ_CHECK(a.attribute_count == b.attribute_count);
+  for (int i = 0; i < a.attribute_count; ++i)
+  {
+    fuzz_check_bits(a.attributes[i], b.attributes[i], n * (i ? 3 : 1) * sizeof(double));
   }
 }

@@ -3,6 +3,7 @@
 #ifndef fuzz_h
 #define fuzz_h
 
+#include "mcor_internal.h"
 #include "mcor_parts.h"
 
 #include <stddef.h>

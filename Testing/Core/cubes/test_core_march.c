@@ -3,7 +3,7 @@
 
 /* Tests extraction: cells in any pattern, made node by node; outliers; surfaces of parts of the particles. */
 
-#include "core_fixture.h"
+#include "core_parts.h"
 
 /* The surface around one huge value is found, and it ends where the particle's support does. */
 static void test_outlier(void** state)
@@ -72,13 +72,11 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   {
     if (b.points[3 * j] > -100)
     {
+      unsigned char one[200], other[200];
       assert_true(i < a.point_count);
-      assert_memory_equal(a.points + 3 * i, b.points + 3 * j, 3 * sizeof(double));
-      assert_memory_equal(a.gradients + 3 * i, b.gradients + 3 * j, 3 * sizeof(double));
-      assert_memory_equal(a.weight_sum + i, b.weight_sum + j, sizeof(float));
-      assert_memory_equal(a.residual + i, b.residual + j, sizeof(float));
-      assert_true(a.nearest_particle[i] == b.nearest_particle[j]);
-      ++i;
+      const size_t bytes = (size_t)(core_put_point(one, &input, &a, i++, false) - one);
+      core_put_point(other, &input, &b, j, false);
+      assert_memory_equal(one, other, bytes);
     }
   }
   assert_int_equal(i, a.point_count);
@@ -212,15 +210,8 @@ static void check_pattern(
   assert_int_equal(surface.point_count, p->points);
   CORE_CHECK(topology == MCOR_TOPOLOGY_FIELD || surface.triangle_count == p->triangles,
     surface.triangle_count, p->triangles);
-  CORE_REPORT report;
-  mesh_check(
-    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
-  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
-  {
-    /* The two vertices of a pinched edge are in the same place. */
-    CORE_CHECK(report.faults[fault] == (fault == MESH_COINCIDENT_POINT ? pinched : 0), topology,
-      report.faults[fault], mesh_fault_name(fault), report.first[fault]);
-  }
+  CORE_REPORT report = core_check_pinched_mesh(&surface);
+  assert_int_equal(report.faults[MESH_COINCIDENT_POINT], pinched);
 }
 
 static void test_node_by_node(void** state)

@@ -33,10 +33,22 @@ static mcor_request request_of(unsigned wants)
     mcor_request){ .wants = wants, .find = 1, .active = -1, .scalar_component = MCOR_MAGNITUDE };
 }
 
-static mcor_status find(
+/* Frees what was found before, and finds anew, which must succeed. */
+static void find(
   const mcor_request* request, const mcor_named* arrays, int count, mcor_found* found)
 {
-  return mcor_find_input(request, &positions, arrays, count, NULL, found);
+  mcor_free_found(found);
+  assert_int_equal(mcor_find_input(request, &positions, arrays, count, NULL, found), MCOR_OK);
+}
+
+/* Frees what was found before, and fails with a message that core_tells finds. */
+static void refuse(const mcor_request* request, const mcor_named* arrays, int count,
+  mcor_found* found, const char* words)
+{
+  mcor_free_found(found);
+  assert_int_equal(
+    mcor_find_input(request, &positions, arrays, count, NULL, found), MCOR_INVALID_ARGUMENT);
+  CORE_CHECK(core_tells(&found->error, words), found->error.text, words);
 }
 
 /* The rule of precedence is tested for all combinations of what the file has and what is given by hand. */
@@ -82,8 +94,8 @@ static void test_volumes(void** state)
     request.values[MCOR_ROLE_DENSITY] = strchr(given, 'D') ? 8 : 0;
     request.compute_volumes = strchr(given, 'c') != NULL;
     request.particle_volume = strchr(given, 'p') ? 9 : 0;
-    mcor_found found;
-    assert_int_equal(find(&request, arrays, count, &found), MCOR_OK);
+    CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+    find(&request, arrays, count, &found);
     char used[64] = "";
     const mcor_array* sources[3] = { &found.input.volume, &found.input.mass, &found.input.density };
     for (int k = 0; k < 3; ++k)
@@ -101,7 +113,6 @@ static void test_volumes(void** state)
     /* Masses and densities are known even if volumes are given. */
     assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
       strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
-    mcor_free_found(&found);
   }
 }
 
@@ -133,8 +144,8 @@ static void test_elements(void** state)
   {
     mcor_request request = request_of(MCOR_WANT_SIZES);
     request.names[MCOR_ROLE_SMOOTHING_LENGTH] = arrays[i].name;
-    mcor_found found;
-    assert_int_equal(find(&request, arrays, count, &found), MCOR_OK);
+    CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+    find(&request, arrays, count, &found);
     const mcor_array* length = &found.input.smoothing_length;
     const bool stays = i < 2;
     CORE_CHECK(stays == (length->data == arrays[i].data), arrays[i].name);
@@ -146,7 +157,6 @@ static void test_elements(void** state)
                                                         : ((const double*)length->data)[p];
       CORE_CHECK(value == p + 1, arrays[i].name, p, value);
     }
-    mcor_free_found(&found);
   }
 }
 
@@ -159,38 +169,32 @@ static void test_fluid(void** state)
     of("IsWall", MCOR_ELEMENT_UINT8, 1, wall), real("ptype", other),
     of(MCOR_WALL_BLOCK, MCOR_ELEMENT_UINT8, 1, wall) };
   mcor_request request = request_of(MCOR_WANT_FLUID);
-  mcor_found found;
+  CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
   request.find_fluid = 1;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_int_equal(found.which[MCOR_ROLE_FLUID], 0);
   assert_true(found.fluid_value == 3 && found.fluid_count == 2 && !found.unused_type.text);
   assert_true(found.input.solid[0] && found.input.solid[1] && !found.input.solid[2]);
-  mcor_free_found(&found);
-  assert_int_equal(find(&request, arrays + 1, 3, &found), MCOR_OK);
+  find(&request, arrays + 1, 3, &found);
   assert_true(
     found.which[MCOR_ROLE_FLUID] == 0 && found.fluid_value == 0 && found.fluid_count == 3);
-  mcor_free_found(&found);
   const mcor_named half = real("Type", halves); /* which are no types */
-  assert_int_equal(find(&request, &half, 1, &found), MCOR_OK);
+  find(&request, &half, 1, &found);
   assert_int_equal(found.which[MCOR_ROLE_FLUID], -1);
   assert_true(core_tells(&found.unused_type, "TYPE_UNUSED| 1 x 0, 1 x 0.5, 2 x 1.|{fluid Type}"));
-  mcor_free_found(&found);
   request.find_fluid = 0;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_true(found.which[MCOR_ROLE_FLUID] == -1 && !found.input.solid && found.fluid_count == 4);
   assert_true(core_tells(&found.unused_type, "TYPE_UNUSED|'Type'|seems to be 3."));
-  mcor_free_found(&found);
-  assert_int_equal(find(&request, arrays + 3, 1, &found), MCOR_OK);
+  find(&request, arrays + 3, 1, &found);
   assert_int_equal(found.unused_type.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
-  mcor_free_found(&found);
   for (request.find_fluid = 2; request.find_fluid > 0; --request.find_fluid) /* only 2 tells it */
   {
     const mcor_named no_type = real("Mass", mass);
-    assert_int_equal(find(&request, &no_type, 1, &found), MCOR_OK);
+    find(&request, &no_type, 1, &found);
     CORE_CHECK(request.find_fluid == 2 ? core_tells(&found.unused_type, "NO_TYPE|arrays: Mass.")
                                        : !found.unused_type.text,
       request.find_fluid, found.unused_type.text);
-    mcor_free_found(&found);
   }
   double nine[9] = { 8, 7, 6, 5, 4, 3, 2, 1, NAN };
   const mcor_named place = { NULL, MCOR_ELEMENT_FLOAT64, 3, 9, (double[27]){ 0 }, { 0, 0 } },
@@ -199,7 +203,6 @@ static void test_fluid(void** state)
   {
     assert_int_equal(mcor_find_input(&request, &place, &type, 1, NULL, &found), MCOR_OK);
     CORE_CHECK(!found.unused_type.text, one, found.unused_type.text);
-    mcor_free_found(&found);
     for (int i = 0; i < 9; ++i)
     {
       nine[i] = 4;
@@ -207,36 +210,29 @@ static void test_fluid(void** state)
   }
   request.names[MCOR_ROLE_FLUID] = "ptype";
   request.fluid_value = 7;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_string_equal(found.no_fluid, "No particle has ptype = 7");
-  mcor_free_found(&found);
   request.names[MCOR_ROLE_FLUID] = "Block: water";
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_true(found.which[MCOR_ROLE_FLUID] == 3 && found.fluid_count == 3);
-  mcor_free_found(&found);
   const mcor_only only[] = { { "Type", 3, 3 }, { "Type", 0, 0 }, { "ptype", 5, 6 } };
   request = request_of(0);
   request.only = only;
   request.only_count = 3;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_true(found.fluid_count == 3 && found.input.solid[1] == MCOR_ABSENT);
-  mcor_free_found(&found);
   request.within[1] = 0.5;
   request.within[4] = -1;
   request.within[5] = 1;
   request.only_count = 1;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_true(found.fluid_count == 1 && found.input.solid[3] == 0);
-  mcor_free_found(&found);
   request.within[5] = 0.5;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_OK);
+  find(&request, arrays, 4, &found);
   assert_string_equal(found.no_fluid, "No particle is within 0,0.5,0,0,-1,0.5 and left by Type=3");
-  mcor_free_found(&found);
   const mcor_only lacks = { "Typo", 0, 1 };
   request.only = &lacks;
-  assert_int_equal(find(&request, arrays, 4, &found), MCOR_INVALID_ARGUMENT);
-  assert_true(core_tells(&found.error, "NO_SUCH_ARRAY|'Typo'|: Type, IsWall, ptype, WallBlock."));
-  mcor_free_found(&found);
+  refuse(&request, arrays, 4, &found, "NO_SUCH_ARRAY|'Typo'|: Type, IsWall, ptype, WallBlock.");
 }
 
 /* The scalar may be named, or chosen as the most suitable of three arrays, or summed. Attributes, and the arrays that
@@ -255,8 +251,8 @@ static void test_scalar_and_attributes(void** state)
   request.taken = "Normals\nSpeed_Y";
   request.excluded = "vz";
   request.has_iso_values = 1;
-  mcor_found found;
-  assert_int_equal(find(&request, arrays, 7, &found), MCOR_OK);
+  CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+  find(&request, arrays, 7, &found);
   assert_int_equal(found.which[MCOR_ROLE_SCALAR], 7);
   assert_string_equal(found.made[0].name, "Velocity");
   assert_memory_equal(found.input.scalar.data, v32, sizeof v32);
@@ -265,48 +261,40 @@ static void test_scalar_and_attributes(void** state)
   assert_int_equal(found.input.attribute_count, 5);
   assert_memory_equal(found.attributes, attributes, sizeof attributes);
   assert_true(found.nearest_count == 1 && found.nearest[0] == 1);
-  mcor_free_found(&found);
   request.active = 2;
   request.scalar_component = 1;
-  assert_int_equal(find(&request, arrays, 7, &found), MCOR_OK);
+  find(&request, arrays, 7, &found);
   assert_true(found.which[MCOR_ROLE_SCALAR] == 2 && found.input.scalar_component == 0);
   assert_string_equal(found.iso_value_name, "Speed");
   assert_int_equal(found.input.attribute_count, 4); /* the contoured array is not among them */
-  mcor_free_found(&found);
-  request.active = 1; /* ids are not suitable */
+  request.active = 1;                               /* ids are not suitable */
   request.label = "along y";
-  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  find(&request, arrays, 11, &found);
   assert_int_equal(found.which[MCOR_ROLE_SCALAR], 7);
   assert_string_equal(found.iso_value_name, "Velocity_along y");
   assert_true(found.nearest_count == 2 && found.nearest[1] == 8);
-  mcor_free_found(&found);
   request.names[MCOR_ROLE_SCALAR] = "Density";
-  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  find(&request, arrays, 11, &found);
   assert_true(found.needs_densities && !found.input.scalar.data);
   mcor_take_densities(&found, density);
   assert_true(found.input.scalar.data == density && !found.input.density.data);
-  mcor_free_found(&found);
-  assert_int_equal(find(&request, arrays, 10, &found), MCOR_OK);
+  find(&request, arrays, 10, &found);
   mcor_take_densities(&found, density);
   assert_true(found.input.density.data == density && found.input.mass.data == mass);
-  mcor_free_found(&found);
   request = request_of(MCOR_WANT_SIZES | MCOR_WANT_FLOW);
-  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  find(&request, arrays, 11, &found);
   assert_int_equal(found.input.attribute_count, 2);
   assert_string_equal(found.input.attributes[1].name, "Density");
   assert_true(((const double*)found.input.attributes[1].data)[3] == 1.5);
-  mcor_free_found(&found);
   request.values[MCOR_ROLE_DENSITY] = 10;
-  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  find(&request, arrays, 11, &found);
   assert_true(found.input.attributes[1].constant == 10 && found.attributes[1] == -1);
   assert_true(found.input.volume.data == volume && !found.unused.text);
-  mcor_free_found(&found);
   request = request_of(MCOR_WANT_SIZES | MCOR_WANT_COLUMN);
   request.names[MCOR_ROLE_WEIGHT] = "Mass";
-  assert_int_equal(find(&request, arrays, 11, &found), MCOR_OK);
+  find(&request, arrays, 11, &found);
   assert_true(found.input.mass.data == mass && found.views[MCOR_ROLE_WEIGHT].data == mass);
   assert_true(found.input.volume.data == volume && !found.input.scalar.data);
-  mcor_free_found(&found);
 }
 
 /* Each sentence about what is missing, or not usable. */
@@ -335,40 +323,29 @@ static void test_errors(void** state)
     { MCOR_WANT_SCALAR, MCOR_ROLE_SCALAR_DOT, "Rhop",
       "DOT_OF_DIFFERENT_VECTORS|'Velocity' has 3|'Rhop' has 1" }
   };
+  CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     mcor_request request = request_of(cases[c].wants);
     request.names[cases[c].role] = cases[c].name;
     request.values[MCOR_ROLE_SMOOTHING_LENGTH] = cases[c].role == MCOR_ROLE_MASS;
-    mcor_found found;
-    assert_int_equal(find(&request, arrays, 7, &found), MCOR_INVALID_ARGUMENT);
-    CORE_CHECK(core_tells(&found.error, cases[c].words), found.error.text);
-    mcor_free_found(&found);
+    refuse(&request, arrays, 7, &found, cases[c].words);
   }
   mcor_request request = request_of(MCOR_WANT_SCALAR);
-  mcor_found found;
   request.scalar_component = 3;
-  assert_int_equal(find(&request, arrays, 6, &found), MCOR_INVALID_ARGUMENT);
-  assert_true(core_tells(&found.error, "NO_SUCH_COMPONENT|'Velocity'|component 3; choose 0 to 2"));
-  mcor_free_found(&found);
-  assert_int_equal(find(&request, arrays, 1, &found), MCOR_INVALID_ARGUMENT);
-  assert_int_equal(found.error.code, MCOR_SAYS_NO_SCALAR);
-  mcor_free_found(&found);
+  refuse(&request, arrays, 6, &found, "NO_SUCH_COMPONENT|'Velocity'|component 3; choose 0 to 2");
+  refuse(&request, arrays, 1, &found, "NO_SCALAR");
   request = request_of(MCOR_WANT_SIZES | MCOR_WANT_FLOW);
   request.values[MCOR_ROLE_SMOOTHING_LENGTH] = 1;
-  assert_int_equal(find(&request, arrays, 3, &found), MCOR_INVALID_ARGUMENT);
-  assert_int_equal(found.error.code, MCOR_SAYS_NO_VELOCITY);
-  mcor_free_found(&found);
+  refuse(&request, arrays, 3, &found, "NO_VELOCITY");
   request.estimate_smoothing_length = 1;
   request.wants = MCOR_WANT_SIZES;
-  assert_int_equal(find(&request, arrays, 6, &found), MCOR_OK);
+  find(&request, arrays, 6, &found);
   assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
-  mcor_free_found(&found);
   request.wants = MCOR_WANT_SIZES | MCOR_WANT_COLUMN;
   request.values[MCOR_ROLE_MASS] = 1;
-  assert_int_equal(find(&request, arrays, 6, &found), MCOR_OK);
+  find(&request, arrays, 6, &found);
   assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
-  mcor_free_found(&found);
 }
 
 /* The sum "Density" uses masses even if volumes are given. */
@@ -382,11 +359,10 @@ static void test_unused_beside_the_sum(void** state)
     request.names[MCOR_ROLE_VOLUME] = "V2";
     request.names[MCOR_ROLE_MASS] = "M2";
     request.values[MCOR_ROLE_DENSITY] = 8;
-    mcor_found found;
-    assert_int_equal(find(&request, arrays, 3, &found), MCOR_OK);
+    CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+    find(&request, arrays, 3, &found);
     assert_true(core_tells(&found.unused,
       sums ? "SIZE_BESIDE_VOLUME|given density is" : "SIZE_BESIDE_VOLUME|mass and density are"));
-    mcor_free_found(&found);
   }
 }
 

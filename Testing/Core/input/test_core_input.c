@@ -133,6 +133,14 @@ static void test_options(void** state)
   ARGUMENT("ISO_NOT_FINITE| 1 ", call.options.iso_count = 2; call.iso[1] = NAN);
   ARGUMENT("ISO_NOT_FINITE| 0 ", call.iso[0] = -INFINITY);
   ARGUMENT("ISO_OF_FREE_SURFACE|0.5", call.options.field = MCOR_WEIGHT_SUM);
+  static const double boxes[][6] = { { 1, 0, 0, 1, 0, 1 }, { 0, 1, 2, 2, 0, 1 },
+    { 0, 1, 0, 1, 0, NAN }, { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
+  static const char* const along[] = { "BOX_ILLEGAL|along x", "BOX_ILLEGAL|along y",
+    "BOX_ILLEGAL|along z", "BOX_ILLEGAL|along z", "BOX_ILLEGAL|along x" };
+  for (int i = 0; i < 5; ++i)
+  {
+    ARGUMENT(along[i], memcpy(call.options.box, boxes[i], sizeof boxes[i]));
+  }
   expect_good(*state);
 }
 

@@ -245,25 +245,6 @@ static void kept_particles(void** state)
   }
 }
 
-static void bad_boxes(void** state)
-{
-  const double bad[][6] = { { 1, 0, 0, 1, 0, 1 }, { 0, 1, 2, 2, 0, 1 }, { 0, 1, 0, 1, 0, NAN },
-    { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
-  const char* words[] = { "along x", "along y", "along z", "along z", "along x" };
-  const double iso = 0;
-  CORE_SET set = core_make_block(4, 0, 8, core_ball);
-  const mcor_input input = core_input(&set);
-  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i)
-  {
-    mcor_options options = core_options(&iso);
-    mcor_surface surface = { 0 };
-    memcpy(options.box, bad[i], sizeof bad[i]);
-    assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-    CORE_CHECK(strstr(mcor_last_error(*state), words[i]), mcor_last_error(*state));
-    assert_int_equal(surface.point_count, 0);
-  }
-}
-
 /* Values that measuring never gives are refused. */
 static void impossible_globals(void** state)
 {
@@ -371,5 +352,4 @@ static void caps(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, trimmed_surfaces, rough_surfaces, other_fields,
-  nearest_particles, kept_particles, caps, given_globals, impossible_globals, small_boxes,
-  bad_boxes)
+  nearest_particles, kept_particles, caps, given_globals, impossible_globals, small_boxes)

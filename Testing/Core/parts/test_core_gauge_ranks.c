@@ -4,7 +4,6 @@
 /* Gauges and fluxes of ranks, in threads, read to the last bit what one process reads, whoever owns which part of a
  * line or section. */
 
-#include "core_fixture.h"
 #include "core_ranks.h"
 
 #define LINES 90
@@ -37,18 +36,14 @@ typedef struct gauge_job
   const mcor_section* sections; /* NULL: gauges are measured */
   int axis, periodic, volumes;  /* volumes: computed */
   mcor_globals globals;
-  mcor_status status[CORE_MOST_RANKS];
   mcor_gauges gauges[CORE_MOST_RANKS + 1]; /* the last entry is one process alone */
   mcor_fluxes fluxes[CORE_MOST_RANKS + 1];
-  char error[CORE_MOST_RANKS][400];
 } gauge_job;
 
 static mcor_options gauge_options(const gauge_job* job)
 {
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   options.field = MCOR_WEIGHT_SUM;
-  options.level_limit = 0;
   options.wall_share = MCOR_WALL_SHARE_MEASURED;
   if (job->periodic)
   {
@@ -109,7 +104,7 @@ static particle_set take_near(const gauge_job* job, double low, double high, dou
 
 /* Measures one rank's slab. Slabs differ in width, their sides are not at nodes of the lattice, and the outer ones are
  * infinite. */
-static void gauge_part(core_rank* rank, void* data)
+static mcor_status gauge_part(core_rank* rank, void* data)
 {
   gauge_job* job = data;
   const int r = rank->number, count = rank->world->count;
@@ -134,17 +129,7 @@ static void gauge_part(core_rank* rank, void* data)
   CORE_SET part = take_near(job, sides[0], sides[1], reach);
   mcor_array arrays[2];
   const mcor_input input = gauge_input(job, &part, arrays);
-  CORE_CONTEXT context = NULL;
-  job->status[r] = mcor_create_context(NULL, &context);
-  if (job->status[r] == MCOR_OK)
-  {
-    job->status[r] = read_all(context, job, &input, &options, r);
-  }
-  snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
-  if (job->status[r] != MCOR_OK)
-  {
-    core_leave(rank);
-  }
+  return read_all(rank->context, job, &input, &options, r);
 }
 
 static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
@@ -212,11 +197,12 @@ static void check_ranks(mcor_context* context, gauge_job* job, int kind)
   {
     core_world world;
     core_run_ranks(count, gauge_part, job, &world);
+    core_expect_ranks(&world, job->sections ? "fluxes" : "gauges");
     for (int r = 0; r < count; ++r)
     {
       const int same =
         job->sections ? same_fluxes(&job->fluxes[r], fluxes) : same_gauges(&job->gauges[r], gauges);
-      CORE_CHECK(job->status[r] == MCOR_OK && same, kind, r, count, job->error[r]);
+      CORE_CHECK(same, kind, r, count);
       mcor_free_fluxes(&job->fluxes[r]);
       mcor_free_gauges(&job->gauges[r]);
     }

@@ -6,11 +6,6 @@
 #include "core_parts.h"
 #include "core_ranks.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* ---- Which rank has which particle ---- */
 
 typedef int (*split_function)(const particle_set* set, int64_t i, int ranks);
@@ -78,9 +73,7 @@ typedef struct measure_job
   const particle_set* set;
   const measure_case* what;
   split_function split;
-  mcor_status status[CORE_MOST_RANKS];
   mcor_globals globals[CORE_MOST_RANKS];
-  char error[CORE_MOST_RANKS][400];
   int failing; /* the rank that has a NaN particle; -1: none */
 } measure_job;
 
@@ -111,7 +104,7 @@ static mcor_options measure_options(const measure_case* what)
   return options;
 }
 
-static void measure_part(core_rank* rank, void* data)
+static mcor_status measure_part(core_rank* rank, void* data)
 {
   measure_job* job = data;
   mcor_array attributes[3];
@@ -124,17 +117,7 @@ static void measure_part(core_rank* rank, void* data)
   const mcor_input input = measure_input(&part, job->what, attributes);
   mcor_options options = measure_options(job->what);
   options.ranks = &rank->ranks;
-  CORE_CONTEXT context = NULL;
-  job->status[r] = mcor_create_context(NULL, &context);
-  if (job->status[r] == MCOR_OK)
-  {
-    job->status[r] = mcor_measure_globals(context, &input, &options, &job->globals[r]);
-  }
-  snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
-  if (job->status[r] != MCOR_OK)
-  {
-    core_leave(rank);
-  }
+  return mcor_measure_globals(rank->context, &input, &options, &job->globals[r]);
 }
 
 static int same_globals(const mcor_globals* a, const mcor_globals* b)
@@ -167,11 +150,10 @@ static void check_globals(mcor_context* context, const particle_set* set, const 
       measure_job job = { .set = set, .what = what, .split = splits[s], .failing = -1 };
       core_world world;
       core_run_ranks(count, measure_part, &job, &world);
+      core_expect_ranks(&world, what->name);
       for (int r = 0; r < count; ++r)
       {
-        CORE_CHECK(job.status[r] == MCOR_OK && same_globals(&job.globals[r], &expected), what->name,
-          split_names[s], r, count, job.error[r]);
-        assert_int_equal(world.calls[r], world.calls[0]);
+        CORE_CHECK(same_globals(&job.globals[r], &expected), what->name, split_names[s], r, count);
         mcor_free_globals(&job.globals[r]);
       }
     }
@@ -238,8 +220,9 @@ static void faults(void** state)
     core_run_ranks(3, measure_part, &job, &world);
     for (int r = 0; r < 3; ++r)
     {
-      assert_int_equal(job.status[r], r == failing ? MCOR_INVALID_DATA : MCOR_CANCELLED);
-      CORE_CHECK(strstr(job.error[r], r == failing ? "particle 2" : "Another rank"), job.error[r]);
+      assert_int_equal(world.status[r], r == failing ? MCOR_INVALID_DATA : MCOR_CANCELLED);
+      CORE_CHECK(
+        strstr(world.error[r], r == failing ? "particle 2" : "Another rank"), world.error[r]);
       assert_null(job.globals[r].components);
     }
   }
@@ -247,10 +230,7 @@ static void faults(void** state)
   measure_job job = { .set = &none, .what = &what, .split = split_slabs, .failing = -1 };
   core_world world;
   core_run_ranks(2, measure_part, &job, &world);
-  for (int r = 0; r < 2; ++r)
-  {
-    assert_int_equal(job.status[r], MCOR_INVALID_DATA);
-  }
+  assert_true(world.status[0] == MCOR_INVALID_DATA && world.status[1] == MCOR_INVALID_DATA);
 }
 
 /* ---- Surfaces of parts ---- */
@@ -262,11 +242,10 @@ typedef struct parts_job
   const double* sides; /* along x, [ranks - 1] */
   mcor_globals globals;
   mcor_surface surface[CORE_MOST_RANKS];
-  mcor_status status[CORE_MOST_RANKS];
   double margin; /* how far beside a box its particles are kept */
 } parts_job;
 
-static void extract_part(core_rank* rank, void* data)
+static mcor_status extract_part(core_rank* rank, void* data)
 {
   parts_job* job = data;
   const int r = rank->number, last = rank->world->count - 1;
@@ -278,17 +257,7 @@ static void extract_part(core_rank* rank, void* data)
   options.ranks = &rank->ranks;
   CORE_SET near = core_take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
-  CORE_CONTEXT context = NULL;
-  job->status[r] = mcor_create_context(NULL, &context);
-  if (job->status[r] == MCOR_OK)
-  {
-    job->status[r] = mcor_extract(context, &input, &options, &job->surface[r]);
-  }
-  if (job->status[r] != MCOR_OK)
-  {
-    print_message("rank %d: %s\n", r, mcor_last_error(context));
-    core_leave(rank);
-  }
+  return mcor_extract(rank->context, &input, &options, &job->surface[r]);
 }
 
 /* Makes a surface that winds. */
@@ -314,18 +283,17 @@ static void check_parts(mcor_context* context, const particle_set* set, const mc
   core_add_surface(&whole, &input, &surface);
   core_world world;
   core_run_ranks(ranks, extract_part, &job, &world);
-  mcor_statistics sum = { 0 };
+  core_expect_ranks(&world, "parts");
+  int64_t cells = 0;
   for (int r = 0; r < ranks; ++r)
   {
-    assert_int_equal(job.status[r], MCOR_OK);
     core_add_surface(&all, &input, &job.surface[r]);
-    sum.cells_used += job.surface[r].statistics.cells_used;
-    assert_int_equal(world.calls[r], world.calls[0]);
+    cells += job.surface[r].statistics.cells_used;
     mcor_free_surface(&job.surface[r]);
   }
   CORE_CHECK(whole.count > least, ranks, whole.count);
   core_expect_same("ranks", &all, &whole);
-  assert_int_equal(sum.cells_used, surface.statistics.cells_used);
+  assert_int_equal(cells, surface.statistics.cells_used);
   free(whole.bytes);
   free(all.bytes);
   mcor_free_globals(&job.globals);
@@ -394,7 +362,7 @@ typedef struct rank_sums
 
 /* Finds the lengths of a slab's particles, first from these particles alone, then with all particles within 1.25 times
  * the supports found. */
-static void sum_on_rank(core_rank* rank, void* data)
+static mcor_status sum_on_rank(core_rank* rank, void* data)
 {
   rank_sums* job = data;
   mcor_message why;
@@ -414,7 +382,7 @@ static void sum_on_rank(core_rank* rank, void* data)
     }
   }
   mcor_input input = { .count = own, .positions = core_array(at, 3) };
-  int failed = mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why) != MCOR_OK;
+  mcor_status status = mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why);
   for (int64_t i = 0; i < count; ++i)
   {
     int is_near = 0;
@@ -439,9 +407,8 @@ static void sum_on_rank(core_rank* rank, void* data)
       memcpy(at + 3 * input.count++, job->set->position + 3 * i, 3 * sizeof *at);
     }
   }
-  failed |= mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why) != MCOR_OK;
+  MCOR_THEN(status, mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why));
   job->held[rank->number] = input.count;
-  job->wrong[rank->number] = failed;
   for (int64_t k = 0; k < own; ++k)
   {
     job->wrong[rank->number] += lengths[k] != job->whole[number[k]];
@@ -449,6 +416,7 @@ static void sum_on_rank(core_rank* rank, void* data)
   free(at);
   free(lengths);
   free(number);
+  return status;
 }
 
 /* Ranks that have all particles around their own find the lengths by neighbours of one process, to the last bit. */
@@ -482,6 +450,7 @@ static void lengths_by_neighbours(void** state)
       rank_sums job = { .set = &set, .options = &options, .whole = whole };
       core_world world;
       core_run_ranks(ranks, sum_on_rank, &job, &world);
+      core_expect_ranks(&world, "lengths");
       for (int r = 0; r < ranks; ++r)
       {
         CORE_CHECK(
@@ -491,15 +460,5 @@ static void lengths_by_neighbours(void** state)
   }
 }
 
-int main(int argc, char** argv)
-{
-  if (argc > 1)
-  {
-    cmocka_set_test_filter(argv[1]);
-  }
-  const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
-    cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
-    cmocka_unit_test(parts_of_a_band), cmocka_unit_test(lines_of_parts),
-    cmocka_unit_test(lengths_by_neighbours) };
-  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
-}
+CORE_MAIN(core_set_up, core_tear_down, global_values, not_finite_attributes, faults,
+  parts_of_a_band, lines_of_parts, lengths_by_neighbours)

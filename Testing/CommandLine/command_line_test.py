@@ -123,8 +123,10 @@ class CommandLineTest(unittest.TestCase):
                 "MCOR_FAILING_FOLDER": str(self.directory), **named}
 
 
-def main():
-    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]."""
+def main(display=False):
+    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]. display: all pictures share one display."""
+    if display and not os.environ.get("DISPLAY"):
+        os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
     CommandLineTest.program = os.path.abspath(sys.argv.pop(1))
     CommandLineTest.preload = os.path.abspath(sys.argv.pop(1))
     unittest.main(verbosity=2)

@@ -9,6 +9,7 @@ import os
 import re
 import struct
 import subprocess
+import sys
 import xml.etree.ElementTree
 import zlib
 
@@ -31,11 +32,13 @@ def read_png(path):
     raw, rows, before = zlib.decompress(packed), [], bytes(3 * width)
     for y in range(height):
         kind, *line = raw[y * (3 * width + 1):(y + 1) * (3 * width + 1)]
-        for x in range(3 * width):
-            left = line[x - 3] if x >= 3 else 0
-            up, corner = before[x], before[x - 3] if x >= 3 else 0
-            paeth = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
-            line[x] = (line[x] + (0, left, up, (left + up) // 2, paeth)[kind]) & 255
+        if kind == 2:
+            line = [(byte + up) & 255 for byte, up in zip(line, before)]
+        for x in range(3 * width) if kind in (1, 3, 4) else ():
+            left, up, corner = line[x - 3] if x >= 3 else 0, before[x], before[x - 3] if x >= 3 else 0
+            if kind == 4 and not left == up == corner:
+                left = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            line[x] = (line[x] + ((left + up) // 2 if kind == 3 else left)) & 255
         before = line
         rows.append([tuple(line[x:x + 3]) for x in range(0, 3 * width, 3)])
     return width, height, rows
@@ -668,4 +671,4 @@ class Picture(CommandLineTest):
 
 
 if __name__ == "__main__":
-    main()
+    main(display="Picture" in sys.argv)

@@ -13,10 +13,9 @@ import math
 import os
 import pathlib
 import re
-import sys
 
 import particle_files as files
-from command_line_test import WITH_DISPLAY, CommandLineTest, main
+from command_line_test import CommandLineTest, main
 
 BOX = "-0.15,0.15,-0.4,0.4,-0.4,0.02"
 # Each mode has its input files, its output and the options that a plain command line needs.
@@ -254,6 +253,4 @@ class Modes(CommandLineTest):
 
 
 if __name__ == "__main__":
-    if not os.environ.get("DISPLAY"):  # All pictures share one display.
-        os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
-    main()
+    main(display=True)

@@ -4,7 +4,6 @@
 
 #define PI 3.14159265358979323846
 
-/* Makes particles of spacing 1 in a box at the origin with sides of these lengths; the scalar repeats. */
 particle_set core_make_period(const int length[3], uint64_t seed)
 {
   particle_set set = particle_set_make((int64_t)length[0] * length[1] * length[2]);
@@ -23,10 +22,9 @@ particle_set core_make_period(const int length[3], uint64_t seed)
   return set;
 }
 
-/* Returns the set with its images in the neighbouring periods, along the axes that have one. */
 particle_set core_add_images(const particle_set* set, const double period[6])
 {
-  particle_set all = { 0 };
+  particle_set all = { .has_solids = set->has_solids };
   for (int image = 0; image < 27; ++image)
   {
     const int at[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };

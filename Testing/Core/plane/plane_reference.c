@@ -1,17 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-
 #include "plane_reference.h"
 
-double plane_norm(mcor_sph_kernel kernel)
-{
-  /* Each number over pi is the factor that makes the kernel's integral over the plane 1: 10 / (7 pi) for the
-   * first. test_core_plane checks these integrals. */
-  static const double norm[MCOR_SPH_KERNEL_COUNT] = { 1.4285714285714286, 1.6, 1,
-    1.7573221757322175, 1.3333333333333333, 1.6013344453711426, 1.1636363636363636,
-    1.0448979591836735, 1.0635845764083533 };
-  return norm[kernel];
-}
+#include "mcor_plane.h"
 
 double plane_u(const plane_field* f, int64_t i, int a)
 {
@@ -37,6 +28,7 @@ plane_sample plane_evaluate(const plane_field* f, double u, double v)
 {
   const particle_set* set = f->set;
   const mcor_options* o = f->options;
+  const double factor = mcor_kernel_of(o->sph_kernel)->plane_factor;
   plane_sample s = { 0 };
   double sum = 0, slope[2] = { 0, 0 }, moments[3] = { 0, 0, 0 };
   for (int64_t i = 0; i < set->count; ++i)
@@ -49,7 +41,7 @@ plane_sample plane_evaluate(const plane_field* f, double u, double v)
       continue;
     }
     double g[3];
-    const double scale = plane_norm(o->sph_kernel) * h * set->volume[i];
+    const double scale = factor * h * set->volume[i];
     const double w = scale * oracle_kernel_value((oracle_kernel)o->sph_kernel, h, d, g);
     const int solid = set->has_solids && set->solid[i];
     s.weight += w;

@@ -4,8 +4,8 @@
 #define plane_reference_h
 
 /* A reference for two dimensions: the field and its squares, as fine as the particles are, in double precision, at all
- * nodes, without code of the library. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two
- * coordinates, in cyclic order, are u and v. */
+ * nodes. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in cyclic order,
+ * are u and v. */
 
 #include "core_fixture.h"
 
@@ -29,9 +29,8 @@ typedef struct plane_sample
 double plane_u(const plane_field* field, int64_t i, int a);
 /* Returns the range of the field's values. */
 double plane_range(const plane_field* field);
-/* Returns W2 / (h W3), where W2 and W3 are the kernel in two and three dimensions, from numbers that the library does
- * not share. */
-double plane_norm(mcor_sph_kernel kernel);
+/* The kernel in the plane is the library's plane_factor h times the oracle's; test_core_plane checks that its integral
+ * is 1. */
 plane_sample plane_evaluate(const plane_field* field, double u, double v);
 
 /* Compares the surface with the squares of all levels (plane_squares.c): its vertices on sides of squares with the

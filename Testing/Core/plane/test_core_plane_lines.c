@@ -3,6 +3,8 @@
 
 /* Compares lines of two dimensions with a reference of all squares. */
 
+#include "core_period.h"
+#include "mcor_plane.h"
 #include "plane_reference.h"
 
 /* Extracts the lines of these particles and compares them with the reference's, whose set is field->set. */
@@ -24,13 +26,13 @@ static int64_t compare_set(
   return compare(context, &input, &field, closed);
 }
 
-/* The oracle's W is three-dimensional; W in the plane is plane_norm h times as large. */
+/* The oracle's W is three-dimensional; W in the plane is plane_factor h times as large. */
 static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
 {
   oracle_compute_volumes(set, (oracle_kernel)kernel, 2, NULL, NULL);
   for (int64_t i = 0; i < set->count; ++i)
   {
-    set->volume[i] /= plane_norm(kernel) * set->smoothing_length[i];
+    set->volume[i] /= mcor_kernel_of(kernel)->plane_factor * set->smoothing_length[i];
   }
 }
 
@@ -110,25 +112,6 @@ static void test_estimated_length(void** state)
   }
   const plane_field field = { &set, &options, 1, NULL };
   assert_true(compare(*state, &input, &field, 1) > 60);
-}
-
-/* Returns the set and its images around it. */
-static particle_set with_images(const particle_set* set, int axis, double period)
-{
-  particle_set all = particle_set_make(9 * set->count);
-  for (int64_t i = 0; i < all.count; ++i)
-  {
-    const int64_t from = i % set->count, image = i / set->count;
-    memcpy(all.position + 3 * i, set->position + 3 * from, 3 * sizeof(double));
-    all.position[3 * i + (axis + 1) % 3] += period * (double)(image % 3 - 1);
-    all.position[3 * i + (axis + 2) % 3] += period * (double)(image / 3 - 1);
-    all.smoothing_length[i] = set->smoothing_length[from];
-    all.volume[i] = set->volume[from];
-    all.scalar[i] = set->scalar[from];
-    all.solid[i] = set->solid[from];
-  }
-  all.has_solids = set->has_solids;
-  return all;
 }
 
 /* Squares of several sizes: smoothing lengths grow along u, or are mixed. Free surfaces are closed across levels. */
@@ -226,16 +209,8 @@ static void test_periods(void** state)
       options.box[2 * axis] = -INFINITY;
       options.box[2 * axis + 1] = INFINITY;
     }
-    CORE_SET all = with_images(&set, axis, period);
+    CORE_SET all = core_add_images(&set, options.periodic);
     const plane_field field = { &all, &options, axis, region };
-    if (!both)
-    {
-      all.count = 3 * set.count; /* the images along u */
-      for (int64_t i = 0; i < all.count; ++i)
-      {
-        all.position[3 * i + (axis + 2) % 3] += period;
-      }
-    }
     const mcor_input input = core_input(&set);
     CORE_CHECK(compare(*state, &input, &field, 0) > 20, round);
     CORE_SURFACE surface = core_extract(*state, &input, &options);

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run by mpirun: what ranks make together is, bit for bit, what rank 0 makes alone, however particles and points are strewn over the ranks.
 
-    test_ranks.py FOLDER_OF_DATA surfaces [CASE]
-    test_ranks.py FOLDER_OF_DATA samples [some]     some: strews each case in one way only; the ways take turns
+    test_ranks.py FOLDER_OF_DATA surfaces|samples [some | CASE]     some: strews each case in one way only; the ways take turns
 """
 import math
 import os
@@ -27,7 +26,8 @@ COMM = MPI.COMM_WORLD
 RANK, COUNT = COMM.Get_rank(), COMM.Get_size()
 CONTROLLER = vtkMPIController()
 CONTROLLER.SetCommunicator(vtkMPI4PyCommunicator.ConvertToVTK(COMM))
-FOLDER = sys.argv[1]
+FOLDER, WANTED = sys.argv[1], "".join(sys.argv[3:])
+SOME = WANTED == "some"
 DAMS, DAM = "double_dam_break_small", "dam_break_45k"  # The second one has walls, and smoothing lengths that differ.
 DOUBLE = vtkMarchingCorrectors.DOUBLE_PRECISION
 INDEX = "TestIndex"
@@ -55,6 +55,11 @@ WAYS = {
     "slabs thinner than a support": lambda index, at, count: np.nan_to_num(at[:, 0] * 200).astype(int) % count,
     "ranks without particles": lambda index, at, count: 2 * slab(at[:, 2], (count + 1) // 2),
     "copies marked as duplicates": lambda index, at, count: slab(at[:, 0], count)}
+
+
+def ways_of(number):
+    """Returns the ways in which the case with this number is strewn."""
+    return [list(WAYS)[number % len(WAYS)]] if SOME else list(WAYS)
 
 
 def take_part(whole, way, rank=RANK, count=COUNT):
@@ -248,11 +253,11 @@ def compare_told(whole, all_told):
             or name not in unknown and abs(value - whole[name]) > (0 if name in EXACT else 1e-12 * abs(whole[name]))]
 
 
-def check_surface(name, file, settings):
+def check_surface(number, name, file, settings):
     """Returns what differs, on rank 0."""
     particles, problems = make_particles(file), []
     whole, told = extract(settings, particles, None) if RANK == 0 else (None, None)
-    for way in WAYS:
+    for way in ways_of(number):
         own, own_told = extract(settings, (take_beside_mesh if file == MESH else take_part)(particles, way), CONTROLLER)
         parts, all_told = COMM.gather(part_of(own)), COMM.gather(own_told)
         if RANK == 0:
@@ -309,7 +314,7 @@ def sample(kind, settings, particles, points, controller):
     return values_of(made.GetOutput())
 
 
-def check_sample(number, name, file, constant, kind, settings, some):
+def check_sample(number, name, file, constant, kind, settings):
     """Returns what differs, on any rank."""
     particles = read(os.path.join(FOLDER, file + ".vtp"))
     add(particles, **{INDEX: np.arange(particles.GetNumberOfPoints())})
@@ -319,10 +324,8 @@ def check_sample(number, name, file, constant, kind, settings, some):
     whole = sample(kind, settings, particles, points, None)
     if np.count_nonzero(whole.get("vtkValidPointMask", whole.get("Gradients"))) <= 50:
         problems.append("there is nothing to compare with")
-    for i, way in enumerate(WAYS):
-        if some and i != number % len(WAYS):
-            continue
-        own, at = take_part(particles, way), take_part(points, list(WAYS)[(i + 2) % (len(WAYS) - 1)])
+    for way in ways_of(number):
+        own, at = take_part(particles, way), take_part(points, list(WAYS)[(list(WAYS).index(way) + 2) % (len(WAYS) - 1)])
         given = values_of(at if kind is vtkSPHProbe else own)
         found = sample(kind, settings, own, at, CONTROLLER)
         counts = given.get(vtkDataSetAttributes.GhostArrayName(), np.zeros(len(given[""]))) == 0
@@ -366,15 +369,10 @@ def check_named():
 
 
 def main():
-    wanted, problems = sys.argv[3] if len(sys.argv) > 3 else "", []
-    if sys.argv[2] == "surfaces":
-        for name, case in SURFACES.items():
-            problems += check_surface(name, *case) if wanted in name else []
-        problems += check_named()
-    else:
-        problems += check_without_points()
-        for number, (name, case) in enumerate(SAMPLES.items()):
-            problems += check_sample(number, name, *case, wanted == "some")
+    cases, check, problems = ((SURFACES, check_surface, check_named()) if sys.argv[2] == "surfaces" else
+                              (SAMPLES, check_sample, check_without_points()))
+    for number, (name, case) in enumerate(cases.items()):
+        problems += check(number, name, *case) if SOME or WANTED in name else []
     problems = COMM.allreduce(problems)
     sys.exit(1 if problems else 0)
 

@@ -44,46 +44,21 @@ class Plane(CommandLineTest):
 
     def test_dimension(self):
         self.succeed("--free-surface", "--dimension", "2")
-        self.assertEqual(self.cells("Lines"), 1)
-        result = self.extract("--free-surface", "--iso", "0.1", "--dimension", "3")
-        self.assertRegex(result.stderr, says("PLANE_IN_SPACE"))
+        self.extract("--free-surface", "--iso", "0.1", "--dimension", "3")
         self.assertEqual(self.cells("Lines"), 0)
         self.output.unlink()
-        files.write_vtp(self.input, *files.lattice())
-        self.refuse(self.extract(*ISO, "--dimension", "2"), 1, "do not share one coordinate exactly")
         self.refuse(self.extract(*ISO, "--dimension", "4"), 2, "auto, 2 or 3|auto.*2.*3")
 
     def test_filled(self):
-        free = self.succeed("--free-surface")["statistics"]
-        filled = self.succeed("--free-surface", "--filled")
-        run = filled["statistics"]
+        run = self.succeed("--free-surface", "--filled")["statistics"]
         self.assertEqual((self.cells("Lines"), self.cells("Polys")), (1, run["triangles"]))
-        self.assertGreater(run["triangles"], 1000)
-        self.assertEqual((run["lines"], filled["parameters"]["filled"]), (1, 1))
-        self.assertAlmostEqual(run["area"], free["area"], delta=1e-9)
         self.assertIn('Name="BandValue"', self.output.read_text())
         stl = self.directory / "surface.stl"
         self.run_good(self.input, stl, "--free-surface", "--filled", "--no-attributes")
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
-    def test_values_in_filled_regions(self):
-        """The contoured array holds the field's own values, and another array holds the iso value of each point."""
-        self.extract_good("--scalar", "Radius", "--iso", "0.2,0.5", "--filled", "--quiet")
-        ranges = {name: (float(low), float(high)) for name, low, high in
-                  re.findall(r'Name="(\w+)"[^>]*RangeMin="(\S+)"[^>]*RangeMax="(\S+)"', self.output.read_text())}
-        self.assertEqual(ranges["IsoValue"], (0.2, 0.5))
-        self.assertEqual(ranges["BandValue"], (0.2, 0.5))
-        self.assertLess(abs(ranges["Radius"][0] - 0.2), 1e-3)
-        self.assertGreater(ranges["Radius"][1], 0.9)
-
     def test_filled_alone(self):
         self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, says("CAPPING_WITH_FILLED", "--capping", "--filled"))
-
-    def test_flat_box(self):
-        """A box that has no thickness works like a thick one if it lies around the particles."""
-        half, thick = (self.succeed("--free-surface", f"--box=-inf,inf,{y},0,inf")["statistics"] for y in ("0.25,0.25", "0.2,0.3"))
-        self.assertGreater(half["points"], 50)
-        self.assertEqual((half["points"], half["length"]), (thick["points"], thick["length"]))
 
     def test_columns_of_a_table(self):
         """Tables keep arrays whose names other columns have or which look like formulas, and integers too large for a double."""
@@ -141,29 +116,9 @@ class Plane(CommandLineTest):
         files.write_vtp(self.input, self.points, self.arrays)
         self.refuse(self.extract("--free-surface", "--filled"), 1, "too many to be filled")
 
-    def test_line_of_a_probe(self):
-        result = self.run_good(self.input, self.output, "--line=-1.5,0.25,0,1.5,0.25,0", "--resolution", "31")
-        self.assertRegex(result.stdout, r"points +31, (1[89]|2[0-5]) of them valid")
-        away = self.run_program(self.input, self.output, "--line=-1.5,0.5,0,1.5,0.5,0", "--resolution", "31")
-        self.assertRegex(away.stdout, r"points +31, 0 of them valid")
-
     def point_values(self, name):
         kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
-
-    def test_tables(self):
-        """A film of lines and gauges in their plane write tables."""
-        files.write_pvd(self.directory / "steps.pvd", [("0", "particles.vtp"), ("1", "particles.vtp")])
-        table = self.directory / "numbers.csv"
-        self.run_good("steps.pvd", "film_%d.vtp", "--free-surface", "--numbers", table)
-        rows = read_table(table)
-        self.assertEqual(len(rows), 2)
-        for row in rows:
-            self.assertAlmostEqual(float(row["area"]), 4, delta=0.1)
-        self.run_good(self.input, table, "--gauge", "up=0,0.25,-2:0,0.25,2")
-        row, = read_table(table)
-        self.assertEqual((row["gauge"], row["state"]), ("up", "wet"))
-        self.assertAlmostEqual(float(row["last"]), 3, delta=0.05)
 
     def write_walls_elsewhere(self):
         self.arrays["Kind"] = [int(z < -0.8) for _, _, z in self.points]

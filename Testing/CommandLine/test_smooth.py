@@ -64,15 +64,6 @@ class Smooth(CommandLineTest):
                 self.run_good(self.input, self.directory / "empty.vtp", *field, "--iso", "5000", *options,
                               says="surface is empty")
 
-    def test_filled(self):
-        """In a plane, a smooth region is filled, without compaction."""
-        plane = [i for i, point in enumerate(files.lattice()[0]) if point[2] == files.lattice()[0][0][2]]
-        points = [(*self.points[i][:2], 0.0) for i in plane]
-        files.write_vtp(self.input, points, {"SmoothingLength": [0.13] * len(plane)})
-        filled, rough = (self.succeed("--free-surface", "--filled", *options)["statistics"] for options in (["--smooth"], []))
-        self.assertAlmostEqual(filled["area"], 1, delta=0.1)
-        self.assertLess(filled["length"], rough["length"])
-
     def test_refused(self):
         self.refuse_all(1, [(["--compact", "--filled"], says("FILLED_WITH_COMPACT", "--compact"))], "--free-surface")
         self.refuse_all(2, [(["--widening", "f.vtp"], "--widening needs --widen or --smooth"), (["--widen", "9"], "from 1 to 4, not '9'"),

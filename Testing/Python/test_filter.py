@@ -139,6 +139,8 @@ class TestPoints(FilterTest):
         self.assertEqual((surface.GetNumberOfLines(), len(bands)), (2, surface.GetNumberOfCells()))
         self.assertEqual([surface.GetCell(i).GetCellDimension() for i in (0, 1, 2, len(bands) - 1)], [1, 1, 2, 2])
         self.assertEqual(set(bands), {-1, 0.3, 0.6})
+        self.assertEqual(set(values_of(surface, "IsoValue")), {-1, 0.3, 0.6})
+        self.assertGreater(values_of(surface, "Radius").max(), 0.9)  # The contoured array keeps the field's values.
         areas = numpy.linalg.norm(normals_of(surface), axis=1) / 2
         self.assertAlmostEqual(areas[bands[2:] == 0.3].sum(), 0.27 * math.pi, delta=0.02)
         space = sphere()

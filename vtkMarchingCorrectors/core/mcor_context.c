@@ -115,6 +115,7 @@ void mcor_free_context(mcor_context* context)
   mcor_release_all_data(context);
   mcor_close_device(context);
   mcor_close_profile(context);
+  mcor_end_pool(&context->pool);
   free(context);
 }
 
@@ -206,6 +207,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
     mcor_blame_outlier(context, &flat.input);
   }
   mcor_end_building(&context->cl);
+  mcor_end_pool(&context->pool);
   const mcor_status written = mcor_write_profile(context, statistics);
   MCOR_THEN(status, written);
   const bool is_all = !far.solid;

@@ -7,6 +7,7 @@
  * calls. */
 
 #include "mcor_cl.h"
+#include "mcor_parallel.h"
 #include "mcor_parts.h"
 #include "mcor_shared.h"
 #include "mcor_table.h"
@@ -331,6 +332,7 @@ struct mcor_context
   mcor_says code;
   char error[4096], told[4096]; /* the last failure: with slots, and with filled slots */
   mcor_run run;
+  mcor_pool pool; /* threads of the host during a call, unless the device is the built-in one */
 
   /* The device, and what it holds for any particles. */
   mcor_cl cl;

@@ -144,6 +144,7 @@ static void test_building_ahead(void** state)
   CORE_SURFACE surface = core_extract(context, &input, &options);
   assert_true(core_hash(&surface) == core_hash(&expected));
   assert_null(context->cl.builder);
+  assert_int_equal(context->pool.count, 0);
   unsetenv("MCOR_THREADS");
 }
 

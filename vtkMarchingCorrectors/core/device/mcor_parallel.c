@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Threads. The built-in device's threads wait from one loop to the next, and serve the loops of the
- * host, too. With any other device, or none, threads live for one loop. */
+/* Threads, which wait from one loop to the next. The built-in device's threads serve the loops of the
+ * host, too. With any other device, threads live for one call; without a context, for one loop. */
 
 #include "mcor_cl_call.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define MCOR_LOOP_THREADS 16 /* the most threads for a loop of the host without the built-in device */
+#define MCOR_LOOP_THREADS 16 /* the most threads for loops of the host without the built-in device */
 
 int mcor_limit_threads(int usable)
 {
@@ -92,6 +92,7 @@ void mcor_end_pool(mcor_pool* pool)
     pthread_mutex_destroy(&pool->lock);
   }
   free(pool->all);
+  *pool = (mcor_pool){ 0 };
 }
 
 mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
@@ -179,17 +180,21 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
 static mcor_status mcor_run_loop(mcor_context* context, bool asks, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices)
 {
-  mcor_pool* of_device = context ? context->cl.pool : NULL;
+  mcor_pool own = { 0 };
+  mcor_pool* pool = !context ? &own : context->cl.pool ? context->cl.pool : &context->pool;
   const int64_t most = count / grain;
   mcor_loop loop = { count,
     most > MCOR_SLICES ? MCOR_SLICES
       : most > 0       ? (int)most
                        : count > 0,
     body, data };
-  const int usable = of_device || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
-  mcor_pool own = { .threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS };
-  const mcor_status status = mcor_pool_run(of_device ? of_device : &own, asks ? context : NULL, 0,
-    (size_t)loop.slices, 1, mcor_run_slices, &loop);
+  if (pool->threads == 0 && loop.slices > 1)
+  {
+    const int usable = mcor_limit_threads(mcor_processors(1));
+    pool->threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS;
+  }
+  const mcor_status status = mcor_pool_run(
+    pool, asks ? context : NULL, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
   mcor_end_pool(&own);
   if (slices)
   {

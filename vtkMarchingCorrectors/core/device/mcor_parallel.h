@@ -53,7 +53,7 @@ typedef void mcor_pool_body(void* data, size_t first, size_t last);
  * when a loop needs them; all zero but for `threads`: none exists yet. */
 typedef struct mcor_pool
 {
-  int threads;    /* the most threads, the calling one included */
+  int threads;    /* the most threads, the calling one included; 0: not decided */
   int count;      /* how many exist */
   pthread_t* all; /* [threads - 1] */
   long process; /* the process that created them (a process made by fork has none of them); 0: none */
@@ -74,7 +74,7 @@ typedef struct mcor_pool
  * has set. context: as above. */
 mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
   size_t step, mcor_pool_body* body, void* data);
-/* Ends the threads of a pool. */
+/* Ends the threads of a pool, which is then all zero. */
 void mcor_end_pool(mcor_pool* pool);
 
 #endif

@@ -110,11 +110,15 @@ static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging
   const size_t size = context->cl.fix_size;
   mcor_buffer* from[] = { &stage->y, &stage->z, &stage->inv_h, &stage->size };
   mcor_buffer* to[] = { &grid->py, &grid->pz, &grid->inv_h, &grid->trim_weight };
+  cl_int most_in_cell = MCOR_USUAL_IN_CELL;
+  MCOR_TRY(mcor_write(context, &stage->found, &most_in_cell, sizeof most_in_cell));
   MCOR_TRY(mcor_reserve_padded(context, &grid->px, count, size));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
     MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->x), MCOR_BUFFER(&stage->y),
     MCOR_BUFFER(&stage->z), MCOR_BUFFER(&stage->inv_h), MCOR_BUFFER(&stage->size),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px)));
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&stage->found)));
+  MCOR_TRY(mcor_read(context, &stage->found, 0, &most_in_cell, sizeof most_in_cell));
+  grid->most_in_cell = most_in_cell;
   mcor_release(context, &stage->x);
   const bool is_moved[] = { true, true, !staging->one_inv_h, !staging->one_size };
   for (int i = 0; i < 4; ++i)
@@ -190,12 +194,6 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
   MCOR_RELEASE_EACH(context, &context->sort);
-  cl_int most_in_cell = MCOR_USUAL_IN_CELL;
-  MCOR_TRY(mcor_write(context, &stage->found, &most_in_cell, sizeof most_in_cell));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count", MCOR_LIGHT, mcor_batches(context, count),
-    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->found)));
-  MCOR_TRY(mcor_read(context, &stage->found, 0, &most_in_cell, sizeof most_in_cell));
-  grid->most_in_cell = most_in_cell;
   MCOR_TRY(mcor_move_particles(context, staging));
   return mcor_index_cells(context, cells);
 }

@@ -19,18 +19,6 @@ typedef struct mcor_spread_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_spread_job;
 
-/* Whether all particles of a chunk have the coordinate that all fluid before them has. The loop is
- * written so that compilers vectorise it. */
-static bool mcor_is_all_at(const double* x, int count, double low, double high)
-{
-  int off = low != high;
-  for (int i = 0; i < count; ++i)
-  {
-    off |= x[i] != low;
-  }
-  return !off;
-}
-
 /* Stops along an axis once the fluid is not flat there: how far it goes then does not matter. */
 static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last)
 {
@@ -50,8 +38,7 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
         continue;
       }
       mcor_read_array(&input->positions, begin, count, a, x);
-      const bool same = !input->solid && mcor_is_all_at(x, count, spread.least[a], spread.most[a]);
-      for (int i = 0; i < count && !same; ++i)
+      for (int i = 0; i < count; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (mcor_is_present(input, begin + i) && (finite || !solid))

@@ -42,20 +42,9 @@ MCOR_VECTOR_LOOPS void mcor_read_array(
   }
 }
 
-MCOR_VECTOR_LOOPS void mcor_read_positions(
+void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
 {
-  if (input->positions.type != MCOR_FLOAT64 && mcor_components(&input->positions) == 3)
-  {
-    const float* data = (const float*)input->positions.data + 3 * first;
-    for (int i = 0; i < count; ++i) /* reads memory once for the three */
-    {
-      x[0][i] = (double)data[3 * i];
-      x[1][i] = (double)data[3 * i + 1];
-      x[2][i] = (double)data[3 * i + 2];
-    }
-    return;
-  }
   for (int a = 0; a < 3; ++a)
   {
     mcor_read_array(&input->positions, first, count, a, x[a]);

@@ -23,8 +23,7 @@
 
 typedef struct mcor_wall_sample
 {
-  double x[3], share;
-  int64_t fluid, solid; /* whole weights */
+  double x[3], fluid, share; /* fluid: its whole weight */
 } mcor_wall_sample;
 
 typedef struct mcor_wall_measure
@@ -129,19 +128,17 @@ static double mcor_median_share(mcor_wall_measure* wall)
   double sum = 0, counted = 0;
   for (int s = 0; s < wall->count; ++s)
   {
-    mcor_wall_sample* sample = &wall->sample[s];
-    const double fluid = (double)sample->fluid, solid = (double)sample->solid;
-    sample->share = solid / (fluid + solid);
+    const double fluid = (double)wall->weights[0][s][0], solid = (double)wall->weights[0][s][1];
     if (fluid > 0 && solid > 0)
     {
       sum += fluid;
-      wall->sample[count++] = *sample;
+      wall->sample[count++] = (mcor_wall_sample){ .fluid = fluid, .share = solid / (fluid + solid) };
     }
   }
   qsort(wall->sample, (size_t)count, sizeof wall->sample[0], mcor_compare_shares);
   for (int s = 0; s < count; ++s)
   {
-    counted += (double)wall->sample[s].fluid;
+    counted += wall->sample[s].fluid;
     if (counted >= 0.5 * sum)
     {
       return fmin(fmax(wall->sample[s].share, 0.01), 0.99);
@@ -178,20 +175,12 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* 
   int slices;
   MCOR_TRY(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall, &slices));
-  int64_t weights[MCOR_SAMPLES][2] = { { 0 } };
-  for (int n = 0; n < slices * wall->count; ++n)
+  for (int n = 2 * wall->count; n < 2 * wall->count * slices; ++n)
   {
-    const int slice = n / wall->count, s = n % wall->count;
-    weights[s][0] += wall->weights[slice][s][0];
-    weights[s][1] += wall->weights[slice][s][1];
+    const int slice = n / 2 / wall->count, s = n / 2 % wall->count;
+    wall->weights[0][s][n % 2] += wall->weights[slice][s][n % 2];
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, weights[0], 2 * wall->count));
-  for (int s = 0; s < wall->count; ++s)
-  {
-    wall->sample[s].fluid = weights[s][0];
-    wall->sample[s].solid = weights[s][1];
-  }
-  return MCOR_OK;
+  return mcor_reduce_counts(context, MCOR_SUM_OF, wall->weights[0][0], 2 * wall->count);
 }
 
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)

@@ -158,24 +158,15 @@ static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count
   }
 }
 
-/* Gaps between marked particles that are shorter than this are read, too. */
-#define MCOR_STAGE_GAP 8
-
-/* Finds the next run of particles to read at once, and sets *begin to its beginning; returns its
- * length, 0 at the end. */
-static int mcor_next_run(const mcor_staging* staging, int64_t* begin, int64_t last)
+/* Returns the length of the next chunk to read, from *begin on; 0 at the end. Passes over chunks
+ * without a marked particle. */
+static int mcor_next_chunk(const mcor_staging* staging, int64_t* begin, int64_t last)
 {
-  const uint8_t* images = staging->images;
-  if (!images)
+  int count = mcor_chunk_of(last - *begin);
+  while (count > 0 && staging->images && !memchr(staging->images + *begin, 1, (size_t)count))
   {
-    return mcor_chunk_of(last - *begin);
-  }
-  const uint8_t* next = *begin < last ? memchr(images + *begin, 1, (size_t)(last - *begin)) : NULL;
-  *begin = next ? next - images : last;
-  int count = 0;
-  for (int i = 0; i < MCOR_CHUNK && *begin + i < last && i - count < MCOR_STAGE_GAP; ++i)
-  {
-    count = images[*begin + i] ? i + 1 : count;
+    *begin += count;
+    count = mcor_chunk_of(last - *begin);
   }
   return count;
 }
@@ -195,7 +186,7 @@ static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last
     mcor_mark_near(staging, begin, mcor_chunk_of(last - begin));
   }
   for (int64_t begin = first;
-       staging->reach && (chunk.count = mcor_next_run(staging, &begin, last)) > 0;
+       staging->reach && (chunk.count = mcor_next_chunk(staging, &begin, last)) > 0;
        begin += chunk.count)
   {
     mcor_read_stage_places(staging, begin, &chunk);
@@ -323,13 +314,6 @@ static double mcor_weight_limit(const mcor_context* context)
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
 }
 
-/* Returns a particle's weight on the device: large where the volume is huge against the smoothing
- * length. */
-static double mcor_stage_weight(double size, double inv_h)
-{
-  return size * inv_h * inv_h * inv_h;
-}
-
 /* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy, or
  * that has changed: it lies outside of the measured bounds, on which all later steps rely. */
 static void mcor_stage_chunk_at(
@@ -355,7 +339,7 @@ static void mcor_stage_chunk_at(
   mcor_invert_lengths(context, chunk, inv_h);
   for (int i = 0; i < weighed; ++i)
   {
-    weight[i] = mcor_stage_weight(chunk->size[i], inv_h[i]);
+    weight[i] = chunk->size[i] * inv_h[i] * inv_h[i] * inv_h[i]; /* large if the volume is huge */
   }
   const bool heavy = !mcor_is_all_within(weight, weighed, 0, limit);
   double unused = DBL_MAX;
@@ -363,6 +347,7 @@ static void mcor_stage_chunk_at(
   for (int i = 0; i < weighed && heavy && slice->heavy < 0; ++i)
   {
     slice->heavy = weight[i] <= limit ? -1 : chunk->source[i];
+    slice->largest_weight = weight[i];
   }
   if (!heavy)
   {
@@ -428,7 +413,7 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   slice->one_inv_h = slice->one_size = true;
   out.count = 0;
   while (
-    slice->heavy < 0 && !slice->changed && (chunk.count = mcor_next_run(staging, &begin, last)) > 0)
+    slice->heavy < 0 && !slice->changed && (chunk.count = mcor_next_chunk(staging, &begin, last)) > 0)
   {
     const int read = chunk.count;
     mcor_read_stage_places(staging, begin, &chunk);
@@ -510,18 +495,9 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
     const mcor_stage_slice* slice = &staging->slices[i];
     MCOR_FAIL_IF(slice->changed, context, MCOR_INVALID_DATA, MCOR_SAY(ARRAYS_CHANGED),
       options->globals ? ", or options.globals was measured over other particles" : "");
-    if (slice->heavy >= 0)
-    {
-      mcor_stage_chunk chunk = { .count = 1 };
-      double inv_h;
-      staging->reach = NULL;
-      mcor_read_stage_places(staging, slice->heavy, &chunk);
-      mcor_read_stage_sizes(staging, slice->heavy, &chunk);
-      mcor_invert_lengths(context, &chunk, &inv_h);
-      return mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
-        (long long)slice->heavy, mcor_stage_weight(chunk.size[0], inv_h),
-        context->cl.real_size == sizeof(float) ? "single" : "double");
-    }
+    MCOR_FAIL_IF(slice->heavy >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
+      (long long)slice->heavy, slice->largest_weight,
+      context->cl.real_size == sizeof(float) ? "single" : "double");
     context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
     one = slice->used > 0 && !one ? slice : one;
     staging->one_inv_h =

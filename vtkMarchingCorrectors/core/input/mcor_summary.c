@@ -6,7 +6,6 @@
 #include "mcor_input.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* From this number of cells in the fluid on, a run is called huge. */
@@ -89,14 +88,10 @@ char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statist
 {
   const double low = statistics->smoothing_length_min, high = statistics->smoothing_length_max;
   const mcor_array* array = &input->smoothing_length;
-  char end[32] = "";
-  if (low < high)
-  {
-    snprintf(end, sizeof end, " to %g", high);
-  }
+  char* text = low < high ? mcor_text("%g to %g", low, high) : mcor_text("%g", low);
   return input->estimate_smoothing_length
-    ? mcor_text("%g%s (estimated)", low, end)
-    : mcor_text("%g%s (%s%s%s)", low, end, array->data ? "array " : "given",
+    ? mcor_append(text, " (estimated)")
+    : mcor_append(text, " (%s%s%s)", array->data ? "array " : "given",
         array->data && array->name ? array->name : "",
         input->smoothing_length_is_support_radius ? ", support radius" : "");
 }
@@ -117,13 +112,15 @@ char* mcor_describe_volume(const mcor_input* input)
   {
     return mcor_text("computed from the positions");
   }
-  char* mass = mcor_describe_array(&input->mass);
-  char* density = mcor_is_given(&input->density) ? mcor_describe_array(&input->density)
-                                                 : mcor_text("density summed from it");
-  char* both = mass && density ? mcor_text("%s / %s", mass, density) : NULL;
-  free(mass);
+  char* text = mcor_describe_array(&input->mass);
+  if (!mcor_is_given(&input->density))
+  {
+    return mcor_append(text, " / density summed from it");
+  }
+  char* density = mcor_describe_array(&input->density);
+  text = mcor_append(text, " / %s", density ? density : "");
   free(density);
-  return both;
+  return text;
 }
 
 char* mcor_describe_measures(const mcor_statistics* statistics)

@@ -34,21 +34,6 @@ __kernel void mcor_grid_key(const int count, const int is_simple, __global const
   }
 }
 
-/* One work-item = the cells that begin in a batch of sorted keys. Raises `most` to the largest
- * number of particles in a cell. */
-__kernel void mcor_grid_count(const int count, __global const ulong* keys, __global int* most)
-{
-  const int begin = get_global_id(0) * MCOR_BATCH, end = min(begin + MCOR_BATCH, count);
-  for (int i = begin + MCOR_USUAL_IN_CELL; i < end + MCOR_USUAL_IN_CELL && i < count; ++i)
-  {
-    const int first = i - MCOR_USUAL_IN_CELL;
-    if (keys[first] == keys[i] && (first == 0 || keys[first] != keys[first - 1]))
-    {
-      atomic_max(most, mcor_find_key(keys, i, count, keys[i] + 1) - first);
-    }
-  }
-}
-
 /* Arrays of particles, in any order. size: volume or mass, or 1; below 0 for solids. */
 #define MCOR_PARTICLES                                                                             \
   __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
@@ -176,9 +161,9 @@ void mcor_grid_insert(MCOR_PARTICLES, __global int* order, __global fix* px, int
 
 /* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order.
  * Sorts the particles within these cells, so that their order no longer depends on the input;
- * writes `order`, and px in this order. */
+ * writes `order`, and px in this order. Raises `most` to the largest number of particles in a cell. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_PARTICLES,
-  __global int* order, __global fix* px)
+  __global int* order, __global fix* px, __global int* most)
 {
   int first = get_global_id(0) * MCOR_BATCH;
   const int end = min(first + MCOR_BATCH, count);
@@ -192,6 +177,10 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
     while (last < count && keys[last] == keys[first])
     {
       ++last;
+    }
+    if (last - first > MCOR_USUAL_IN_CELL)
+    {
+      atomic_max(most, last - first);
     }
     if (last - first <= MCOR_INSERTION_LIMIT)
     {

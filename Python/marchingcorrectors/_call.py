@@ -272,7 +272,7 @@ def parse_range(name, wanted):
     ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
     ends = [convert(float, f"value of '{name}' in only", end) for end in ends]
     if len(ends) != 2 or not ends[0] <= ends[1]:
-        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one.")
+        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one, the lower value first.")
     return ends
 
 

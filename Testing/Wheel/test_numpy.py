@@ -309,6 +309,7 @@ class Refused(unittest.TestCase):
                    ("lower ones first", {"within": (1, 0, 0, 1, 0, 1)}), ("within does not hold numbers", {"within": "abcdef"}),
                    ("Did you mean 'wall'.*Attributes: wall, x", {"only": {"walls": 1}}), ("not a number", {"only": {"wall": "a"}}),
                    ("lowest and the highest", {"only": {"wall": (1, 2, 3)}}), ("lower value", {"only": {"wall": (3, 1)}}),
+                   ("is nan; it must be a number", {"only": {"wall": np.nan}}),
                    ("'x'.*one number for each", {"only": {"x": 1}}), ("True or False for each of 2744", {"only": wall}),
                    attributes={"wall": wall, "x": POSITIONS})
         for words in ({"within": (5, 6, 5, 6, 5, 6)}, {"only": wall < 0}, {"fluid": ("wall", 9)}, {"fluid": (wall, 9)}, {"solid": wall >= 0}):
@@ -329,7 +330,7 @@ class Refused(unittest.TestCase):
             self.assertEqual(sphere(fluid="auto", attributes=marks), sphere(fluid="ParticleType=0", attributes=marks))
         with self.assertWarnsRegex(mc.InputWarning, "No array clearly tells .* fluid names an array"):
             sphere(fluid="auto")
-        self.check(mc.InvalidArgument, ("is nan; it must be a number", {"only": {"a": np.nan}, "attributes": {"a": DISTANCE}}), ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
+        self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}, {"fluid": "wall=1"}), ("solid and fluid both", {
             "solid": wall, "fluid": ("wall", 1)}), *((r'it must be \("NAME", VALUE\)', {"fluid": fluid}) for fluid in ("wall", 3, ("wall",), {})),
                    ("value of fluid is 'x'", {"fluid": "wall=x"}), call=mc.gauge, positions=POSITIONS,
                    lines=((0, 0, 0), (1, 1, 1)), smoothing_length=H)

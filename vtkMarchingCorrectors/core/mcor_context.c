@@ -224,33 +224,6 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   return status;
 }
 
-/* Makes a second attempt where memory ran out and some could be freed. */
-static mcor_status mcor_try_twice(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
-  void* result)
-{
-  mcor_cl* cl = &context->cl;
-  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
-  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
-  const int64_t held = cl->bytes;
-  context->run.fraction = 0;
-  mcor_status status =
-    mcor_try_call(context, input, options, uses_solids, statistics, body, result);
-  if (status == MCOR_OUT_OF_CAPACITY)
-  {
-    mcor_release_memory(context);
-    if (held > cl->bytes && !options->ranks) /* a second attempt would need all ranks */
-    {
-      status = mcor_try_call(context, input, options, uses_solids, statistics, body, result);
-    }
-  }
-  if (status == MCOR_OUT_OF_CAPACITY)
-  {
-    mcor_release_memory(context); /* lets a smaller input find room */
-  }
-  return status;
-}
-
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)
@@ -259,10 +232,30 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   {
     return MCOR_DEVICE_ERROR; /* the error sentence says why */
   }
+  mcor_cl* cl = &context->cl;
+  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
+  const int64_t held = cl->bytes;
+  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
+  context->run.fraction = 0;
   mcor_sight sight;
   mcor_status status = mcor_see_input(context, input, &sight);
-  MCOR_THEN(status,
-    mcor_try_twice(context, &sight.input, options, uses_solids, statistics, body, result));
+  if (status == MCOR_OK)
+  {
+    status = mcor_try_call(context, &sight.input, options, uses_solids, statistics, body, result);
+    if (status == MCOR_OUT_OF_CAPACITY)
+    {
+      mcor_release_memory(context);
+      if (held > cl->bytes && !options->ranks) /* a second attempt would need all ranks */
+      {
+        status =
+          mcor_try_call(context, &sight.input, options, uses_solids, statistics, body, result);
+      }
+    }
+    if (status == MCOR_OUT_OF_CAPACITY)
+    {
+      mcor_release_memory(context); /* lets a smaller input find room */
+    }
+  }
   mcor_end_sight(&sight);
   return status;
 }

@@ -42,8 +42,6 @@ typedef struct mcor_far_job
                         * is needed */
   double margin;       /* of mcor_reach_around */
   double radius;       /* all particles within this distance of the region stay */
-  double centre[3],
-    half; /* without a region: the grid's middle, and how far it may go from there */
   mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
                                            * this rank. */
 } mcor_far_job;
@@ -62,14 +60,13 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       const int64_t particle = first + i;
       const uint8_t was = input->solid ? input->solid[particle] : 0;
       const bool is_used = mcor_is_used(job->context, input, particle);
-      const double near = fmax(p.length[i] * (job->reach + job->slack), job->radius);
+      const double reach = p.length[i] * (job->reach + job->slack),
+                   near = far->is_cut ? fmax(reach, job->radius) : 0;
       bool is_far = false;
       for (int a = 0; a < 3 && is_used; ++a)
       {
         const double x = p.x[a][i], low = far->region[2 * a], high = far->region[2 * a + 1];
-        const double beyond =
-          far->is_cut ? fmax(low - x, x - high) - near : fabs(x - job->centre[a]) - job->half;
-        is_far = is_far || (job->open[a] && !(beyond <= 0));
+        is_far = is_far || (job->open[a] && !(fmax(low - x, x - high) - near <= 0));
       }
       far->solid[particle] = is_far ? MCOR_ABSENT : was;
       found.sums[MCOR_USED] += is_used;
@@ -78,7 +75,7 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       found.first = is_far && particle < found.first ? particle : found.first;
       if (is_used && !is_far)
       {
-        mcor_add_range(&found, 0, 0, p.length[i] * (job->reach + job->slack));
+        mcor_add_range(&found, 0, 0, reach);
       }
     }
   }
@@ -120,8 +117,10 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   return MCOR_OK;
 }
 
-/* Keeps the particles around the middle of a sample of the fluid. */
-static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, bool* good)
+/* Keeps the particles around the middle of a sample of the fluid. half: how far the grid may go from
+ * there. */
+static mcor_status mcor_mark_farthest(
+  mcor_context* context, mcor_far_job* job, double half, bool* good)
 {
   const mcor_sample_list* samples = &context->samples[0];
   mcor_far* far = job->far;
@@ -133,7 +132,9 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     {
       x[s] = samples->of[s].x[a];
     }
-    job->centre[a] = mcor_median_of(x, samples->count);
+    const double centre = mcor_median_of(x, samples->count);
+    far->region[2 * a] = centre - half;
+    far->region[2 * a + 1] = centre + half;
   }
   MCOR_TRY(mcor_mark_far(context, job));
   const int64_t own = far->first, share = job->all.sums[MCOR_USED] / MCOR_FAR_SHARE;
@@ -175,7 +176,7 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   job.reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
   job.slack = (has_box ? mcor_box_slack(options) : MCOR_POINTS_SLACK) * edge / m->h_min;
   job.margin = 2 * edge;
-  job.half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job.reach * m->h_median;
+  const double half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job.reach * m->h_median;
   for (int a = 0; a < 3; ++a)
   {
     job.open[a] = context->lattice.period[a] == 0;
@@ -187,7 +188,7 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   }
   else
   {
-    MCOR_TRY(mcor_mark_farthest(context, &job, &good));
+    MCOR_TRY(mcor_mark_farthest(context, &job, half, &good));
   }
   if (!good)
   {

@@ -194,12 +194,8 @@ void mcor_find_fluid(mcor_finder* f)
 
 static bool mcor_has_within(const mcor_request* request)
 {
-  bool has = false;
-  for (int side = 0; side < 6; ++side)
-  {
-    has = has || request->within[side] != 0;
-  }
-  return has;
+  static const double none[6];
+  return memcmp(request->within, none, sizeof none) != 0;
 }
 
 /* Marks particles that Within and Only leave out. */

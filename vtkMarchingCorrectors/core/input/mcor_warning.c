@@ -113,36 +113,44 @@ static double mcor_single_step(double largest)
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-/* Warns where steps at the largest coordinate are too long, and all of the fluid's coordinates are
- * numbers of single precision. */
-static mcor_message mcor_warn_coarse(const mcor_suspicion* s)
+/* Whether steps at the largest coordinate are too long, and all of the fluid's coordinates are numbers
+ * of single precision. axis: of the largest coordinate. */
+static bool mcor_is_coarse(const mcor_suspicion* s, int* axis, double* step)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_input* input = s->input;
-  mcor_array coordinates = input->positions;
+  mcor_array coordinates = mcor_positions_of(input);
   const bool known = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES;
   const int64_t count = known && input->positions.data ? input->count : 0;
   double largest = 0;
-  int axis = 0;
-  coordinates.components = 3;
+  *axis = 0;
   for (int a = 0; a < 3; ++a)
   {
     double range[2];
     mcor_find_range(NULL, &coordinates, input->solid, MCOR_SKIP_SOLIDS, count, a, range);
     const double along = mcor_largest_of(range[0], range[1]);
-    axis = along > largest ? a : axis;
+    *axis = along > largest ? a : *axis;
     largest = fmax(along, largest);
   }
   coordinates.components = 1;
-  const double step = mcor_single_step(largest);
-  bool coarse = step * MCOR_COARSE_STEPS > n->spacing_median;
+  *step = mcor_single_step(largest);
+  bool coarse = *step * MCOR_COARSE_STEPS > n->spacing_median;
   for (int64_t i = 0; i < 3 * count && coarse; ++i)
   {
     const double x = mcor_array_at(&coordinates, i, 0);
     coarse = (input->solid && input->solid[i / 3]) || (double)(float)x == x;
   }
-  return coarse ? mcor_say(MCOR_SAY(POSITIONS_COARSE), "xyz"[axis], step, n -> spacing_median)
-                : MCOR_NO_MESSAGE;
+  return coarse;
+}
+
+static mcor_message mcor_warn_coarse(const mcor_suspicion* s)
+{
+  int axis;
+  double step;
+  return mcor_is_coarse(s, &axis, &step)
+    ? mcor_say(
+        MCOR_SAY(POSITIONS_COARSE), "xyz"[axis], step, s->surface->statistics.spacing_median)
+    : MCOR_NO_MESSAGE;
 }
 
 /* Particles may lie up to this many smoothing lengths beyond a period. */
@@ -163,37 +171,30 @@ static mcor_message mcor_warn_period(const mcor_suspicion* s)
   return MCOR_NO_MESSAGE;
 }
 
+/* Warns of a plane, unless rounding made it. */
 static mcor_message mcor_warn_plane(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
-  const bool many = n->fluid_particles >= MCOR_FEW_PARTICLES;
   const double h = n->smoothing_length_median, *e = n->fluid_extent;
-  mcor_message flat = MCOR_NO_MESSAGE;
-  double normal[3];
+  double normal[3], step;
+  int flat = -1, axis;
   bool tilted = false;
-  for (int a = 0; a < 3; ++a)
+  for (int a = 2; a >= 0; --a)
   {
-    const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
-    if (!flat.text && n->dimension != 2 && many && e[a] < 0.1 * h && other > 8 * h)
-    {
-      const char axis = "xyz"[a];
-      flat = mcor_say(MCOR_SAY(PLANE_IN_SPACE), axis, e[a], e[a] / h, axis);
-    }
+    const double other = fmin(e[(a + 1) % 3], e[(a + 2) % 3]);
+    flat = n->dimension != 2 && e[a] < 0.1 * h && other > 8 * h ? a : flat;
     normal[a] = floor(n->plane_normal[a] * 1e4 + 0.5) / 1e4;
-    tilted = tilted || normal[a] != 0;
+    tilted = tilted || (normal[a] != 0 && s->options->dimension == 0);
   }
-  if (!flat.text && tilted && s->options->dimension == 0 && many)
+  if (n->fluid_particles < MCOR_FEW_PARTICLES || !(flat >= 0 || tilted) ||
+    mcor_is_coarse(s, &axis, &step))
   {
-    flat = mcor_say(MCOR_SAY(PLANE_TILTED), normal[0], normal[1], normal[2], n->plane_extent,
-      n->plane_extent / h);
+    return MCOR_NO_MESSAGE;
   }
-  mcor_message coarse = flat.text ? mcor_warn_coarse(s) : MCOR_NO_MESSAGE;
-  if (coarse.text) /* rounding made it flat */
-  {
-    mcor_free_message(&flat);
-    mcor_free_message(&coarse);
-  }
-  return flat;
+  return flat >= 0
+    ? mcor_say(MCOR_SAY(PLANE_IN_SPACE), "xyz"[flat], e[flat], e[flat] / h, "xyz"[flat])
+    : mcor_say(MCOR_SAY(PLANE_TILTED), normal[0], normal[1], normal[2], n->plane_extent,
+        n->plane_extent / h);
 }
 
 /* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies

@@ -272,14 +272,11 @@ bool vtkMarchingCorrectors::FindWidening(
     return false;
   }
   statistics = widening.statistics;
-  if (const vtkSPHMergeRanges merge = sums->MergeRanges())
-  {
-    // A process that owns no place has no statistics.
-    const double least = statistics.smoothing_length_min;
-    double range[2] = { least > 0.0 ? least : std::numeric_limits<double>::infinity(), 0.0 };
-    merge(range, 1);
-    statistics.smoothing_length_min = range[0];
-  }
+  // A process that owns no place has no statistics.
+  const double least = statistics.smoothing_length_min;
+  double range[2] = { least > 0.0 ? least : std::numeric_limits<double>::infinity(), 0.0 };
+  sums->MergeRanges(range, 1);
+  statistics.smoothing_length_min = range[0];
   const auto count = static_cast<vtkIdType>(input->Core.count);
   vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, count));
   if (vtkSPHComputesVolumes(mine.Core))
@@ -373,7 +370,8 @@ void vtkMarchingCorrectors::Extract(
   this->Summarize(input, options, surface.statistics);
   this->WarnOf(input, surface, input.Core, options, builder.FindLargestFloat(precision));
   builder.AddRun(this->RunStatistics);
-  builder.BuildMesh(output, precision);
+  builder.BuildMesh(
+    output, precision, [&run](double* ranges, int count) { run.MergeRanges(ranges, count); });
 }
 
 void vtkMarchingCorrectors::WarnOf(const vtkSPHParticles& input,

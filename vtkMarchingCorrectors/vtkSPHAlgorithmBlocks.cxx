@@ -30,8 +30,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
   const double count = blocks ? static_cast<double>(vtkSPHNameBlocks(blocks).size()) : -1.0;
   double range[2] = { count, count };
-  const auto run = vtkRun::Make(this);
-  run->MergeRanges()(range, 1);
+  vtkRun::Make(this)->MergeRanges(range, 1);
   if (range[0] < range[1])
   {
     this->Fail("The processes have different numbers of blocks. Merge the blocks of each process.");
@@ -253,9 +252,9 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   for (int e = 0; e < 6; ++e)
   {
     keepLowest(mine[e]);
-    for (const std::vector<double>& theirs : run->Gather(mine[e]))
+    for (const std::vector<vtkRun::Named>& theirs : run->Gather({ { "", mine[e] } }))
     {
-      ends[e].insert(ends[e].end(), theirs.begin(), theirs.end());
+      ends[e].insert(ends[e].end(), theirs[0].second.begin(), theirs[0].second.end());
     }
     keepLowest(ends[e]);
     longest = std::max(longest, e % 2 ? -ends[e].back() - ends[e - 1].back() : 0.0);

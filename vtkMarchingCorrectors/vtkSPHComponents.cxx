@@ -238,18 +238,10 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
   return number;
 }
 
-// The surface's field data list the values, and name the array: see vtkMarchingCorrectors.
-vtkDataArray* vtkSPHComponents::FindIsoValues(vtkPolyData* mesh)
-{
-  vtkDataArray* values = mesh->GetFieldData()->GetArray("IsoValues");
-  const char* name = values ? values->GetComponentName(0) : nullptr;
-  return name ? mesh->GetPointData()->GetArray(name) : nullptr;
-}
-
 vtkSPHComponents::Numbers vtkSPHComponents::Split(
   vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
 {
-  vtkDataArray* const isoValues = FindIsoValues(mesh);
+  vtkDataArray* const isoValues = vtkSPHFindIsoValues(mesh);
   const vtkSPHPieces pieces(mesh, isoValues, this->PeriodicBounds);
   const std::vector<Content> contents =
     particles ? this->Count(pieces, particles) : std::vector<Content>();

@@ -146,7 +146,6 @@ private:
     const vtkSPHPieces& pieces, const std::vector<Content>& contents) const;
   static void Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output);
   static std::string FindProblem(vtkPolyData* mesh);
-  static vtkDataArray* FindIsoValues(vtkPolyData* mesh);
 
   // These are for a surface that processes share.
   std::string SplitDistributed(

@@ -40,12 +40,9 @@ public:
   /** Returns `count` points from `first` on; the result is valid until the next call. */
   mcor_array View(vtkIdType first, vtkIdType count)
   {
-    mcor_array view = {};
-    view.components = 3;
-    view.type =
-      this->Stored && this->Stored->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
     if (this->Stored)
     {
+      mcor_array view = vtkSPHView(this->Stored);
       view.data = this->Stored->GetVoidPointer(3 * first);
       return view;
     }
@@ -55,6 +52,9 @@ public:
       this->Room = count;
     }
     double* to = this->Copied.get();
+    mcor_array view = {};
+    view.type = MCOR_FLOAT64;
+    view.components = 3;
     view.data = to;
     if (auto* image = vtkImageData::SafeDownCast(this->Data))
     {
@@ -73,30 +73,24 @@ public:
   }
 
 private:
-  /**
-   * Copies points as GetPoint() gives them, but row by row: asking for each point takes as long
-   * as sending it to the device.
-   */
+  /** Copies points as GetPoint() gives them; asking for each takes as long as sending it to the device. */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
     const int* extent = image->GetExtent();
     const double* m = image->GetIndexToPhysicalMatrix()->GetData();
     const vtkIdType nx = extent[1] - extent[0] + 1, ny = extent[3] - extent[2] + 1;
-    vtkSMPTools::For(first / nx, (first + count - 1) / nx + 1,
+    vtkSMPTools::For(first, first + count,
       [=](vtkIdType begin, vtkIdType end)
       {
-        for (vtkIdType row = begin; row < end; ++row)
+        for (vtkIdType point = begin; point < end; ++point)
         {
-          const double j = static_cast<double>(extent[2] + row % ny);
-          const double k = static_cast<double>(extent[4] + row / ny);
-          const vtkIdType last = std::min(first + count, (row + 1) * nx);
-          for (vtkIdType point = std::max(first, row * nx); point < last; ++point)
+          const double i = static_cast<double>(extent[0] + point % nx);
+          const double j = static_cast<double>(extent[2] + point / nx % ny);
+          const double k = static_cast<double>(extent[4] + point / nx / ny);
+          double* x = to + 3 * (point - first);
+          for (int a = 0; a < 3; ++a)
           {
-            const double i = static_cast<double>(extent[0] + (point - row * nx));
-            double* x = to + 3 * (point - first);
-            x[0] = m[0] * i + m[1] * j + m[2] * k + m[3];
-            x[1] = m[4] * i + m[5] * j + m[6] * k + m[7];
-            x[2] = m[8] * i + m[9] * j + m[10] * k + m[11];
+            x[a] = m[4 * a] * i + m[4 * a + 1] * j + m[4 * a + 2] * k + m[4 * a + 3];
           }
         }
       });
@@ -421,33 +415,24 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     probed->ShallowCopy(points);
     vtkSPHAddArrays(found, probed->GetPointData());
   }
-  FinishOutput(*run, points ? probed : nullptr);
+  FinishOutput(*run, found, points ? probed : nullptr);
 }
 
-// Makes the best array active. The particles' values decide, because points that are not valid have
-// another value.
-void vtkSPHProbe::FinishOutput(vtkRun& run, vtkDataSet* output)
+// Makes the best of the arrays that were found active. The particles' values decide, because points
+// that are not valid have another value.
+void vtkSPHProbe::FinishOutput(vtkRun& run, vtkPointData* found, vtkDataSet* output)
 {
   vtkPointData* from = run.Own->GetPointData();
-  // how many processes use each array
-  std::vector<std::int64_t> uses(from->GetNumberOfArrays(), 0);
-  for (int i = 0; output && i < from->GetNumberOfArrays(); ++i)
-  {
-    const bool isUsed =
-      from->GetArray(i) && output->GetPointData()->HasArray(from->GetArrayName(i));
-    uses[i] = isUsed ? 1 : 0;
-  }
-  run.Sum(uses.data(), from->GetNumberOfArrays());
-  vtkNew<vtkPointData> found;
+  vtkNew<vtkPointData> used;
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
   {
-    if (uses[i] > 0)
+    if (from->GetArray(i) && found->HasArray(from->GetArrayName(i)))
     {
-      found->AddArray(from->GetArray(i));
+      used->AddArray(from->GetArray(i));
     }
   }
   const std::string best =
-    run.Ask([&](const mcor_ranks* ranks) { return vtkSPHChooseArray(found, ranks); });
+    run.Ask([&](const mcor_ranks* ranks) { return vtkSPHChooseArray(used, ranks); });
   if (output && output->GetPointData()->HasArray(best.c_str()))
   {
     output->GetPointData()->SetActiveScalars(best.c_str());

@@ -112,7 +112,7 @@ private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
   void operator=(const vtkSPHProbe&) = delete;
 
-  static void FinishOutput(vtkRun& run, vtkDataSet* output);
+  static void FinishOutput(vtkRun& run, vtkPointData* found, vtkDataSet* output);
 };
 VTK_ABI_NAMESPACE_END
 

@@ -112,13 +112,10 @@ public:
   /** Whether this process reports what must be reported once. */
   virtual bool IsFirst() const { return true; }
   virtual void Sum(std::int64_t*, int) {}
-  virtual vtkSPHMergeRanges MergeRanges() { return nullptr; }
-  /** Returns the lists of all processes, also this one's, in the same order everywhere. */
-  virtual std::vector<std::vector<double>> Gather(const std::vector<double>& mine)
-  {
-    return { mine };
-  }
+  /** Merges ranges, each a least and a greatest value, over all processes. */
+  virtual void MergeRanges(double*, int /*count*/) {}
   using Named = std::pair<std::string, std::vector<double>>;
+  /** Returns the lists of all processes, also this one's, in the same order everywhere. */
   virtual std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine)
   {
     return { mine };

@@ -56,7 +56,7 @@ public:
   double Time = 0.0;                                     // requested time
   std::vector<double> Times;                             // its step's, or the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
-  std::vector<vtkSPHTemporalPair> Pairs;                 // one for each block
+  std::map<size_t, vtkSPHTemporalPair> Pairs;            // by block
   std::set<long> Ratios;                                 // motion / velocities, as warned of
   vtkTimeStamp ToldTime;                                 // when Ratios was last emptied
 };
@@ -307,10 +307,6 @@ void vtkSPHTemporalInterpolator::Fill(
   {
     vtkSPHTemporalCopy(sets[0], output);
     return;
-  }
-  if (this->Internals->Pairs.size() <= block)
-  {
-    this->Internals->Pairs.resize(block + 1);
   }
   vtkSPHTemporalPair& pair = this->Internals->Pairs[block];
   const double extent[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; // only lengths count

@@ -5,6 +5,7 @@
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
@@ -15,7 +16,6 @@
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -91,6 +91,14 @@ void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
+// The surface's field data list the values, and name the array: see vtkMarchingCorrectors.
+vtkDataArray* vtkSPHFindIsoValues(vtkDataSet* surface)
+{
+  vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
+  const char* name = values ? values->GetComponentName(0) : nullptr;
+  return name ? surface->GetPointData()->GetArray(name) : nullptr;
+}
+
 vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -144,29 +152,17 @@ std::string vtkSPHTakeText(mcor_message message)
   return isLost ? mcor_says_text(MCOR_SAYS_HOST_MEMORY) : taken;
 }
 
-// Rounds in place: the surface is the largest object in memory at this time.
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)
 {
+  const vtkSmartPointer<vtkDataArray> array = vtkSPHAdopt(values, components, tuples);
   if (!asFloat)
   {
-    return vtkSPHAdopt(values, components, tuples);
+    return array;
   }
-  const vtkIdType count = values ? tuples * components : 0;
-  char* to = reinterpret_cast<char*>(values);
-  for (vtkIdType first = 0; first < count;)
-  {
-    std::array<float, 1024> rounded;
-    const vtkIdType n = std::min<vtkIdType>(count - first, rounded.size());
-    std::transform(values + first, values + first + n, rounded.begin(),
-      [](double value) { return static_cast<float>(value); });
-    std::memcpy(to + first * sizeof(float), rounded.data(), n * sizeof(float));
-    first += n;
-  }
-  void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
-  float* floats = static_cast<float*>(kept ? kept : values);
-  values = count > 0 ? nullptr : values;
-  return vtkSPHAdopt(floats, components, count > 0 ? tuples : 0);
+  auto floats = vtkSmartPointer<vtkFloatArray>::New();
+  floats->DeepCopy(array);
+  return floats;
 }
 
 void vtkSPHAddArray(
@@ -207,7 +203,7 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
   vtkSmartPointer<vtkDataArray> seconds = run->GetArray("Seconds");
   if (!seconds)
   {
-    vtkSPHAddReal(run, "Seconds", std::vector<double>(total + 1, 0.0));
+    vtkSPHAdd(run, "Seconds", std::vector<double>(total + 1, 0.0));
     seconds = run->GetArray("Seconds");
     for (int phase = 0; phase < build; ++phase)
     {
@@ -313,16 +309,6 @@ mcor_array vtkSPHView(vtkDataArray* array)
   view.data = array->GetVoidPointer(0) ? array->GetVoidPointer(0) : &none;
   view.name = array->GetName();
   return view;
-}
-
-double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
-{
-  if (!array.data)
-  {
-    return array.constant;
-  }
-  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
-                                    : static_cast<const double*>(array.data)[i];
 }
 
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle)

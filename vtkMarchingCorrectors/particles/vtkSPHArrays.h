@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <string>
 #include <type_traits>
@@ -26,6 +25,7 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkCellArray;
+class vtkDataSet;
 class vtkDataSetAttributes;
 class vtkIdList;
 class vtkPoints;
@@ -54,6 +54,9 @@ VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(
 /** Adds all arrays, and replaces arrays of the same names; active scalars stay active. */
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
+/** Returns the array of a surface that says which iso value each point has; null: there is none. */
+vtkDataArray* vtkSPHFindIsoValues(vtkDataSet* surface);
+
 /** Returns the points `ids`, in this order. */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPoints> vtkSPHTakePoints(
   vtkPoints* from, vtkIdList* ids);
@@ -68,13 +71,25 @@ std::string vtkSPHTakeText(mcor_message message);
 /** The function that gives the words for slots. */
 extern mcor_word vtkSPHWord;
 
-/** Hands a malloc'ed buffer over to a VTK array. */
+/** Makes a VTK array of values that it borrows. */
 template <typename ValueT>
-vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
+vtkSmartPointer<vtkDataArray> vtkSPHBorrow(const ValueT* values, int components, vtkIdType tuples)
 {
   auto array = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(vtkTypeTraits<ValueT>::VTK_TYPE_ID));
   array->SetNumberOfComponents(components);
+  if (values && tuples > 0)
+  {
+    array->SetVoidArray(const_cast<ValueT*>(values), tuples * components, 1);
+  }
+  return array;
+}
+
+/** Hands a malloc'ed buffer over to a VTK array. */
+template <typename ValueT>
+vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
+{
+  auto array = vtkSPHBorrow<ValueT>(nullptr, components, 0);
   if (values && tuples > 0)
   {
     array->SetVoidArray(values, tuples * components, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
@@ -83,10 +98,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkId
   return array;
 }
 
-/**
- * Makes an array of either precision from malloc'ed double values, without a second copy of
- * them.
- */
+/** Does the same with doubles, which become floats if `asFloat` is set. */
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat);
 
@@ -96,7 +108,7 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 ///@{
 /** Adds numbers as one tuple, of 64-bit integers or of doubles. */
 template <typename T>
-void vtkSPHAddTuple(vtkFieldData* data, const char* name, const std::vector<T>& values)
+void vtkSPHAdd(vtkFieldData* data, const char* name, const std::vector<T>& values)
 {
   vtkNew<
     typename std::conditional<std::is_integral<T>::value, vtkTypeInt64Array, vtkDoubleArray>::type>
@@ -106,25 +118,16 @@ void vtkSPHAddTuple(vtkFieldData* data, const char* name, const std::vector<T>& 
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   vtkSPHAddArray(data, name, array.Get());
 }
-inline void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values)
-{
-  vtkSPHAddTuple(data, name, values);
-}
-inline void vtkSPHAddCount(
-  vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values)
-{
-  vtkSPHAddTuple(data, name, values);
-}
 template <typename T>
 typename std::enable_if<std::is_arithmetic<T>::value>::type vtkSPHAdd(
   vtkFieldData* data, const char* name, T value)
 {
-  vtkSPHAddTuple(data, name, std::vector<T>{ value });
+  vtkSPHAdd(data, name, std::vector<T>{ value });
 }
 template <typename T, std::size_t N>
 void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
 {
-  vtkSPHAddTuple(data, name, std::vector<T>(values, values + N));
+  vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
 /** Adds the count of each level as a tuple, up to the last level with a count above 0. */
@@ -219,36 +222,13 @@ vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 /** Views an array of floats or doubles that lie one after another. */
 mcor_array vtkSPHView(vtkDataArray* array);
 
-/** Gives access to the values of an array. */
-class vtkSPHReals
-{
-public:
-  explicit vtkSPHReals(vtkDataArray* array)
-    : Array(vtkSPHAsReal(array))
-    , Components(array->GetNumberOfComponents())
-    , Floats(this->Array->GetDataType() == VTK_FLOAT
-          ? static_cast<float*>(this->Array->GetVoidPointer(0))
-          : nullptr)
-    , Doubles(this->Floats ? nullptr : static_cast<double*>(this->Array->GetVoidPointer(0)))
-  {
-  }
-
-  double operator()(vtkIdType tuple, int component) const
-  {
-    const vtkIdType i = tuple * this->Components + component;
-    return this->Floats ? static_cast<double>(this->Floats[i]) : this->Doubles[i];
-  }
-
-  const vtkSmartPointer<vtkDataArray> Array; ///< the array, or its copy
-  const int Components;
-
-private:
-  const float* const Floats;
-  const double* const Doubles;
-};
-
 /** Returns an element of the core's array, or the constant that stands for it. */
-double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
+inline double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
+{
+  return !array.data             ? array.constant
+    : array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                 : static_cast<const double*>(array.data)[i];
+}
 
 /** Whether the core computes the particles' volumes. */
 inline bool vtkSPHComputesVolumes(const mcor_input& input)
@@ -256,12 +236,6 @@ inline bool vtkSPHComputesVolumes(const mcor_input& input)
   return !mcor_is_given(&input.volume) &&
     !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
 }
-
-/**
- * Merges ranges, each a least and a greatest value, over all processes that share a run; empty: the
- * process is alone.
- */
-using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
 
 /** Returns the scalar to contour at a particle. */
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);

@@ -12,9 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
-#include <set>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -25,10 +25,11 @@ using Triple = std::array<double, 3>;
 constexpr double SideTolerance = 1e-5;
 }
 
-// The root of each part is its lowest point, in any order of joining.
 vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const double period[6])
   : Points(mesh->GetNumberOfPoints())
   , Root(this->Points.size())
+  , Shifts(this->Points.size(), Shift{ { 0, 0, 0 } })
+  , Endless(this->Points.size(), 0)
 {
   std::copy_n(period, 6, this->Period);
   std::iota(this->Root.begin(), this->Root.end(), vtkIdType(0));
@@ -36,14 +37,6 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   {
     mesh->GetPoint(static_cast<vtkIdType>(i), this->Points[i].data());
   }
-  const auto rootOf = [this](vtkIdType point)
-  {
-    while (this->Root[point] != point)
-    {
-      point = this->Root[point] = this->Root[this->Root[point]];
-    }
-    return point;
-  };
   auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
   for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
   {
@@ -51,20 +44,26 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
     const vtkIdType* corners;
     cells->GetCurrentCell(count, corners);
     this->Triangles.push_back({ { corners[0], corners[1], corners[2] } });
-    for (int i = 1; i < 3; ++i)
-    {
-      const vtkIdType a = rootOf(corners[0]), b = rootOf(corners[i]);
-      this->Root[std::max(a, b)] = std::min(a, b);
-    }
-  }
-  for (vtkIdType& root : this->Root)
-  {
-    root = rootOf(root);
+    this->Join(corners[1], corners[0], -1);
+    this->Join(corners[2], corners[0], -1);
   }
   vtkDataArray* caps = mesh->GetFieldData()->GetArray("Capping"); // of vtkMarchingCorrectors
-  this->JoinSides(caps && caps->GetComponent(0, 0) != 0.0);
+  std::vector<vtkIdType> twins(this->Points.size());
+  std::iota(twins.begin(), twins.end(), vtkIdType(0));
+  if (!caps || caps->GetComponent(0, 0) == 0.0)
+  {
+    this->JoinSides(twins);
+  }
+  for (size_t i = 0; i < this->Points.size(); ++i)
+  {
+    this->FindRoot(static_cast<vtkIdType>(i));
+  }
   this->NumberPieces();
-  this->FindClosed();
+  // A piece is closed if its triangles pass each edge equally often in both directions.
+  for (const auto& edge : this->ListOpenEdges(twins))
+  {
+    this->Pieces[this->PieceOfTriangle[edge[0]]].Closed = false;
+  }
   this->Measure();
   this->MoveHome();
   for (vtkSPHPiece& piece : this->Pieces)
@@ -79,6 +78,51 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   for (const double isoValue : this->IsoValues)
   {
     this->FindParents(isoValue);
+  }
+}
+
+// Finds the point that stands for the whole piece, and makes it the point's own root.
+vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
+{
+  vtkIdType root = point;
+  Shift shift = { { 0, 0, 0 } };
+  for (; this->Root[root] != root; root = this->Root[root])
+  {
+    std::transform(
+      shift.begin(), shift.end(), this->Shifts[root].begin(), shift.begin(), std::plus<int>());
+  }
+  while (this->Root[point] != root)
+  {
+    const vtkIdType next = this->Root[point];
+    const Shift rest = this->Shifts[point];
+    this->Root[point] = root;
+    this->Shifts[point] = shift;
+    std::transform(shift.begin(), shift.end(), rest.begin(), shift.begin(), std::minus<int>());
+    point = next;
+  }
+  return root;
+}
+
+// Joins the pieces of two points. The piece of `one` moves up by a period along this axis, or by
+// none if it is -1. If two ways to one point give different shifts, the piece goes around the
+// period.
+void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
+{
+  const vtkIdType old = this->FindRoot(one), kept = this->FindRoot(other);
+  Shift shift;
+  for (int a = 0; a < 3; ++a)
+  {
+    shift[a] = this->Shifts[other][a] - this->Shifts[one][a] + (a == axis ? 1 : 0);
+  }
+  if (old != kept)
+  {
+    this->Root[old] = kept;
+    this->Shifts[old] = shift;
+    this->Endless[kept] |= this->Endless[old];
+  }
+  else if (shift != Shift{ { 0, 0, 0 } })
+  {
+    this->Endless[kept] = 1;
   }
 }
 
@@ -117,26 +161,11 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
 }
 
 // At open edges in a side, the surface goes on beyond the side, unless a cap was trimmed there.
-// Points of such edges on opposite sides are matched by their other two coordinates. Parts that meet
-// at sides form a group, in which each part has a shift, a number of periods. If two ways to one
-// part give different shifts, the group goes around the period.
-void vtkSPHPieces::JoinSides(bool hasCaps)
+// Points of such edges on opposite sides are matched by their other two coordinates. `twins` becomes
+// the same for both.
+void vtkSPHPieces::JoinSides(std::vector<vtkIdType>& twins)
 {
-  const size_t count = this->Points.size();
-  this->Twin.resize(count);
-  std::iota(this->Twin.begin(), this->Twin.end(), vtkIdType(0));
-  this->Group = this->Root;
-  this->GroupShift.assign(count, Shift{ { 0, 0, 0 } });
-  this->GroupEndless.assign(count, 0);
-  std::vector<std::vector<vtkIdType>> members(count); // parts of each group, by its first part
-  bool isPeriodic = false;
-  for (int a = 0; a < 3; ++a)
-  {
-    isPeriodic = isPeriodic || this->Period[2 * a + 1] > this->Period[2 * a];
-  }
-  const std::vector<std::array<vtkIdType, 2>> open = isPeriodic && !hasCaps
-    ? this->ListOpenEdges(this->Twin)
-    : std::vector<std::array<vtkIdType, 2>>();
+  std::vector<std::array<vtkIdType, 2>> open;
   for (int a = 0; a < 3; ++a)
   {
     const double period = this->Period[2 * a + 1] - this->Period[2 * a];
@@ -154,80 +183,49 @@ void vtkSPHPieces::JoinSides(bool hasCaps)
     {
       continue;
     }
+    open = open.empty() ? this->ListOpenEdges(twins) : open; // no points are twins yet
+    using Key = std::pair<double, double>;
     const auto listEnds = [&](double side)
     {
-      const auto isOn = [&](vtkIdType point)
-      { return std::abs(this->Points[point][a] - side) <= tolerance; };
-      std::set<vtkIdType> ends;
+      std::map<vtkIdType, Key> ends;
       for (const auto& edge : open)
       {
         const auto& corners = this->Triangles[edge[0]];
-        const vtkIdType from = corners[edge[1]], to = corners[(edge[1] + 1) % 3];
-        if (isOn(from) && isOn(to))
+        const vtkIdType points[2] = { corners[edge[1]], corners[(edge[1] + 1) % 3] };
+        if (std::all_of(points, points + 2,
+              [&](vtkIdType point)
+              { return std::abs(this->Points[point][a] - side) <= tolerance; }))
         {
-          ends.insert({ from, to });
+          for (const vtkIdType i : points)
+          {
+            ends[i] = { this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3] };
+          }
         }
       }
       return ends;
     };
-    std::map<std::pair<double, double>, vtkIdType> lower;
-    const auto key = [&](vtkIdType i)
-    { return std::make_pair(this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3]); };
-    for (const vtkIdType i : listEnds(low))
+    std::map<Key, vtkIdType> lower;
+    for (const auto& end : listEnds(low))
     {
-      lower.emplace(key(i), i);
+      lower.emplace(end.second, end.first);
     }
-    for (const vtkIdType i : listEnds(high))
+    for (const auto& end : listEnds(high))
     {
-      const auto found = lower.find(key(i));
-      if (found == lower.end())
+      const auto found = lower.find(end.second);
+      if (found != lower.end())
       {
-        continue;
+        twins[end.first] = twins[found->second];
+        this->Join(found->second, end.first, a);
       }
-      const vtkIdType twin = found->second;
-      this->Twin[i] = this->Twin[twin];
-      // The part at the lower side, moved up by a period, continues the part at the upper side.
-      this->JoinParts(this->Root[twin], this->Root[i], a, members);
     }
   }
-}
-
-// Joins the groups of two parts; the part `lower` moves up by a period along this axis.
-void vtkSPHPieces::JoinParts(
-  vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
-{
-  Shift shift = this->GroupShift[upper];
-  shift[axis] += 1;
-  for (int c = 0; c < 3; ++c)
-  {
-    shift[c] -= this->GroupShift[lower][c];
-  }
-  const vtkIdType old = this->Group[lower], kept = this->Group[upper];
-  if (old == kept)
-  {
-    this->GroupEndless[kept] |= shift != Shift{ { 0, 0, 0 } };
-    return;
-  }
-  members[old].push_back(old);
-  for (const vtkIdType part : members[old])
-  {
-    this->Group[part] = kept;
-    for (int c = 0; c < 3; ++c)
-    {
-      this->GroupShift[part][c] += shift[c];
-    }
-  }
-  members[kept].insert(members[kept].end(), members[old].begin(), members[old].end());
-  members[old].clear();
-  this->GroupEndless[kept] |= this->GroupEndless[old];
 }
 
 // Returns a triangle's corners at the place where its piece is not cut by the period's sides.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
   const auto& points = this->Triangles[triangle];
-  const vtkIdType root = this->Root[points[0]];
-  const Shift& shift = this->GroupShift[root];
+  const Shift& shift = this->Shifts[points[0]];
   for (int i = 0; i < 3; ++i)
   {
     for (int a = 0; a < 3; ++a)
@@ -241,56 +239,47 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 // Sorts by area; among equal areas the piece with the first triangle comes first.
 void vtkSPHPieces::NumberPieces()
 {
-  std::map<vtkIdType, vtkIdType> numbers; // by group
-  std::vector<vtkSPHPiece> found;
-  std::vector<vtkIdType> of(this->Triangles.size());
+  std::map<vtkIdType, vtkSPHPiece> found; // by root
   for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
-    const vtkIdType group = this->Group[this->Root[this->Triangles[t][0]]];
-    const auto at = numbers.emplace(group, static_cast<vtkIdType>(found.size()));
-    if (at.second)
-    {
-      vtkSPHPiece piece;
-      piece.FirstTriangle = static_cast<vtkIdType>(t);
-      piece.Endless = this->GroupEndless[group] != 0;
-      found.push_back(piece);
-    }
-    of[t] = at.first->second;
+    const vtkIdType root = this->Root[this->Triangles[t][0]];
+    const auto at = found.emplace(root, vtkSPHPiece());
+    vtkSPHPiece& piece = at.first->second;
+    piece.FirstTriangle = at.second ? static_cast<vtkIdType>(t) : piece.FirstTriangle;
+    piece.Endless = this->Endless[root] != 0;
     double c[3][3], u[3], v[3], n[3];
     this->CornersOf(static_cast<vtkIdType>(t), c);
+    for (int i = 0; i < 9; ++i)
+    {
+      piece.Bounds[2 * (i % 3)] = std::min(piece.Bounds[2 * (i % 3)], c[i / 3][i % 3]);
+      piece.Bounds[2 * (i % 3) + 1] = std::max(piece.Bounds[2 * (i % 3) + 1], c[i / 3][i % 3]);
+    }
     vtkMath::Subtract(c[1], c[0], u);
     vtkMath::Subtract(c[2], c[0], v);
     vtkMath::Cross(u, v, n);
-    found[of[t]].Area += 0.5 * vtkMath::Norm(n);
+    piece.Area += 0.5 * vtkMath::Norm(n);
   }
-  std::vector<size_t> order(found.size());
-  std::iota(order.begin(), order.end(), size_t(0));
-  std::stable_sort(
-    order.begin(), order.end(), [&](size_t a, size_t b) { return found[a].Area > found[b].Area; });
-  std::vector<vtkIdType> place(found.size());
-  for (size_t i = 0; i < order.size(); ++i)
+  for (const auto& each : found)
   {
-    place[order[i]] = static_cast<vtkIdType>(i);
-    this->Pieces.push_back(found[order[i]]);
+    this->Pieces.push_back(each.second);
   }
-  this->PieceOfTriangle.resize(of.size());
+  std::sort(this->Pieces.begin(), this->Pieces.end(),
+    [](const vtkSPHPiece& p, const vtkSPHPiece& q)
+    { return p.Area > q.Area || (p.Area == q.Area && p.FirstTriangle < q.FirstTriangle); });
+  std::map<vtkIdType, vtkIdType> numbers; // by root
+  for (size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    const vtkIdType point = this->Triangles[this->Pieces[i].FirstTriangle][0];
+    numbers[this->Root[point]] = static_cast<vtkIdType>(i);
+  }
   this->PieceOfPoint.assign(this->Points.size(), -1);
-  for (size_t t = 0; t < of.size(); ++t)
+  for (const auto& triangle : this->Triangles)
   {
-    this->PieceOfTriangle[t] = place[of[t]];
-    for (const vtkIdType point : this->Triangles[t])
+    this->PieceOfTriangle.push_back(numbers[this->Root[triangle[0]]]);
+    for (const vtkIdType point : triangle)
     {
-      this->PieceOfPoint[point] = this->PieceOfTriangle[t];
+      this->PieceOfPoint[point] = this->PieceOfTriangle.back();
     }
-  }
-}
-
-// A piece is closed if its triangles pass each edge equally often in both directions.
-void vtkSPHPieces::FindClosed()
-{
-  for (const auto& edge : this->ListOpenEdges(this->Twin))
-  {
-    this->Pieces[this->PieceOfTriangle[edge[0]]].Closed = false;
   }
 }
 
@@ -300,22 +289,11 @@ void vtkSPHPieces::Measure()
 {
   std::vector<Triple> byArea(this->Pieces.size()), byVolume(this->Pieces.size());
   const auto count = static_cast<vtkIdType>(this->Triangles.size());
-  double c[3][3];
-  for (vtkIdType t = 0; t < count; ++t)
-  {
-    vtkSPHPiece& piece = this->Pieces[this->PieceOfTriangle[t]];
-    this->CornersOf(t, c);
-    for (int i = 0; i < 9; ++i)
-    {
-      piece.Bounds[2 * (i % 3)] = std::min(piece.Bounds[2 * (i % 3)], c[i / 3][i % 3]);
-      piece.Bounds[2 * (i % 3) + 1] = std::max(piece.Bounds[2 * (i % 3) + 1], c[i / 3][i % 3]);
-    }
-  }
   for (vtkIdType t = 0; t < count; ++t)
   {
     const vtkIdType number = this->PieceOfTriangle[t];
     vtkSPHPiece& piece = this->Pieces[number];
-    double u[3], v[3], n[3];
+    double c[3][3], u[3], v[3], n[3];
     this->CornersOf(t, c);
     for (int i = 0; i < 9; ++i)
     {
@@ -367,12 +345,9 @@ void vtkSPHPieces::MoveHome()
   }
   for (size_t i = 0; i < this->Points.size(); ++i)
   {
-    if (this->PieceOfPoint[i] >= 0 && this->Root[i] == static_cast<vtkIdType>(i))
+    for (int a = 0; a < 3 && this->PieceOfPoint[i] >= 0; ++a)
     {
-      for (int a = 0; a < 3; ++a)
-      {
-        this->GroupShift[i][a] += moves[this->PieceOfPoint[i]][a];
-      }
+      this->Shifts[i][a] += moves[this->PieceOfPoint[i]][a];
     }
   }
 }

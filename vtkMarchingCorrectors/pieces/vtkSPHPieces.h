@@ -66,12 +66,11 @@ public:
 private:
   using Shift = std::array<int, 3>; // in periods
   std::vector<std::array<vtkIdType, 2>> ListOpenEdges(const std::vector<vtkIdType>& of) const;
-  void JoinSides(bool hasCaps);
-  void JoinParts(
-    vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members);
+  vtkIdType FindRoot(vtkIdType point);
+  void Join(vtkIdType one, vtkIdType other, int axis);
+  void JoinSides(std::vector<vtkIdType>& twins);
   void NumberPieces();
   void Measure();
-  void FindClosed();
   void MoveHome();
   void FindParents(double isoValue);
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
@@ -83,11 +82,9 @@ private:
   double Period[6];
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  std::vector<vtkIdType> Root;   // the point that stands for each point's part
-  std::vector<vtkIdType> Twin;   // the point that stands for all points a period apart
-  std::vector<vtkIdType> Group;  // representatives of parts that meet across sides
-  std::vector<Shift> GroupShift; // how many periods a part lies from its group's first part
-  std::vector<char> GroupEndless;
+  std::vector<vtkIdType> Root; // the next point on the way to the one that stands for the piece
+  std::vector<Shift> Shifts;   // how far a point's part moves so that it lies where its root's does
+  std::vector<char> Endless;   // by root: whether the piece goes around a period
 };
 VTK_ABI_NAMESPACE_END
 

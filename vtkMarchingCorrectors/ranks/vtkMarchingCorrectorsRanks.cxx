@@ -7,7 +7,6 @@
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkIntArray.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -15,14 +14,11 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHSharedRun.h"
-#include "vtkTypeTraits.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -251,122 +247,6 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
   ranks.Reduce(vtkSPHRanks::SUM, &measures.open, 1);
   mcor_keep_measures(&measures, &statistics);
 }
-
-/** Makes a VTK array of values of the core, which it borrows. */
-template <typename T>
-vtkSmartPointer<vtkDataArray> View(T* values, int components, std::int64_t tuples)
-{
-  auto array = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
-  array->SetNumberOfComponents(components);
-  array->SetVoidArray(values, values ? tuples * components : 0, 1);
-  return array;
-}
-
-/** Copies values of a VTK array for the core, which frees them; not null for 0 elements either. */
-template <typename T>
-bool Copy(vtkAbstractArray* from, T*& to)
-{
-  const auto count = static_cast<std::size_t>(from->GetNumberOfValues());
-  to = static_cast<T*>(std::malloc(count * sizeof(T) + 1));
-  std::copy_n(static_cast<const T*>(from->GetVoidPointer(0)), to ? count : 0, to);
-  return to != nullptr;
-}
-
-/**
- * Lines of particles in a plane, and filled regions. Each rank makes its part; the first rank
- * gathers all, and joins lines as one process does.
- */
-struct JoinedLines
-{
-  /**
-   * Gathers the lines of all ranks. numbers: of this rank's points and triangles in the whole. Sets
-   * the measures in the surface's statistics, on all ranks. Collective.
-   */
-  JoinedLines(vtkSPHRanks& ranks, mcor_surface& surface, const NumbersInWhole& numbers,
-    const mcor_plane& plane, bool isFilled)
-    : Numbers(numbers.OfPoints)
-  {
-    const auto numberOf = [this](std::int32_t point)
-    { return static_cast<std::int32_t>(this->Numbers->GetValue(point)); };
-    vtkNew<vtkIntArray> pieces, corners; // pieces of lines, and triangles, by points of the whole
-    pieces->SetNumberOfComponents(2);
-    corners->SetNumberOfComponents(3);
-    for (std::int64_t line = 0; line < surface.line_count; ++line)
-    {
-      for (std::int64_t i = surface.line_offsets[line]; i + 1 < surface.line_offsets[line + 1]; ++i)
-      {
-        pieces->InsertNextValue(numberOf(surface.line_points[i]));
-        pieces->InsertNextValue(numberOf(surface.line_points[i + 1]));
-      }
-    }
-    vtkSPHRanksArrays points = { View(surface.points, 3, surface.point_count) };
-    if (isFilled)
-    {
-      points.emplace_back(View(surface.iso_value, 1, surface.point_count));
-      for (std::int64_t i = 0; i < 3 * surface.triangle_count; ++i)
-      {
-        corners->InsertNextValue(numberOf(surface.triangles[i]));
-      }
-    }
-    const vtkSPHRanksArrays all = vtkSPHGatherTuples(ranks, { pieces.Get() }, nullptr);
-    points = vtkSPHGatherTuples(ranks, points, this->Numbers);
-    mcor_surface& whole = this->Whole;
-    bool isGood = Copy(points[0], whole.points);
-    whole.point_count = points[0]->GetNumberOfTuples();
-    if (isFilled)
-    {
-      const vtkSPHRanksArrays triangles = vtkSPHGatherTuples(ranks,
-        { corners.Get(), View(surface.band_value, 1, surface.triangle_count) },
-        numbers.OfTriangles);
-      isGood = Copy(points[1], whole.iso_value) && Copy(triangles[0], whole.triangles) &&
-        Copy(triangles[1], whole.band_value) && isGood;
-      whole.triangle_count = triangles[0]->GetNumberOfTuples();
-    }
-    if (ranks.GetRank() == 0)
-    {
-      isGood = isGood && numbers.Points <= std::numeric_limits<std::int32_t>::max() &&
-        mcor_join_lines(&plane, static_cast<const std::int32_t(*)[2]>(all[0]->GetVoidPointer(0)),
-          all[0]->GetNumberOfTuples(), &whole) == MCOR_OK;
-    }
-    const mcor_statistics& s = whole.statistics;
-    std::int64_t counts[2] = { whole.line_count, isGood ? 0 : 1 };
-    double measures[3] = { s.length, s.area, s.is_closed ? 1.0 : 0.0 };
-    ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // the other ranks have no lines or measures
-    ranks.Reduce(vtkSPHRanks::SUM, measures, 3);
-    this->Count = counts[0];
-    this->Failed = counts[1] > 0;
-    surface.statistics.length = measures[0];
-    surface.statistics.area = measures[1];
-    surface.statistics.is_closed = measures[2] > 0.0;
-  }
-
-  /**
-   * Moves the points and their arrays to the first rank, which gets all cells; the others end
-   * empty. Collective.
-   */
-  void Move(vtkSPHRanks& ranks, vtkPolyData* output)
-  {
-    const vtkSmartPointer<vtkPolyData> moved =
-      vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(output), this->Numbers), output);
-    output->SetPoints(moved->GetPoints());
-    output->GetPointData()->ShallowCopy(moved->GetPointData());
-    vtkNew<vtkIdTypeArray> cells;
-    cells->SetName("GlobalCellIds");
-    cells->SetNumberOfTuples(this->Whole.line_count + this->Whole.triangle_count);
-    std::iota(
-      cells->GetPointer(0), cells->GetPointer(0) + cells->GetNumberOfTuples(), vtkIdType(0));
-    vtkMarchingCorrectorsOutput::BuildCells(this->Whole, output);
-    output->GetCellData()->SetGlobalIds(cells);
-  }
-
-  vtkIdType Count = 0; ///< number of all lines
-  bool Failed = false; ///< memory ran out on any rank
-
-private:
-  vtkSPHOwned<mcor_surface, mcor_free_surface> Whole; ///< all cells and points, on the first rank
-  const vtkSmartPointer<vtkIdTypeArray> Numbers;      ///< numbers of this rank's points
-};
 }
 
 // No rank may return here while another goes on: all agree first on what one of them has found.
@@ -407,25 +287,26 @@ void vtkMarchingCorrectors::ContourDistributed(
   }
   const mcor_options whole = options;
   run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
-  run.Scatter(mine.Core, run.Own);
-  vtkSPHParticles input(mine.Description, run.Near, mine.Wanted);
-  if (!run.Agree(input.Collect() ? "" : input.Error))
+  // Lines go on from rank to rank, so the first rank makes all of them.
+  const bool hasLines = run.Globals.measured.plane.axis > 0;
+  vtkSPHParticles* input = run.Send(mine, run.Own, hasLines ? 1 : run.Ranks.GetCount());
+  if (!input)
   {
     return;
   }
   vtkPointData* const sent = run.Near->GetPointData();
   if (options.widen > 1.0)
   {
-    input.TakeWidening(sent->GetArray(nameMade("Widening").c_str()),
+    input->TakeWidening(sent->GetArray(nameMade("Widening").c_str()),
       sent->GetArray(nameMade("WideningVolume").c_str()));
   }
   vtkSPHOwned<mcor_surface, mcor_free_surface> surface;
-  if (run.Call(input,
+  if (run.Call(*input,
         [&](mcor_context* context)
-        { return mcor_extract(context, &input.Core, &options, &surface); }))
+        { return mcor_extract(context, &input->Core, &options, &surface); }))
   {
     mcor_add_widening(&surface.statistics, &widening);
-    this->FinishDistributed(run, input, whole, surface, output);
+    this->FinishDistributed(run, *input, whole, surface, output);
   }
 }
 
@@ -433,7 +314,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   mcor_options options, mcor_surface& surface, vtkPolyData* output)
 {
   vtkSPHRanks& ranks = run.Ranks;
-  const mcor_plane& plane = run.Globals.measured.plane;
+  const bool hasLines = run.Globals.measured.plane.axis > 0;
   const NumbersInWhole numbers = NumberSurface(ranks, surface);
   vtkSharedRun::Shares shares = run.ListShares();
   shares.insert(shares.end(),
@@ -442,18 +323,12 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   const double seconds =
     std::accumulate(surface.statistics.seconds, surface.statistics.seconds + MCOR_PHASE_COUNT, 0.0);
   surface.statistics = MergeStatistics(ranks.Gather(surface.statistics));
-  const std::unique_ptr<JoinedLines> lines = plane.axis > 0
-    ? std::make_unique<JoinedLines>(ranks, surface, numbers, plane, options.filled != 0)
-    : nullptr;
-  if (lines && lines->Failed)
-  {
-    this->Fail("Memory for the lines of all processes could not be allocated.");
-    return;
-  }
-  if (!lines)
+  if (!hasLines)
   {
     MeasureSurface(ranks, surface, numbers.OfPoints, surface.statistics);
   }
+  std::int64_t lines = surface.line_count;
+  ranks.Reduce(vtkSPHRanks::SUM, &lines, 1);
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   const std::vector<double> largest =
     ranks.Gather(builder.FindLargestFloat(this->OutputPointsPrecision));
@@ -463,7 +338,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
     all.statistics = surface.statistics;
     all.point_count = numbers.Points;
     all.triangle_count = numbers.Triangles;
-    all.line_count = lines ? lines->Count : 0;
+    all.line_count = lines;
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
     mcor_options asked = options;
@@ -473,21 +348,23 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   }
   this->Summarize(input, options, surface.statistics);
   builder.AddRun(this->RunStatistics);
-  vtkSPHAddCount(this->RunStatistics, "Points", { numbers.Points });
-  vtkSPHAddCount(this->RunStatistics, "Triangles", { numbers.Triangles });
-  if (lines)
+  vtkSPHAdd(this->RunStatistics, "Points", numbers.Points);
+  vtkSPHAdd(this->RunStatistics, "Triangles", numbers.Triangles);
+  if (hasLines)
   {
-    vtkSPHAddCount(this->RunStatistics, "Lines", { lines->Count });
+    vtkSPHAdd(this->RunStatistics, "Lines", lines);
   }
   run.AddShares(shares, seconds);
-  builder.BuildMesh(output, this->OutputPointsPrecision, run.MergeRanges());
-  output->GetPointData()->SetGlobalIds(numbers.OfPoints);
-  output->GetCellData()->SetGlobalIds(numbers.OfTriangles);
-  vtkSPHMatchEmpty(ranks, output);
-  if (lines)
+  builder.BuildMesh(output, this->OutputPointsPrecision,
+    [&run](double* ranges, int count) { run.MergeRanges(ranges, count); });
+  vtkIdTypeArray* const cells = numbers.OfTriangles;
+  if (hasLines) // they come before triangles
   {
-    lines->Move(ranks, output);
-    vtkSPHMatchEmpty(ranks, output);
+    cells->SetNumberOfValues(output->GetNumberOfCells());
+    std::iota(cells->Begin(), cells->End(), vtkIdType(0));
   }
+  output->GetPointData()->SetGlobalIds(numbers.OfPoints);
+  output->GetCellData()->SetGlobalIds(cells);
+  vtkSPHMatchEmpty(ranks, output);
 }
 VTK_ABI_NAMESPACE_END

@@ -78,37 +78,29 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 }
 
 /**
- * Asks the first rank, which knows the `pieces` of all elements. Returns the pieces of this rank's
- * elements. numbers: become their numbers among the elements that stay. Collective.
+ * Returns the pieces of this rank's elements, of which the first rank knows all. numbers: become
+ * their numbers among the elements that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)
 {
+  const Ids all = ranks.Gather(pieces).front();
+  Ids places, own; // the places of all elements among the elements that stay
+  vtkIdType next = 0;
+  for (const vtkIdType piece : all)
+  {
+    places.push_back(next);
+    next += piece >= 0 ? 1 : 0;
+  }
   vtkDataArray* given = data->GetGlobalIds();
-  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // first rank only
+  numbers->SetName(given ? given->GetName() : "");
   for (vtkIdType i = 0; given && i < given->GetNumberOfTuples(); ++i)
   {
-    wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));
-  }
-  vtkNew<vtkIdTypeArray> whole;
-  whole->SetNumberOfComponents(2);
-  vtkIdType next = 0;
-  for (const vtkIdType piece : pieces)
-  {
-    whole->InsertNextValue(piece);
-    whole->InsertNextValue(piece >= 0 ? next++ : -1);
-  }
-  const vtkSPHRanksArrays came =
-    vtkSPHSendTuples(ranks, { whole.Get() }, ranks.Exchange(std::move(wanted)));
-  auto* answers = vtkIdTypeArray::SafeDownCast(came[0]);
-  numbers->SetName(given ? given->GetName() : "");
-  Ids own;
-  for (vtkIdType i = 0; i < answers->GetNumberOfTuples(); ++i)
-  {
-    own.push_back(answers->GetValue(2 * i));
+    const auto element = static_cast<std::size_t>(given->GetComponent(i, 0));
+    own.push_back(all[element]);
     if (own.back() >= 0)
     {
-      numbers->InsertNextValue(answers->GetValue(2 * i + 1));
+      numbers->InsertNextValue(places[element]);
     }
   }
   return own;
@@ -182,7 +174,7 @@ std::string vtkSPHComponents::SplitDistributed(
   bare->GetPointData()->SetGlobalIds(mesh->GetPointData()->GetGlobalIds());
   bare->GetCellData()->SetGlobalIds(mesh->GetCellData()->GetGlobalIds());
   bare->SetFieldData(mesh->GetFieldData());
-  if (vtkDataArray* isoValues = FindIsoValues(mesh))
+  if (vtkDataArray* isoValues = vtkSPHFindIsoValues(mesh))
   {
     bare->GetPointData()->AddArray(isoValues);
   }

@@ -20,8 +20,8 @@
  *  8. A surface stays where it was made. Its points and triangles get their numbers in the whole
  *     surface by their keys; each rank sorts a range of the keys
  *     (vtkMarchingCorrectorsRanks.cxx).
- *  9. The first rank does what needs all of a surface (lines, pieces, a file): it gets all tuples,
- *     and puts them in the order of these numbers (vtkSPHGatherTuples).
+ *  9. The first rank does what needs all of a surface: for pieces or a file it gets all tuples, and
+ *     puts them in the order of these numbers (vtkSPHGatherTuples); for lines, all particles.
  * 10. No rank returns while another goes on: all agree first on what one of them has found.
  *
  * All functions except the getters are collective: all ranks call them in the same order. Built

@@ -7,15 +7,18 @@
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHSharedRun.h"
+#include "vtkStaticPointLocator.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <set>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -28,19 +31,6 @@ constexpr double Rounding = 1.0001;
 
 /** The arrays of an input that travel. */
 using Members = std::vector<mcor_array mcor_input::*>;
-
-/** Makes a VTK array of an array of the core, which it borrows; empty for a constant. */
-vtkSmartPointer<vtkDataArray> Borrow(const mcor_array& array, vtkIdType count)
-{
-  auto made = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(array.type == MCOR_FLOAT32 ? VTK_FLOAT : VTK_DOUBLE));
-  made->SetNumberOfComponents(std::max(array.components, 1));
-  if (array.data && count > 0)
-  {
-    made->SetVoidArray(const_cast<void*>(array.data), count * made->GetNumberOfComponents(), 1);
-  }
-  return made;
-}
 
 /** Returns the input with these particles, none of them solid, in place of the rank's own. */
 mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const mcor_input& like)
@@ -55,87 +45,39 @@ mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const
   return input;
 }
 
-/** A cube with an edge of 2^level, and its number along x, y and z. */
-using Cell = std::array<std::int64_t, 4>;
+/** A sphere around a particle: its centre and its radius. */
+using Sphere = std::array<double, 4>;
 
-Cell CellOf(std::int64_t level, const double at[3])
-{
-  Cell cell = { level, 0, 0, 0 };
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    const double number = std::floor(std::ldexp(at[a], -static_cast<int>(level)));
-    cell[a + 1] = static_cast<std::int64_t>(std::min(std::max(number, -4e18), 4e18));
-  }
-  return cell;
-}
-
-/**
- * Adds the cell of a sphere's centre, and the cells of its images that reach into the period. The
- * sphere lies within its cell and the 26 cells around it.
- */
-void AddCells(
-  const vtkSPHRanksSpace& space, const double at[3], double radius, std::vector<Cell>& cells)
-{
-  for (int image = 0; image < 27; ++image)
-  {
-    const int way[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
-    double x[3];
-    bool reaches = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      const double first = space.First[a], length = space.Length[a];
-      x[a] = at[a] + way[a] * length;
-      reaches = reaches &&
-        (way[a] == 0 ||
-          (length > 0.0 && x[a] + radius >= first && x[a] - radius <= first + length));
-    }
-    if (reaches)
-    {
-      cells.push_back(CellOf(std::ilogb(radius) + 1, x));
-    }
-  }
-}
-
-/** Sorts the cells, and keeps each once. */
-void SortOnce(std::vector<Cell>& cells)
-{
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-}
-
-/** Lists the places that lie in these cells, or in one around them. */
+/** Lists the points of the locator that lie in one of the spheres, or in an image of one. */
 std::vector<vtkIdType> ListWithin(
-  const std::vector<Cell>& cells, const std::vector<std::array<double, 3>>& places)
+  const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres, vtkStaticPointLocator* locator)
 {
-  std::vector<Cell> all;
-  std::vector<std::int64_t> levels;
-  for (const Cell& cell : cells)
+  vtkNew<vtkIdList> near;
+  std::set<vtkIdType> within;
+  for (const Sphere& sphere : spheres)
   {
-    for (int i = 0; i < 27; ++i)
+    for (int image = 0; image < 27; ++image)
     {
-      all.push_back({ cell[0], cell[1] + i % 3 - 1, cell[2] + i / 3 % 3 - 1, cell[3] + i / 9 - 1 });
-    }
-    if (levels.empty() || levels.back() != cell[0])
-    {
-      levels.push_back(cell[0]);
+      const int way[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
+      double at[3];
+      bool isThere = true;
+      for (int a = 0; a < 3; ++a)
+      {
+        at[a] = sphere[a] + way[a] * space.Length[a];
+        isThere = isThere && (way[a] == 0 || space.IsPeriodic(a));
+      }
+      if (isThere)
+      {
+        locator->FindPointsWithinRadius(sphere[3], at, near);
+        within.insert(near->begin(), near->end());
+      }
     }
   }
-  SortOnce(all);
-  std::vector<vtkIdType> found;
-  for (std::size_t i = 0; i < places.size() && !all.empty(); ++i)
-  {
-    if (std::any_of(levels.begin(), levels.end(),
-          [&](std::int64_t level)
-          { return std::binary_search(all.begin(), all.end(), CellOf(level, places[i].data())); }))
-    {
-      found.push_back(static_cast<vtkIdType>(i));
-    }
-  }
-  return found;
+  return { within.begin(), within.end() };
 }
 
 /**
- * Gets the particles of other ranks that may lie in the spheres around this rank's particles, and
+ * Gets the particles of other ranks that lie in the spheres around this rank's particles, and
  * appends them to these. order: becomes the new order of this rank's particles: first those whose
  * spheres leave its box. Returns how many these are. Collective.
  */
@@ -144,44 +86,53 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
 {
   auto* positions = vtkDataArray::SafeDownCast(arrays[0]);
   const vtkIdType own = positions->GetNumberOfTuples();
-  std::vector<std::vector<Cell>> cells(static_cast<std::size_t>(ranks.GetCount()));
-  std::vector<std::array<double, 3>> places(static_cast<std::size_t>(own));
+  std::vector<std::vector<Sphere>> asked(static_cast<std::size_t>(ranks.GetCount()));
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
   std::vector<int> reached;
   std::vector<vtkIdType> asking, others;
   for (vtkIdType i = 0; i < own; ++i)
   {
-    double* at = places[static_cast<std::size_t>(i)].data();
+    double at[3];
     positions->GetTuple(i, at);
     space.Enter(at);
+    places->InsertNextPoint(at);
     const double radius = Rounding * radii[static_cast<std::size_t>(i)];
     reached.clear();
     if (radius > 0.0 && std::isfinite(radius)) // the core reports any other radius
     {
       space.FindReached(at, radius, reached);
     }
-    bool isInside = true;
+    bool asks = false;
     for (const int rank : reached)
     {
       if (rank != ranks.GetRank())
       {
-        AddCells(space, at, radius, cells[static_cast<std::size_t>(rank)]);
-        isInside = false;
+        asked[static_cast<std::size_t>(rank)].push_back({ at[0], at[1], at[2], radius });
+        asks = true;
       }
     }
-    (isInside ? others : asking).push_back(i);
+    (asks ? asking : others).push_back(i);
   }
-  std::for_each(cells.begin(), cells.end(), SortOnce);
-  vtkSPHRanksLists to;
-  for (const std::vector<Cell>& asked : ranks.Exchange(std::move(cells)))
-  {
-    to.push_back(ListWithin(asked, places));
-  }
-  const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, arrays, to);
-  const vtkIdType count = own + came[0]->GetNumberOfTuples();
   for (const std::vector<vtkIdType>& list : { asking, others })
   {
     std::for_each(list.begin(), list.end(), [order](vtkIdType i) { order->InsertNextId(i); });
   }
+  vtkNew<vtkPolyData> data;
+  vtkNew<vtkStaticPointLocator> locator;
+  data->SetPoints(places);
+  locator->SetDataSet(data);
+  if (own > 0)
+  {
+    locator->BuildLocator();
+  }
+  vtkSPHRanksLists to;
+  for (const std::vector<Sphere>& spheres : ranks.Exchange(std::move(asked)))
+  {
+    to.push_back(own > 0 ? ListWithin(space, spheres, locator) : std::vector<vtkIdType>());
+  }
+  const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, arrays, to);
+  const vtkIdType count = own + came[0]->GetNumberOfTuples();
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
     const vtkSmartPointer<vtkAbstractArray> all = vtkSPHMakeLike(arrays[a], count);
@@ -243,8 +194,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   {
     space.Enter(place.At);
   }
-  space.Divide(ranks, places);
-  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount())), back;
+  space.Divide(ranks, places, ranks.GetCount());
+  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount()));
   for (const vtkSPHRanksPlace& place : places)
   {
     to[static_cast<std::size_t>(space.FindOwner(place.At))].push_back(place.Particle);
@@ -257,7 +208,11 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     if ((mine.*member).data)
     {
       members.push_back(member);
-      arrays.emplace_back(Borrow(mine.*member, mine.count));
+      const mcor_array& from = mine.*member;
+      const int components = std::max(from.components, 1);
+      arrays.emplace_back(from.type == MCOR_FLOAT32
+          ? vtkSPHBorrow(static_cast<const float*>(from.data), components, mine.count)
+          : vtkSPHBorrow(static_cast<const double*>(from.data), components, mine.count));
     }
   }
   std::vector<vtkIdType> from;
@@ -296,7 +251,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     }
     vtkNew<vtkIdList> order;
     const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
-    vtkSPHAddCount(this->Filter->RunStatistics, "RankNeighbors",
+    vtkSPHAdd(this->Filter->RunStatistics, "RankNeighbors",
       ranks.Gather(static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own)));
     const vtkIdType count = ratio > 0.0 ? asking : own;
     isGood = sum(count, sums.data());
@@ -311,23 +266,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     return ranks.Agree(known) ? problem : known;
   }
 
-  // Values go back to where the particles came from.
-  vtkIdType next = 0;
-  for (const vtkIdType count : from)
-  {
-    back.emplace_back();
-    for (const vtkIdType end = next + count; next < end; ++next)
-    {
-      back.back().push_back(next);
-    }
-  }
-  vtkNew<vtkIdList> numbers;
-  for (const std::vector<vtkIdType>& list : to)
-  {
-    std::for_each(list.begin(), list.end(), [&](vtkIdType i) { numbers->InsertNextId(i); });
-  }
   const vtkSPHRanksArrays came =
-    vtkSPHPutTuples(vtkSPHSendTuples(ranks, { found.Get() }, back), numbers, mine.count);
+    vtkSPHReturnTuples(ranks, { found.Get() }, from, nullptr, to, mine.count);
   std::copy_n(static_cast<double*>(came[0]->GetVoidPointer(0)), mine.count, values);
   return "";
 }

@@ -162,8 +162,10 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
   return came;
 }
 
-vtkSPHRanksArrays vtkSPHPutTuples(
-  const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count)
+namespace
+{
+/** Puts tuples, in their order, at these places of arrays of `count` tuples; the rest is 0. */
+vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count)
 {
   vtkNew<vtkIdList> order;
   order->SetNumberOfIds(places->GetNumberOfIds());
@@ -179,6 +181,32 @@ vtkSPHRanksArrays vtkSPHPutTuples(
     put.back()->InsertTuples(places, order, array);
   }
   return put;
+}
+}
+
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const std::vector<vtkIdType>& from, const std::uint8_t* owned, const vtkSPHRanksLists& to,
+  vtkIdType count)
+{
+  vtkSPHRanksLists back;
+  vtkIdType next = 0;
+  for (const vtkIdType came : from) // what came from one rank lies together
+  {
+    back.emplace_back();
+    for (const vtkIdType end = next + came; next < end; ++next)
+    {
+      if (!owned || owned[next])
+      {
+        back.back().push_back(next);
+      }
+    }
+  }
+  vtkNew<vtkIdList> places;
+  for (const std::vector<vtkIdType>& list : to)
+  {
+    std::for_each(list.begin(), list.end(), [&](vtkIdType i) { places->InsertNextId(i); });
+  }
+  return PutTuples(vtkSPHSendTuples(ranks, arrays, back), places, count);
 }
 
 vtkSPHRanksArrays vtkSPHGatherTuples(
@@ -205,7 +233,7 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
     count = std::max(count, places->GetId(i) + 1);
   }
   came.pop_back();
-  return vtkSPHPutTuples(came, places, count);
+  return PutTuples(came, places, count);
 }
 
 namespace
@@ -422,14 +450,12 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHPartic
   auto kept = vtkSmartPointer<vtkPolyData>::New();
   kept->SetPoints(own->GetPoints());
   vtkPointData* to = kept->GetPointData();
-  to->ShallowCopy(own->GetPointData());
-  for (int i = to->GetNumberOfArrays() - 1; i >= 0; --i)
+  for (const auto& array : vtkSPHListArrays(own->GetPointData()))
   {
-    vtkAbstractArray* array = to->GetAbstractArray(i);
-    if (std::find(arrays.begin(), arrays.end(), array) == arrays.end() &&
-      !vtkSPHParticles::IsMade(array->GetName()))
+    if (std::find(arrays.begin(), arrays.end(), array) != arrays.end() ||
+      vtkSPHParticles::IsMade(array->GetName()))
     {
-      to->RemoveArray(i);
+      to->AddArray(array);
     }
   }
   for (vtkAbstractArray* array : arrays)

@@ -16,7 +16,6 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkAbstractArray;
 class vtkDataArray;
 class vtkDataSetAttributes;
-class vtkIdList;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
@@ -41,9 +40,14 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
-/** Puts tuples, in their order, at these places of arrays of `count` tuples; the rest is 0. */
-vtkSPHRanksArrays vtkSPHPutTuples(
-  const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count);
+/**
+ * Sends tuples made at elements that came from other ranks back to these, as arrays of `count`
+ * tuples; the rest is 0. from: how many elements came from each rank; owned: marks those that send
+ * their tuples, null: all; to: where, on this rank, the tuples of each rank belong. Collective.
+ */
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const std::vector<vtkIdType>& from, const std::uint8_t* owned, const vtkSPHRanksLists& to,
+  vtkIdType count);
 
 /**
  * Gathers tuples on the first rank, each at the place that its number says. The other ranks get

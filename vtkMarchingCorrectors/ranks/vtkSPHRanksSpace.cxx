@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksSpace.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkDataSet.h"
 #include "vtkSPHArrays.h"
 
@@ -104,7 +105,7 @@ bool vtkSPHRanksSpace::Holds(const double at[3]) const
 }
 
 vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& input,
-  const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places)
+  const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places, int parts)
 {
   const std::size_t count = Index(ranks.GetCount());
   places.reserve(places.size() + work.size());
@@ -122,12 +123,12 @@ vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& i
       places.push_back(place);
     }
   }
-  this->Divide(ranks, places);
+  this->Divide(ranks, places, parts);
   const std::vector<double> radii = this->FindRadii(ranks, input, places);
   const double widest = *std::max_element(radii.begin(), radii.end());
   vtkSPHRanksLists to(count);
   std::vector<std::int64_t> totals(3 * count, 0);
-  std::vector<int> found, own;
+  std::vector<int> found;
   for (const vtkSPHRanksPlace& place : places)
   {
     if (place.Particle < 0)
@@ -140,21 +141,15 @@ vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& i
       ++totals[owner];
       totals[2 * count + owner] += place.Work;
     }
-    const double most = std::max(place.Reach, widest);
-    this->FindReached(place.At, most + this->Margin, found);
+    this->FindReached(place.At, std::max(place.Reach, widest) + this->Margin, found);
     for (const int rank : found)
     {
       const double reach = std::max(place.Reach, radii[Index(rank)]);
-      if (reach < most)
+      if (this->Reaches(rank, place.At, reach + this->Margin))
       {
-        this->FindReached(place.At, reach + this->Margin, own);
-        if (std::find(own.begin(), own.end(), rank) == own.end())
-        {
-          continue;
-        }
+        to[Index(rank)].push_back(place.Particle);
+        ++totals[count + Index(rank)];
       }
-      to[Index(rank)].push_back(place.Particle);
-      ++totals[count + Index(rank)];
     }
   }
   ranks.Reduce(vtkSPHRanks::SUM, totals.data(), static_cast<int>(totals.size()));
@@ -199,7 +194,8 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
 }
 
 // A sample stands for `step` of the work; if there is little work, all of it is sampled.
-void vtkSPHRanksSpace::Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places)
+void vtkSPHRanksSpace::Divide(
+  vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts)
 {
   std::int64_t all = 0, before = 0;
   for (const vtkSPHRanksPlace& place : places)
@@ -221,9 +217,9 @@ void vtkSPHRanksSpace::Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksP
     }
   }
   samples = ranks.Join(samples);
-  this->Planes.resize(Index(ranks.GetCount()));
-  this->Boxes.resize(Index(ranks.GetCount()));
-  this->Cut(samples.begin(), samples.end(), 0, ranks.GetCount(), this->Whole);
+  this->Planes.resize(Index(parts));
+  this->Boxes.resize(Index(parts));
+  this->Cut(samples.begin(), samples.end(), 0, parts, this->Whole);
 }
 
 // Divides a box among `count` ranks from `first` on. Cuts it across the longest side of the
@@ -236,46 +232,37 @@ void vtkSPHRanksSpace::Cut(
     this->Boxes[Index(first)] = box;
     return;
   }
-  int axis = 0;
-  double longest = -Infinity;
-  for (int a = 0; a < 3 && begin != end; ++a)
-  {
-    const auto ends = std::minmax_element(begin, end,
-      [a](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q) { return p.At[a] < q.At[a]; });
-    const double length = ends.second->At[a] - ends.first->At[a];
-    axis = length > longest ? a : axis;
-    longest = std::max(longest, length);
-  }
+  vtkBoundingBox bounds;
+  std::for_each(begin, end, [&bounds](vtkSPHRanksPlace& place) { bounds.AddPoint(place.At); });
+  double lengths[3];
+  bounds.GetLengths(lengths);
+  const auto axis = static_cast<int>(std::max_element(lengths, lengths + 3) - lengths);
   std::sort(begin, end,
     [axis](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q)
     { return p.At[axis] < q.At[axis]; });
-  const auto workUntil = [begin](Samples to)
-  {
-    return std::accumulate(begin, to, std::int64_t(0),
-      [](std::int64_t sum, const vtkSPHRanksPlace& place) { return sum + place.Work; });
-  };
   const auto findEnd = [=](double plane)
   {
-    return std::lower_bound(begin, end, plane,
-      [axis](const vtkSPHRanksPlace& place, double at) { return place.At[axis] < at; });
+    return std::partition_point(
+      begin, end, [axis, plane](const vtkSPHRanksPlace& place) { return place.At[axis] < plane; });
+  };
+  const auto workBelow = [=](double plane)
+  {
+    return std::accumulate(begin, findEnd(plane), std::int64_t(0),
+      [](std::int64_t sum, const vtkSPHRanksPlace& place) { return sum + place.Work; });
   };
   const int lower = count / 2;
-  const std::int64_t goal = workUntil(end) * lower / count;
+  const std::int64_t goal = workBelow(Infinity) * lower / count;
   std::int64_t below = 0;
-  Samples middle = begin;
-  while (middle != end && below + middle->Work <= goal)
-  {
-    below += (middle++)->Work;
-  }
+  const Samples last = std::find_if(begin, end,
+    [&below, goal](const vtkSPHRanksPlace& place) { return (below += place.Work) > goal; });
   const double brick = BrickCubes * this->Globals->measured.cube;
-  const double at = middle == end ? 0.0 : middle->At[axis];
-  const auto sideOf = [at, brick](double further) // 0: of the brick; 1: of the next one
-  { return brick > 0.0 ? (std::floor(at / brick) + further) * brick : at; };
-  const std::int64_t less = goal - workUntil(findEnd(sideOf(0.0)));
-  const std::int64_t more = workUntil(findEnd(sideOf(1.0))) - goal;
-  const double plane = std::min(
-    std::max(sideOf(more < less ? 1.0 : 0.0), box[Index(2 * axis)]), box[Index(2 * axis + 1)]);
-  middle = findEnd(plane);
+  const double at = last == end ? 0.0 : last->At[axis], number = std::floor(at / brick);
+  const double side = brick > 0.0 ? number * brick : at,
+               next = brick > 0.0 ? (number + 1.0) * brick : at;
+  const bool isNext = workBelow(next) - goal < goal - workBelow(side);
+  const double plane =
+    std::min(std::max(isNext ? next : side, box[Index(2 * axis)]), box[Index(2 * axis + 1)]);
+  const Samples middle = findEnd(plane);
   vtkSPHRanksBox low = box, high = box;
   low[Index(2 * axis + 1)] = high[Index(2 * axis)] = plane;
   this->Planes[Index(first + lower)] = { axis, plane };
@@ -283,11 +270,12 @@ void vtkSPHRanksSpace::Cut(
   this->Cut(middle, end, first + lower, count - lower, high);
 }
 
-// If there are more ranks than bricks, some boxes are empty. The core needs a box, so it gets a box
-// at a place where there is nothing.
+// If there are more ranks than parts or bricks, some boxes are empty. The core needs a box, so it
+// gets a box at a place where there is nothing.
 vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
 {
-  const vtkSPHRanksBox& box = this->Boxes[Index(rank)];
+  const vtkSPHRanksBox box =
+    Index(rank) < this->Boxes.size() ? this->Boxes[Index(rank)] : vtkSPHRanksBox{};
   const bool isEmpty = box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5];
   return isEmpty ? vtkSPHRanksBox{ 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 } : box;
 }
@@ -318,63 +306,40 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
+bool vtkSPHRanksSpace::Reaches(int rank, const double at[3], double radius) const
+{
+  const vtkSPHRanksBox& box = this->Boxes[Index(rank)];
+  bool reaches = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = box[Index(2 * a)], high = box[Index(2 * a + 1)];
+    // The cube reaches the box if the place moves up by any way from `first` to `last`, which a
+    // number of periods must be.
+    double first = low - radius - at[a], last = high + radius - at[a];
+    first = this->IsPeriodic(a) ? std::ceil(first / this->Length[a]) : first;
+    last = this->IsPeriodic(a) ? std::floor(last / this->Length[a]) : last;
+    reaches =
+      reaches && low < high && (this->IsPeriodic(a) ? first <= last : first <= 0.0 && last >= 0.0);
+  }
+  return reaches;
+}
+
 void vtkSPHRanksSpace::FindReached(const double at[3], double radius, std::vector<int>& found) const
 {
   const int owner = this->Holds(at) ? this->FindOwner(at) : -1;
   bool isWithin = owner >= 0; // the usual case
-  int last[3], images = 1;
   for (int a = 0; a < 3; ++a)
   {
     isWithin = isWithin && at[a] - radius > this->Boxes[Index(owner)][Index(2 * a)] &&
       at[a] + radius < this->Boxes[Index(owner)][Index(2 * a + 1)];
-    // The core refuses supports of more than two periods.
-    const double periods = this->IsPeriodic(a) ? std::ceil(radius / this->Length[a]) : 0.0;
-    last[a] = static_cast<int>(std::min(periods, 3.0));
-    images *= 2 * last[a] + 1;
   }
   found.assign(isWithin ? 1 : 0, owner);
-  for (int image = 0; image < images && !isWithin; ++image)
+  for (int rank = 0; rank < static_cast<int>(this->Boxes.size()) && !isWithin; ++rank)
   {
-    vtkSPHRanksBox box;
-    int rest = image;
-    for (int a = 0; a < 3; rest /= 2 * last[a++] + 1)
+    if (this->Reaches(rank, at, radius))
     {
-      const double place = at[a] + (rest % (2 * last[a] + 1) - last[a]) * this->Length[a];
-      box[Index(2 * a)] = place - radius;
-      box[Index(2 * a + 1)] = place + radius;
+      found.push_back(rank);
     }
-    this->FindOverlaps(box, 0, static_cast<int>(this->Boxes.size()), found);
-  }
-}
-
-// Adds the ranks whose boxes overlap this box, among `count` ranks from `first` on.
-void vtkSPHRanksSpace::FindOverlaps(
-  const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const
-{
-  if (count > 1)
-  {
-    const int lower = count / 2;
-    const Plane& plane = this->Planes[Index(first + lower)];
-    if (box[Index(2 * plane.Axis)] <= plane.At)
-    {
-      this->FindOverlaps(box, first, lower, found);
-    }
-    if (box[Index(2 * plane.Axis + 1)] >= plane.At)
-    {
-      this->FindOverlaps(box, first + lower, count - lower, found);
-    }
-    return;
-  }
-  bool overlaps = std::find(found.begin(), found.end(), first) == found.end();
-  for (int a = 0; a < 3; ++a)
-  {
-    const double low = this->Boxes[Index(first)][Index(2 * a)],
-                 high = this->Boxes[Index(first)][Index(2 * a + 1)];
-    overlaps = overlaps && low < high && box[Index(2 * a)] <= high && box[Index(2 * a + 1)] >= low;
-  }
-  if (overlaps)
-  {
-    found.push_back(first);
   }
 }
 

@@ -48,15 +48,15 @@ public:
 
   /**
    * Divides the work evenly. input: this rank's particles; work: of each particle; 0: nobody needs
-   * the particle; places: further work of this rank. Lists, for each rank, the particles whose
-   * supports, or images of them, reach its box. Collective.
+   * the particle; places: further work of this rank; parts: how many ranks get a box. Lists, for
+   * each rank, the particles whose supports, or images of them, reach its box. Collective.
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
-    const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places);
+    const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places, int parts);
 
-  /** Divides the work at these places among the ranks' boxes; cuts may lie anywhere if the globals
-   * have no cube size. Collective. */
-  void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places);
+  /** Divides the work at these places among the boxes of the first `parts` ranks; cuts may lie
+   * anywhere if the globals have no cube size. Collective. */
+  void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts);
 
   /**
    * Finds the ranks whose boxes, or images of them, a sphere around a place in the first period
@@ -90,7 +90,8 @@ private:
   void Cut(Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box);
   std::vector<double> FindRadii(
     vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
-  void FindOverlaps(const vtkSPHRanksBox& box, int first, int count, std::vector<int>& found) const;
+  /** Whether a cube around a place, or around an image of it, reaches this rank's box. */
+  bool Reaches(int rank, const double at[3], double radius) const;
 
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;

@@ -4,7 +4,6 @@
 // No rank may return here while another goes on: all agree first on what one of them has found.
 #include "vtkSPHSharedRun.h"
 
-#include "vtkIdList.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
@@ -257,26 +256,27 @@ void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
   }
 }
 
-void vtkSPHAlgorithm::vtkSharedRun::Scatter(const mcor_input& core, vtkPointSet* particles)
-{
-  this->Work.resize(static_cast<std::size_t>(core.count), 1);
-  this->Space = vtkSPHRanksSpace(this->Options, this->Globals);
-  const vtkSPHRanksLists to =
-    this->Space.Share(this->Ranks, core, this->Work, std::move(this->PlacesOfWork));
-  this->Near = vtkSPHSendParticles(this->Ranks, particles, to, &this->From);
-  this->Options.globals = &this->Globals;
-  const vtkSPHRanksBox box = this->Space.GetBox(this->Ranks.GetRank());
-  std::copy(box.begin(), box.end(), this->Options.box);
-}
-
 vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine)
 {
-  this->Scatter(mine.Core, vtkSPHKeepUsed(this->Own, mine));
+  return this->Send(mine, vtkSPHKeepUsed(this->Own, mine), this->Ranks.GetCount());
+}
+
+vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(
+  vtkSPHParticles& mine, vtkPointSet* particles, int parts)
+{
+  this->Work.resize(static_cast<std::size_t>(mine.Core.count), 1);
+  this->Space = vtkSPHRanksSpace(this->Options, this->Globals);
+  const vtkSPHRanksLists to =
+    this->Space.Share(this->Ranks, mine.Core, this->Work, std::move(this->PlacesOfWork), parts);
+  this->Near = vtkSPHSendParticles(this->Ranks, particles, to, &this->From);
   if (this->Places)
   {
     this->Points = vtkSPHSendParticles(
       this->Ranks, this->Places, this->Space.ListOwners(this->Places), &this->From);
   }
+  this->Options.globals = &this->Globals;
+  const vtkSPHRanksBox box = this->Space.GetBox(this->Ranks.GetRank());
+  std::copy(box.begin(), box.end(), this->Options.box);
   vtkSPHWanted wanted = mine.Wanted; // an array that was found is now known by its name
   wanted.Scalar.Name =
     wanted.Scalar.Name.empty() ? mine.NameFor(MCOR_ROLE_SCALAR) : wanted.Scalar.Name;
@@ -290,7 +290,8 @@ const std::uint8_t* vtkSPHAlgorithm::vtkSharedRun::MarkOwned()
   this->Owned.clear();
   for (vtkIdType i = 0; i < this->Near->GetNumberOfPoints(); ++i)
   {
-    this->Owned.push_back(this->Owns(this->Near, i) ? 1 : 0);
+    const int owner = this->Space.FindOwner(this->Near->GetPoint(i));
+    this->Owned.push_back(owner == this->Ranks.GetRank() ? 1 : 0);
   }
   this->Owned.push_back(0); // not null, even without particles
   return this->Owned.data();
@@ -321,35 +322,20 @@ void vtkSPHAlgorithm::vtkSharedRun::CallAside(const std::function<bool(const mco
   calls.End(!call(&calls.Core));
 }
 
+// Points were sent to their owners alone.
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)
 {
-  const vtkSmartPointer<vtkDataSet> mine = this->Places ? this->Places.Get() : this->Own.Get(),
-                                    sent = this->Places ? this->Points.Get() : this->Near.Get();
-  vtkSPHRanksLists back;
-  vtkIdType next = 0;
-  for (const vtkIdType count : this->From) // what came from one rank lies together
+  vtkSPHRanksLists to =
+    this->Space.ListOwners(this->Places ? this->Places.Get() : static_cast<vtkDataSet*>(this->Own));
+  for (std::vector<vtkIdType>& list : to)
   {
-    back.emplace_back();
-    for (const vtkIdType end = next + count; next < end; ++next)
+    for (vtkIdType& i : list)
     {
-      if (this->Owns(sent, next))
-      {
-        back.back().push_back(next);
-      }
+      i = this->Numbers.empty() ? i : this->Numbers[static_cast<std::size_t>(i)];
     }
   }
-  vtkNew<vtkIdList> places;
-  for (const std::vector<vtkIdType>& list : this->Space.ListOwners(mine))
-  {
-    for (const vtkIdType i : list)
-    {
-      places->InsertNextId(this->Numbers.empty() ? i : this->Numbers[static_cast<std::size_t>(i)]);
-    }
-  }
-  const vtkSPHRanksArrays came =
-    vtkSPHPutTuples(vtkSPHSendTuples(this->Ranks, vtkSPHListArrays(found), back), places,
-      home ? home->GetNumberOfPoints() : 0);
-  for (const auto& array : came)
+  for (const auto& array : vtkSPHReturnTuples(this->Ranks, vtkSPHListArrays(found), this->From,
+         this->Places ? nullptr : this->MarkOwned(), to, home ? home->GetNumberOfPoints() : 0))
   {
     found->AddArray(array); // replaces the array of the same name
   }
@@ -378,9 +364,9 @@ void vtkSPHAlgorithm::vtkSharedRun::AddShares(const Shares& shares, double secon
 {
   for (const auto& share : shares)
   {
-    vtkSPHAddCount(this->Filter->RunStatistics, share.first, this->Ranks.Gather(share.second));
+    vtkSPHAdd(this->Filter->RunStatistics, share.first, this->Ranks.Gather(share.second));
   }
-  vtkSPHAddReal(this->Filter->RunStatistics, "RankSeconds", this->Ranks.Gather(seconds));
+  vtkSPHAdd(this->Filter->RunStatistics, "RankSeconds", this->Ranks.Gather(seconds));
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::AddShares()

@@ -31,14 +31,7 @@ public:
   {
     this->Ranks.Reduce(vtkSPHRanks::SUM, values, count);
   }
-  vtkSPHMergeRanges MergeRanges() override
-  {
-    return [this](double* ranges, int count) { this->Ranks.ReduceRanges(ranges, count); };
-  }
-  std::vector<std::vector<double>> Gather(const std::vector<double>& mine) override
-  {
-    return this->Ranks.Gather(mine);
-  }
+  void MergeRanges(double* ranges, int count) override { this->Ranks.ReduceRanges(ranges, count); }
   std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine) override
   {
     return this->Ranks.Gather(mine);
@@ -60,8 +53,11 @@ public:
   void AddShares() override;
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
-  /** Sends particles, which `core` describes, to the ranks whose boxes need them. */
-  void Scatter(const mcor_input& core, vtkPointSet* particles);
+  /**
+   * Does what Share() does with these particles, which `mine` describes, and all their arrays.
+   * parts: how many ranks share the space, from the first on.
+   */
+  vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
   /** Replaces this rank's particles by all ranks' particles, without positions, which warnings do
    * not read. */
   void OfAll(mcor_input& core, mcor_options& options) const;
@@ -82,12 +78,6 @@ protected:
   std::vector<double> FindPeriod(std::string& problem) override;
 
 private:
-  /** Whether point i of `sent`, which came to this rank, lies in the rank's box. */
-  bool Owns(vtkDataSet* sent, vtkIdType i) const
-  {
-    return this->Space.FindOwner(sent->GetPoint(i)) == this->Ranks.GetRank();
-  }
-
   std::unique_ptr<vtkSPHParticles> Input;
   std::vector<std::uint8_t> Owned;
   vtkSmartPointer<vtkPolyData> Places;        ///< this rank's points with finite coordinates

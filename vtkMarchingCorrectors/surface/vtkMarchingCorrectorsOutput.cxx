@@ -41,7 +41,7 @@ void AddQuantity(
   vtkSPHAddText(data, arrayName, isArray ? array.name : "");
   if (name && !array.data && mcor_is_given(&array))
   {
-    vtkSPHAddReal(data, name, { array.constant });
+    vtkSPHAdd(data, name, array.constant);
   }
 }
 }
@@ -85,14 +85,13 @@ double vtkMarchingCorrectorsOutput::FindLargestFloat(int precision) const
     [](double largest, double x) { return std::max(largest, std::fabs(x)); });
 }
 
-void vtkMarchingCorrectorsOutput::BuildMesh(
-  vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge)
+void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision, const Merge& merge)
 {
   vtkNew<vtkPoints> points;
   points->SetData(vtkSPHAdoptReal(
     this->Surface.points, 3, this->Surface.point_count, this->StoresFloats(precision)));
   output->SetPoints(points);
-  BuildCells(this->Surface, output);
+  this->BuildCells(output);
   this->BuildInterpolatedArrays(output);
   vtkPointData* pointData = output->GetPointData();
   mcor_surface& s = this->Surface;
@@ -129,8 +128,9 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
 
 // Ids are of VTK's own type, as vtkContourFilter makes them: with other types, some filters think a
 // mesh is not a manifold. Band values of lines come first, because VTK numbers lines first.
-void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& s, vtkPolyData* output)
+void vtkMarchingCorrectorsOutput::BuildCells(vtkPolyData* output)
 {
+  mcor_surface& s = this->Surface;
   vtkNew<vtkIdTypeArray> corners;
   corners->SetNumberOfValues(3 * s.triangle_count);
   const std::int32_t* from = s.triangles;
@@ -205,8 +205,7 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 // Chooses the active scalars: an attribute of the particles, if it varies on the surface (the
 // contoured one varies by rounding alone), or the iso value if there are several. Vectors count by
 // their magnitudes.
-void vtkMarchingCorrectorsOutput::ChooseActive(
-  vtkPolyData* output, const vtkSPHMergeRanges& merge) const
+void vtkMarchingCorrectorsOutput::ChooseActive(vtkPolyData* output, const Merge& merge) const
 {
   vtkPointData* data = output->GetPointData();
   const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;
@@ -224,10 +223,7 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
       ranges.insert(ranges.end(), range, range + 2);
     }
   }
-  if (merge)
-  {
-    merge(ranges.data(), static_cast<int>(ranges.size() / 2));
-  }
+  merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   const mcor_input& core = this->Input.Core;
   const std::string contoured = this->Input.NameFor(MCOR_ROLE_SCALAR);
   const bool isOne = !contoured.empty() && !core.scalar_dot.data &&
@@ -289,16 +285,16 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
     vtkSPHAdd(run, name, s.member);                                                                \
   }
 #include "mcor_statistics.def"
-  vtkSPHAddReal(run, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
+  vtkSPHAdd(run, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
   if (has_scalar)
   {
-    vtkSPHAddReal(run, "ScalarRange", { s.scalar_min, s.scalar_max });
+    vtkSPHAdd(run, "ScalarRange", { s.scalar_min, s.scalar_max });
   }
-  vtkSPHAddCount(run, "Points", { this->Surface.point_count });
-  vtkSPHAddCount(run, "Triangles", { this->Surface.triangle_count });
+  vtkSPHAdd(run, "Points", this->Surface.point_count);
+  vtkSPHAdd(run, "Triangles", this->Surface.triangle_count);
   if (is_plane)
   {
-    vtkSPHAddCount(run, "Lines", { this->Surface.line_count });
+    vtkSPHAdd(run, "Lines", this->Surface.line_count);
   }
   this->AddIsoValues(run);
   this->AddParameters(run);
@@ -339,10 +335,9 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddText(fieldData, "Field", fields[o.field]);
   vtkSPHAddText(fieldData, "Scalar", this->Input.Found.scalar_name);
   AddQuantity(fieldData, "SmoothingLengthArray", nullptr, this->Input.Core.smoothing_length);
-  vtkSPHAddCount(fieldData, "SmoothingLengthIsSupportRadius",
-    { this->Input.Core.smoothing_length_is_support_radius });
-  vtkSPHAddCount(
-    fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
+  vtkSPHAdd(fieldData, "SmoothingLengthIsSupportRadius",
+    this->Input.Core.smoothing_length_is_support_radius);
+  vtkSPHAdd(fieldData, "EstimateSmoothingLength", this->Input.Core.estimate_smoothing_length);
   AddQuantity(fieldData, "VolumeArray", "ParticleVolume", this->Input.Core.volume);
   AddQuantity(fieldData, "MassArray", "Mass", this->Input.Core.mass);
   AddQuantity(fieldData, "DensityArray", "Density", this->Input.Core.density);
@@ -350,9 +345,9 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddText(fieldData, "FluidArray", fluid ? fluid : "");
   if (fluid)
   {
-    vtkSPHAddReal(fieldData, "FluidValue", { this->Input.Found.fluid_value });
-    vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
-    vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
+    vtkSPHAdd(fieldData, "FluidValue", this->Input.Found.fluid_value);
+    vtkSPHAdd(fieldData, "IgnoreSolids", this->Input.Core.ignore_solids);
+    vtkSPHAdd(fieldData, "WallShare", this->Surface.statistics.wall_share);
   }
   // Values in use are already statistics, see AddRun.
 #define WORD true
@@ -370,15 +365,15 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   const bool isPeriodic = p[0] < p[1] || p[2] < p[3] || p[4] < p[5];
   if (isPeriodic)
   {
-    vtkSPHAddReal(fieldData, "PeriodicBounds", std::vector<double>(p, p + 6));
+    vtkSPHAdd(fieldData, "PeriodicBounds", std::vector<double>(p, p + 6));
   }
   if (isPeriodic || o.capping != MCOR_CAP_NONE)
   {
-    vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
+    vtkSPHAdd(fieldData, "Capping", o.capping != MCOR_CAP_NONE ? 1 : 0);
   }
   if (mcor_has_box(&o))
   {
-    vtkSPHAddReal(fieldData, "Box", std::vector<double>(o.box, o.box + 6));
+    vtkSPHAdd(fieldData, "Box", std::vector<double>(o.box, o.box + 6));
   }
 }
 VTK_ABI_NAMESPACE_END

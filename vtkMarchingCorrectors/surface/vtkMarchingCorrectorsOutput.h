@@ -7,6 +7,7 @@
 #include "mcor.h"
 #include "vtkSPHArrays.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,12 @@ public:
   /** Lists the names of the arrays that the core must compute, in the output's order. */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
-  /** Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm. */
-  void BuildMesh(vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge = nullptr);
+  /**
+   * Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm; merge:
+   * merges ranges over all processes, see vtkRun.
+   */
+  using Merge = std::function<void(double* ranges, int count)>;
+  void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);
   /**
    * Returns the largest coordinate, in magnitude, of the mesh's points if they are floats; else
    * 0.
@@ -54,16 +59,11 @@ public:
    */
   void AddRun(vtkFieldData* run) const;
 
-  /**
-   * Adds triangles and lines, and their band values if there are bands. Takes over the surface's
-   * triangles.
-   */
-  static void BuildCells(mcor_surface& surface, vtkPolyData* output);
-
 private:
   bool StoresFloats(int precision) const;
+  void BuildCells(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
-  void ChooseActive(vtkPolyData* output, const vtkSPHMergeRanges& merge) const;
+  void ChooseActive(vtkPolyData* output, const Merge& merge) const;
   void AddIsoValues(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 

@@ -4,9 +4,7 @@
 
 #include "mcor.h"
 #include "vtkCellArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -17,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iomanip>
 #include <sstream>
 #include <utility>
@@ -35,35 +32,49 @@ std::string Text(double value)
   return stream.str();
 }
 
+/** The values of an array. */
+struct Values
+{
+  explicit Values(vtkDataArray* array)
+    : Held(vtkSPHAsReal(array))
+    , View(vtkSPHView(this->Held))
+  {
+  }
+
+  double operator()(vtkIdType tuple, int component) const
+  {
+    return vtkSPHValueOf(this->View, tuple * this->View.components + component);
+  }
+
+  const vtkSmartPointer<vtkDataArray> Held; ///< the array, or its copy
+  const mcor_array View;
+};
+
 /** Makes an array of the wider type of two, with value(tuple, component), in parallel. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
-  const vtkSPHReals& a, const vtkSPHReals& b, vtkIdType count, const ValueT& value)
+  const Values& a, const Values& b, vtkIdType count, const ValueT& value)
 {
-  const int components = a.Components;
-  vtkNew<vtkDoubleArray> array;
-  array->SetNumberOfComponents(components);
+  const bool isFloat = a.View.type == MCOR_FLOAT32 && b.View.type == MCOR_FLOAT32;
+  const auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  array->SetNumberOfComponents(a.View.components);
   array->SetNumberOfTuples(count);
-  array->SetName(a.Array->GetName());
-  array->CopyComponentNames(a.Array);
-  double* const to = array->GetPointer(0);
+  array->SetName(a.View.name);
+  array->CopyComponentNames(a.Held);
   vtkSMPTools::For(0, count, Grain,
-    [to, components, &value](vtkIdType begin, vtkIdType end)
+    [&](vtkIdType begin, vtkIdType end)
     {
-      for (vtkIdType i = begin * components; i < end * components; ++i)
+      for (vtkIdType i = begin; i < end; ++i)
       {
-        to[i] = value(i / components, static_cast<int>(i % components));
+        for (int c = 0; c < a.View.components; ++c)
+        {
+          array->SetComponent(i, c, value(i, c));
+        }
       }
     });
-  if (a.Array->GetDataType() != VTK_FLOAT || b.Array->GetDataType() != VTK_FLOAT)
-  {
-    return array.Get();
-  }
-  auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  floats->DeepCopy(array);
-  return floats;
+  return array;
 }
-
 }
 
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
@@ -83,35 +94,27 @@ bool vtkSPHTemporalPair::Match(
 {
   this->Error.clear();
   this->Warnings.clear();
+  this->IdName.clear();
+  this->VelocityName.clear();
   this->Ratio = 0.0;
-  this->TimeScale = choice.TimeScale;
-  std::copy_n(choice.Period, 3, this->Period);
-  vtkPointSet* const particles[2] = { first, second };
-  for (int k = 0; k < 2; ++k)
+  this->Choice = choice;
+  const std::vector<std::uint64_t> before = std::exchange(this->Signature, {});
+  this->Steps[0].Particles = first;
+  this->Steps[1].Particles = second;
+  for (Step& step : this->Steps)
   {
-    this->Steps[k].Particles = particles[k];
-    this->Steps[k].Time = choice.Times[k];
+    step.Ids = step.Velocities = nullptr;
   }
   if (first->GetNumberOfPoints() == 0 || second->GetNumberOfPoints() == 0)
   {
-    this->IdName.clear();
-    this->VelocityName.clear();
-    this->Signature.clear();
     this->FollowsVelocities = false;
-    for (Step& step : this->Steps)
-    {
-      step.Ids = nullptr;
-      step.Velocities = nullptr;
-      step.Partners.assign(step.Particles->GetNumberOfPoints(), -1);
-    }
     return true;
   }
-  std::vector<std::uint64_t> signature;
-  if (!this->FindIds(choice.IdArrayName) || !this->FindVelocities(choice))
+  if (!this->FindIds() || !this->FindVelocities())
   {
-    this->Signature.clear();
     return false;
   }
+  std::vector<std::uint64_t> signature;
   for (const Step& step : this->Steps)
   {
     vtkSPHSign(signature, step.Particles->GetPoints()->GetData());
@@ -121,19 +124,18 @@ bool vtkSPHTemporalPair::Match(
   for (const double number : { choice.Times[0], choice.Times[1], choice.TimeScale, choice.Period[0],
          choice.Period[1], choice.Period[2] })
   {
-    signature.push_back(std::hash<double>()(number));
+    vtkSPHSign(signature, number);
   }
-  if (signature != this->Signature)
+  if (signature != before)
   {
-    this->Signature.clear();
     if (!this->MatchNumbers())
     {
       return false;
     }
     this->CheckVelocities();
     this->WarnOfLostArrays();
-    this->Signature = signature;
   }
+  this->Signature = signature;
   return true;
 }
 
@@ -195,18 +197,18 @@ bool vtkSPHTemporalPair::MatchNumbers()
 
 std::string vtkSPHTemporalPair::NameOfStep(int step) const
 {
-  return "the step at time " + Text(this->Steps[step].Time);
+  return "the step at time " + Text(this->Choice.Times[step]);
 }
 
 double vtkSPHTemporalPair::Nearest(double way, int axis) const
 {
-  const double period = this->Period[axis];
+  const double period = this->Choice.Period[axis];
   return period > 0.0 ? way - period * std::round(way / period) : way;
 }
 
-bool vtkSPHTemporalPair::FindIds(const std::string& name)
+bool vtkSPHTemporalPair::FindIds()
 {
-  this->IdName = vtkSPHRealName(name);
+  this->IdName = vtkSPHRealName(this->Choice.IdArrayName);
   if (this->IdName.empty())
   {
     vtkPointSet* first = this->Steps[0].Particles;
@@ -226,17 +228,13 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
   return this->Error.empty();
 }
 
-bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
+bool vtkSPHTemporalPair::FindVelocities()
 {
-  this->VelocityName = choice.UseVelocities ? vtkSPHRealName(choice.VelocityArrayName) : "";
-  for (Step& step : this->Steps)
-  {
-    step.Velocities = nullptr;
-  }
-  if (!choice.UseVelocities)
+  if (!this->Choice.UseVelocities)
   {
     return true;
   }
+  this->VelocityName = vtkSPHRealName(this->Choice.VelocityArrayName);
   if (this->VelocityName.empty())
   {
     this->VelocityName = vtkSPHNameOf(vtkSPHDetect(this->Steps[0].Particles, MCOR_VELOCITY, 3));
@@ -281,15 +279,15 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
 {
   for (int k = 0; k < 2; ++k)
   {
-    const vtkSPHReals velocity(this->Steps[k].Velocities);
-    for (vtkIdType i = 0; i < velocity.Array->GetNumberOfTuples(); ++i)
+    const Values velocity(this->Steps[k].Velocities);
+    for (vtkIdType i = 0; i < velocity.Held->GetNumberOfTuples(); ++i)
     {
       if (!(std::isfinite(velocity(i, 0)) && std::isfinite(velocity(i, 1)) &&
             std::isfinite(velocity(i, 2))))
       {
         this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_NOT_FINITE), this->VelocityName.c_str(),
-          static_cast<long long>(i), this->NameOfStep(k).c_str(), Text(this->Steps[0].Time).c_str(),
-          Text(this->Steps[1].Time).c_str()));
+          static_cast<long long>(i), this->NameOfStep(k).c_str(),
+          Text(this->Choice.Times[0]).c_str(), Text(this->Choice.Times[1]).c_str()));
         return false;
       }
     }
@@ -297,8 +295,7 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-// Warns if the particles moved much less or more, along their mean velocities, than these say. Sums
-// are made slice by slice, and slices are added in order, so threads do not change the result.
+// Warns if the particles moved much less or more, along their mean velocities, than these say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];
@@ -310,33 +307,20 @@ void vtkSPHTemporalPair::CheckVelocities()
   {
     return;
   }
-  const vtkSPHReals from(first.Particles->GetPoints()->GetData()),
+  const Values from(first.Particles->GetPoints()->GetData()),
     to(second.Particles->GetPoints()->GetData()), begun(first.Velocities), ended(second.Velocities);
-  const double duration = this->TimeScale * (second.Time - first.Time);
-  std::vector<std::pair<double, double>> sums(static_cast<size_t>(count / Grain + 1));
-  vtkSMPTools::For(0, static_cast<vtkIdType>(sums.size()), 1,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType slice = begin; slice < end; ++slice)
-      {
-        std::pair<double, double>& sum = sums[slice];
-        for (vtkIdType i = slice * Grain; i < std::min(count, (slice + 1) * Grain); ++i)
-        {
-          const vtkIdType j = first.Partners[i];
-          for (int c = 0; j >= 0 && c < 3; ++c)
-          {
-            const double expected = 0.5 * duration * (begun(i, c) + ended(j, c));
-            sum.first += this->Nearest(to(j, c) - from(i, c), c) * expected;
-            sum.second += expected * expected;
-          }
-        }
-      }
-    });
+  const double* const times = this->Choice.Times;
+  const double duration = this->Choice.TimeScale * (times[1] - times[0]);
   double moved = 0.0, expected = 0.0;
-  for (const std::pair<double, double>& sum : sums)
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    moved += sum.first;
-    expected += sum.second;
+    const vtkIdType j = first.Partners[i];
+    for (int c = 0; j >= 0 && c < 3; ++c)
+    {
+      const double way = 0.5 * duration * (begun(i, c) + ended(j, c));
+      moved += this->Nearest(to(j, c) - from(i, c), c) * way;
+      expected += way * way;
+    }
   }
   if (expected > 0.0 && !(moved >= 0.5 * expected && moved <= 2.0 * expected))
   {
@@ -344,14 +328,14 @@ void vtkSPHTemporalPair::CheckVelocities()
     std::ostringstream remedy;
     if (ratio > 0.0)
     {
-      remedy << std::setprecision(3) << "Choose {time_scale " << this->TimeScale * ratio
+      remedy << std::setprecision(3) << "Choose {time_scale " << this->Choice.TimeScale * ratio
              << "}, or other times. ";
     }
-    this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_MOVED), remedy.str().c_str(),
-      Text(first.Time).c_str(), Text(second.Time).c_str(), Text(ratio).c_str(),
-      this->VelocityName.c_str()));
+    this->Warnings.push_back(
+      vtkSPHSay(MCOR_SAY(STEP_MOVED), remedy.str().c_str(), Text(times[0]).c_str(),
+        Text(times[1]).c_str(), Text(ratio).c_str(), this->VelocityName.c_str()));
     this->FollowsVelocities = false;
-    this->Ratio = moved / expected;
+    this->Ratio = ratio;
   }
 }
 
@@ -398,7 +382,8 @@ bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
 
 void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
 {
-  const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
+  const double* const times = this->Choice.Times;
+  const double s = (time - times[0]) / (times[1] - times[0]);
   const bool early = s < 0.5;
   const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
   const double share = early ? s : 1.0 - s; // share of the way to the other step
@@ -409,12 +394,13 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
     return; // one step has no particles, and the other nothing to interpolate with
   }
   // Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
-  const double toFar = this->TimeScale * (far.Time - near.Time); // negative in the later half of the interval
-  const double toTime = this->TimeScale * (time - near.Time);
+  const double nearTime = times[early ? 0 : 1], farTime = times[early ? 1 : 0];
+  const double toFar = this->Choice.TimeScale * (farTime - nearTime); // negative in the later half
+  const double toTime = this->Choice.TimeScale * (time - nearTime);
   const bool curved = this->FollowsVelocities;
   vtkDataArray *const x0 = near.Particles->GetPoints()->GetData(),
                       *const x1 = far.Particles->GetPoints()->GetData();
-  const vtkSPHReals from(x0), to(x1), begun(curved ? near.Velocities.Get() : x0),
+  const Values from(x0), to(x1), begun(curved ? near.Velocities.Get() : x0),
     ended(curved ? far.Velocities.Get() : x1);
   // Hermite's cubic polynomials, for the far position and for both tangents.
   const double ofFar = share * share * (3.0 - 2.0 * share),
@@ -456,7 +442,7 @@ void vtkSPHTemporalPair::InterpolateArrays(
     {
       continue;
     }
-    const vtkSPHReals from(vtkDataArray::SafeDownCast(array)), to(other);
+    const Values from(vtkDataArray::SafeDownCast(array)), to(other);
     output->GetPointData()->AddArray(MakeArray(from, to, near.Particles->GetNumberOfPoints(),
       [&](vtkIdType i, int c)
       {

@@ -50,13 +50,12 @@ private:
   {
     vtkSmartPointer<vtkPointSet> Particles;
     vtkSmartPointer<vtkDataArray> Ids, Velocities; // null: not used
-    double Time = 0.0;
     std::vector<vtkIdType> Partners; // number of each particle in the other step; -1: it has none
   };
 
   bool MatchNumbers();
-  bool FindIds(const std::string& name);
-  bool FindVelocities(const vtkSPHTemporalChoice& choice);
+  bool FindIds();
+  bool FindVelocities();
   vtkDataArray* Find(const std::string& role, const std::string& name, int components, int step);
   bool AreVelocitiesFinite();
   void CheckVelocities();
@@ -69,8 +68,7 @@ private:
   double Nearest(double way, int axis) const;
 
   Step Steps[2];
-  double TimeScale = 1.0;
-  double Period[3] = { 0.0, 0.0, 0.0 };
+  vtkSPHTemporalChoice Choice;
   bool FollowsVelocities = false;
   std::vector<std::uint64_t> Signature; // state of the data that were matched
 };

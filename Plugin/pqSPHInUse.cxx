@@ -54,19 +54,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace
 {
-// Properties that tell what the next update would find. Hidden ones get no row here: the panel
-// shows them elsewhere, or begins with their values.
+// Properties that tell what the next update would find.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
   "NextDimension", "NextFreeSurface", "NextFluid", "NextCells", "NextWarning" };
-const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension",
-  "NextFreeSurface" };
 
 // The items of ParaView's lists of arrays have these roles: association and name.
 constexpr int ASSOCIATION = Qt::UserRole + 1, ARRAY_NAME = Qt::UserRole + 2;
@@ -131,6 +127,13 @@ bool isNew(vtkSMProxy* filter)
   return found && found->modifiedState() == pqProxy::UNINITIALIZED;
 }
 
+// Returns the filter's first output; nullptr before the first update.
+pqOutputPort* outputOf(vtkSMProxy* filter)
+{
+  auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(filter);
+  return source && !isNew(filter) ? source->getOutputPort(0) : nullptr;
+}
 }
 
 pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent)
@@ -171,12 +174,6 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
-    const QLatin1String name(property->GetXMLName());
-    if (std::any_of(std::begin(HIDDEN), std::end(HIDDEN),
-          [name](const char* hidden) { return name == QLatin1String(hidden); }))
-    {
-      continue;
-    }
     if (!property->GetInformationOnly())
     {
       form->addRow(pqProxyWidget::createWidgetForProperty(property, proxy, values));
@@ -446,16 +443,13 @@ void pqSPHInUse::showValues()
 // is the best one now, until a person takes another colour.
 void pqSPHInUse::colourLate()
 {
-  auto* source =
-    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
-      this->proxy());
-  pqOutputPort* port = source ? source->getOutputPort(0) : nullptr;
-  vtkPVDataInformation* data = port && !isNew(this->proxy()) ? port->getDataInformation() : nullptr;
+  pqOutputPort* port = outputOf(this->proxy());
   const bool isFirst = !std::exchange(this->HasLooked, true);
-  if (!data)
+  if (!port)
   {
     return;
   }
+  vtkPVDataInformation* data = port->getDataInformation();
   const bool isEmpty = data->GetNumberOfPoints() + data->GetNumberOfRows() == 0;
   vtkPVArrayInformation* active =
     data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
@@ -472,7 +466,7 @@ void pqSPHInUse::colourLate()
   if (isEmpty && !this->WasEmpty &&
     vtkSMPropertyHelper(this->proxy(), "MessageCount", true).GetAsInt() == 0)
   {
-    const QString text = "The output of " + source->getSMName() +
+    const QString text = "The output of " + port->getSource()->getSMName() +
       " is empty: nothing is drawn. See In Use, at the end of its properties, for what was "
       "found.\n";
     vtkOutputWindowDisplayWarningText(text.toUtf8().constData());
@@ -535,10 +529,16 @@ void pqSPHInUse::plotOverTime()
 bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
 {
   vtkSMProperty* property = shown->getProxy()->GetProperty("ColorArrayName");
-  if (property && !this->Coloured.contains(shown))
+  if (!this->Coloured.contains(shown))
   {
-    pqCoreUtilities::connect(
-      property, vtkCommand::ModifiedEvent, this, SLOT(narrowColours()), Qt::QueuedConnection);
+    // A later picture may have the same address.
+    this->connect(
+      shown, &QObject::destroyed, this, [this, shown] { this->Coloured.remove(shown); });
+    if (property)
+    {
+      pqCoreUtilities::connect(
+        property, vtkCommand::ModifiedEvent, this, SLOT(narrowColours()), Qt::QueuedConnection);
+    }
   }
   const QString name = property ? vtkSMPropertyHelper(property).GetAsString(4) : "";
   return name != std::exchange(this->Coloured[shown], name);
@@ -550,13 +550,9 @@ void pqSPHInUse::narrowColours()
 {
   SCOPED_UNDO_EXCLUDE();
   const QString ranges = vtkSMPropertyHelper(this->proxy(), "ColorRanges", true).GetAsString();
-  auto* source =
-    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
-      this->proxy());
-  pqOutputPort* port = source ? source->getOutputPort(0) : nullptr;
-  vtkPVDataInformation* data = port && !isNew(this->proxy()) ? port->getDataInformation() : nullptr;
+  pqOutputPort* port = outputOf(this->proxy());
   for (pqDataRepresentation* shown :
-    data ? port->getRepresentations(nullptr) : QList<pqDataRepresentation*>())
+    port ? port->getRepresentations(nullptr) : QList<pqDataRepresentation*>())
   {
     auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(shown->getProxy());
     const bool isOther = this->watchColour(shown);
@@ -565,8 +561,9 @@ void pqSPHInUse::narrowColours()
       continue;
     }
     const QString name = this->Coloured[shown];
-    vtkPVArrayInformation* array = data->GetPointDataInformation()->GetArrayInformation(
-      name.toUtf8().constData());
+    vtkPVArrayInformation* array =
+      port->getDataInformation()->GetPointDataInformation()->GetArrayInformation(
+        name.toUtf8().constData());
     vtkSMProxy* colours = vtkSMPropertyHelper(proxy, "LookupTable").GetAsProxy();
     const QRegularExpressionMatch found =
       QRegularExpression("^(\\S+) (\\S+) " + QRegularExpression::escape(name) + "$",

@@ -112,7 +112,7 @@ class TestColours(unittest.TestCase):
     def test_ranges(self):
         """A fast drop, a sharp edge, and walls do not decide the colours of the rest."""
         water, drop = lattice(20, 20, 20), lattice(2, 2, 2) + [0, 0, 5]
-        heat = numpy.concatenate([water[:, 0], numpy.full(8, 500.0)])
+        heat = numpy.concatenate([water[:, 0], numpy.linspace(400, 600, 8)])
         particles = block(numpy.concatenate([water, drop]), Heat=heat)
         surface = vtkMarchingCorrectors()
         self.assertEqual(surface.GetColorRanges(), "")
@@ -123,6 +123,12 @@ class TestColours(unittest.TestCase):
         self.assertTrue(-0.01 < low < 0.1 and 1.8 < high < 2, found)
         curvature = values_of(output, "MeanCurvature")
         self.assertLess(found["MeanCurvature"][1] - found["MeanCurvature"][0], 0.8 * (curvature.max() - curvature.min()))
+        several = vtkMarchingCorrectors()
+        several.SetInputArrayToProcess(0, 0, 0, 0, "Heat")
+        for i, value in enumerate((0.5, 1.5, 500)):
+            several.SetValue(i, value)
+        run(several, particles, FreeSurface=0)
+        self.assertEqual(self.ranges(several)["Heat"], (0.5, 500))
         volume = vtkSPHResample()
         self.assertEqual(volume.GetColorRanges(), "")
         run(volume, block(water), Shape=2, Dimensions=(9, 9, 9))

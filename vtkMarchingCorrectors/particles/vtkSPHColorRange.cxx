@@ -6,6 +6,7 @@
 #include "vtkDataArray.h"
 #include "vtkMath.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkTriangle.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ double Measure(vtkDataSet* data, const vtkIdType* corners, vtkIdType count)
 }
 
 vtkSPHColorRange::vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut)
+  : IsoValues(vtkSPHFindIsoValues(data))
 {
   auto* surface = vtkPolyData::SafeDownCast(data);
   vtkCellArray* cells = surface && surface->GetNumberOfPolys() > 0 ? surface->GetPolys()
@@ -64,6 +66,11 @@ vtkSPHColorRange::vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& is
 
 bool vtkSPHColorRange::Find(vtkDataArray* array, double range[2]) const
 {
+  if (array == this->IsoValues) // a small surface counts as the others do
+  {
+    array->GetFiniteRange(range, 0);
+    return range[0] <= range[1];
+  }
   std::vector<std::pair<double, double>> found; // values and their shares
   double total = 0.0;
   for (const auto& sample : this->Samples)
@@ -87,19 +94,17 @@ bool vtkSPHColorRange::Find(vtkDataArray* array, double range[2]) const
     return false;
   }
   std::sort(found.begin(), found.end());
-  double below = 0.0;
-  range[0] = range[1] = found.back().first;
-  for (auto at = found.rbegin(); at != found.rend() && below <= LeftOut * total; ++at)
+  const auto findEnd = [total](auto at) // behind the share that is left out
   {
-    range[1] = at->first;
-    below += at->second;
-  }
-  below = 0.0;
-  for (auto at = found.begin(); at != found.end() && below <= LeftOut * total; ++at)
-  {
-    range[0] = at->first;
-    below += at->second;
-  }
+    double below = at->second;
+    for (; total > 0.0 && below <= LeftOut * total; below += at->second)
+    {
+      ++at;
+    }
+    return at->first;
+  };
+  range[0] = findEnd(found.begin());
+  range[1] = findEnd(found.rbegin());
   if (!(range[0] < range[1]))
   {
     range[0] = found.front().first;

@@ -25,13 +25,14 @@ public:
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**
-   * Finds the range of a point array, or of its vectors' magnitudes; if most values are equal, the
-   * range of all values. Returns false if no value is finite.
+   * Finds the range of a point array, or of its vectors' magnitudes; if most values are equal, or
+   * are iso values, the range of all values. Returns false if no value is finite.
    */
   bool Find(vtkDataArray* array, double range[2]) const;
 
 private:
   std::vector<std::pair<vtkIdType, double>> Samples; // points and their shares
+  vtkDataArray* IsoValues;
 };
 VTK_ABI_NAMESPACE_END
 

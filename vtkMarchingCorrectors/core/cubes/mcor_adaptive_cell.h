@@ -222,13 +222,14 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   return best;
 }
 
-/* Writes a loop's triangles. After each triangle follow those of the parts on its other sides. */
-MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
+/* Writes a loop's triangles. After each triangle follow those of the parts on its other sides.
+ * Returns the cost of their diagonals. */
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
   MCOR_TYPE(ushort) costs[MCOR_ADAPTIVE_VERTICES * (MCOR_ADAPTIVE_VERTICES - 1) / 2];
   MCOR_TYPE(uchar) from[MCOR_ADAPTIVE_VERTICES], to[MCOR_ADAPTIVE_VERTICES];
-  int waiting = 1, count = 0;
+  int waiting = 1, count = 0, total;
   for (int b = 1; b < loop->length; ++b)
   {
     costs[mcor_adaptive_part(b - 1, b)] = 0;
@@ -240,6 +241,7 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
       costs[mcor_adaptive_part(a, b)] = (MCOR_TYPE(ushort))(cost < 0xffff ? cost : 0xffff);
     }
   }
+  mcor_adaptive_apex(costs, 0, loop->length - 1, &total);
   from[0] = 0;
   to[0] = (MCOR_TYPE(uchar))(loop->length - 1);
   while (waiting)
@@ -260,6 +262,23 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
     from[waiting] = (MCOR_TYPE(uchar))a;
     to[waiting++] = (MCOR_TYPE(uchar))apex;
   }
+  return total;
+}
+
+/* Takes the loop through a slot out of the links. It has no vertices if the slot has none. */
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_trace(
+  MCOR_TYPE(uint) split, int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
+{
+  loop->length = 0;
+  for (int at = slot, next; links->next[at] != 0xff; at = next)
+  {
+    const int i = loop->length++;
+    next = links->next[at];
+    links->next[at] = 0xff;
+    loop->slot[i] = (MCOR_TYPE(uchar))at;
+    mcor_adaptive_place(split, at, loop->place[i]);
+    loop->facets[i] = mcor_adaptive_facets(split, loop->place[i]);
+  }
 }
 
 /* Writes a cell's triangles, three slots each, unless `triangles` is NULL, and returns their
@@ -275,15 +294,9 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
   for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
     MCOR_TYPE(uint) common = ~(MCOR_TYPE(uint))0; /* facets */
-    loop.length = 0;
-    for (int at = slot, next; links.next[at] != 0xff; at = next)
+    mcor_adaptive_trace(split, slot, &links, &loop);
+    for (int i = 0; i < loop.length; ++i)
     {
-      const int i = loop.length++;
-      next = links.next[at];
-      links.next[at] = 0xff;
-      loop.slot[i] = (MCOR_TYPE(uchar))at;
-      mcor_adaptive_place(split, at, loop.place[i]);
-      loop.facets[i] = mcor_adaptive_facets(split, loop.place[i]);
       common &= loop.facets[i];
     }
     if (loop.length > 2)

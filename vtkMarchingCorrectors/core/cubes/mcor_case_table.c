@@ -1,197 +1,141 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Derives the cases of Marching Cubes. On each face, one segment cuts off each run of corners above
- * the iso value; this depends on the face's corners alone, so two cells agree on their common face.
- * Segments form loops, and loops are cut into triangles. No diagonal lies within a face, because
- * the neighbour cell might have the same one, and four triangles would then meet there.
+/* Derives the cases of Marching Cubes, as those of cells without finer cells around them: see
+ * mcor_adaptive_cell.h, which has loops of segments and cuts them into triangles. No diagonal lies
+ * within a face, because the neighbour cell might have the same one, and four triangles would then
+ * meet there.
  *
  * The corners of an ambiguous face are above and below in turn: either those above are cut off, or
  * they are joined, and those below are cut off. Each of the 256 cases has a row for each
  * combination of these decisions. Two loops around the same region may become a tunnel. Some rows
- * need diagonals within a face; see mcor_allow_side. */
+ * need diagonals within a face; see mcor_allow_diagonals. */
 
 #include "mcor_internal.h"
+
+#include "mcor_adaptive_cell.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_CELL_EDGES 24 /* axis << 3 | lower corner; not all numbers are edges */
+/* Returns the corner (bits 1 x, 2 y, 4 z) at one of the 27 positions in a cell. */
+static int mcor_corner_at(int position)
+{
+  return position % 3 / 2 | position / 3 % 3 / 2 << 1 | position / 18 << 2;
+}
 
 static int mcor_corner_above(int cube_case, int corner)
 {
   return cube_case >> corner & 1;
 }
 
-/* Returns the edge between two neighbouring corners. */
-static int mcor_edge_between(int a, int b)
+/* Returns corner i of a face, counter-clockwise seen from outside. */
+static int mcor_face_corner(int face, int i)
 {
-  const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
-  return axis << 3 | (a & b);
-}
-
-/* Lists the corners of a face, counter-clockwise seen from outside. */
-static void mcor_face_corners(int axis, int side, int corners[4])
-{
-  const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = side << axis;
-  corners[0] = base;
-  corners[1] = base | (side ? u : v);
-  corners[2] = base | u | v;
-  corners[3] = base | (side ? v : u);
+  return mcor_corner_at(mcor_adaptive_face_node(face, 2 * (i & 3)));
 }
 
 static int mcor_face_ambiguous(int cube_case, int face)
 {
-  int corner[4];
-  mcor_face_corners(face >> 1, face & 1, corner);
-  const int first = mcor_corner_above(cube_case, corner[0]);
-  return mcor_corner_above(cube_case, corner[1]) != first &&
-    mcor_corner_above(cube_case, corner[2]) == first &&
-    mcor_corner_above(cube_case, corner[3]) != first;
+  int changes = 0;
+  for (int i = 0; i < 4; ++i)
+  {
+    changes += mcor_corner_above(cube_case, mcor_face_corner(face, i)) !=
+      mcor_corner_above(cube_case, mcor_face_corner(face, i + 1));
+  }
+  return changes == 4;
 }
 
-/* Sets next[edge] to the edge that follows on the loop, or to -1 if the edge is not crossed. The
- * direction makes triangles face the corners below. joined: bits axis * 2 + side of the
- * ambiguous faces whose corners above are joined. */
-static void mcor_link_edges(int cube_case, int joined, int next[MCOR_CELL_EDGES])
-{
-  for (int e = 0; e < MCOR_CELL_EDGES; ++e)
-  {
-    next[e] = -1;
-  }
-  for (int face = 0; face < 6; ++face)
-  {
-    int corner[4];
-    mcor_face_corners(face >> 1, face & 1, corner);
-    for (int i = 0; i < 4; ++i)
-    {
-      const int from = corner[i], to = corner[(i + 1) % 4];
-      if (mcor_corner_above(cube_case, from) || !mcor_corner_above(cube_case, to))
-      {
-        continue;
-      }
-      if (joined >> face & 1)
-      {
-        next[mcor_edge_between(from, to)] = mcor_edge_between(corner[(i + 3) % 4], from);
-        continue;
-      }
-      int last = i + 1; /* end of the run of corners above that begins at `to` */
-      while (mcor_corner_above(cube_case, corner[(last + 1) % 4]))
-      {
-        ++last;
-      }
-      next[mcor_edge_between(from, to)] =
-        mcor_edge_between(corner[last % 4], corner[(last + 1) % 4]);
-    }
-  }
-}
-
-/* Returns the face that both edges lie in, axis * 2 + side, or -1. */
-static int mcor_common_face(int edge_a, int edge_b)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (axis != edge_a >> 3 && axis != edge_b >> 3 && ((edge_a ^ edge_b) >> axis & 1) == 0)
-    {
-      return axis * 2 + (edge_a >> axis & 1);
-    }
-  }
-  return -1;
-}
-
-#define MCOR_NO_DIAGONALS (-1)
-
-/* Whether triangles of a cell may have a side between the vertices of two edges that do not follow
- * each other on a loop. Without a case, only if the edges have no common face. With a case,
- * opposite edges of an ambiguous face are allowed, too. Such a face has two such sides; the cell
- * below may use one, and the cell above the other. The face's lowest corner decides which one. This
- * makes the three faces around a corner alike; otherwise few tunnels could be made. */
-static int mcor_allow_side(int edge_a, int edge_b, int cube_case)
-{
-  const int face = mcor_common_face(edge_a, edge_b), axis = edge_a >> 3, side = face & 1;
-  if (face < 0 || cube_case == MCOR_NO_DIAGONALS || axis != edge_b >> 3)
-  {
-    return face < 0;
-  }
-  const int first = side ^ mcor_corner_above(cube_case, side << face / 2);
-  return axis == (face / 2 + (first ? 1 : 2)) % 3;
-}
-
-static void mcor_add_triangle(mcor_cell_row* row, int a, int b, int c)
-{
-  uint8_t* triangle = row->edges + 3 * row->triangles++;
-  triangle[0] = (uint8_t)a;
-  triangle[1] = (uint8_t)b;
-  triangle[2] = (uint8_t)c;
-}
-
-/* Cuts loop[first..last] into triangles, see mcor_allow_side. Returns 0 if this is impossible. */
-static int mcor_cut_loop(const int* loop, int first, int last, int cube_case, mcor_cell_row* row)
-{
-  if (last - first < 2)
-  {
-    return 1;
-  }
-  const uint8_t triangles = row->triangles;
-  for (int apex = first + 1; apex < last; ++apex)
-  {
-    if ((apex > first + 1 && !mcor_allow_side(loop[first], loop[apex], cube_case)) ||
-      (apex < last - 1 && !mcor_allow_side(loop[apex], loop[last], cube_case)))
-    {
-      continue;
-    }
-    mcor_add_triangle(row, loop[first], loop[apex], loop[last]);
-    if (mcor_cut_loop(loop, first, apex, cube_case, row) &&
-      mcor_cut_loop(loop, apex, last, cube_case, row))
-    {
-      return 1;
-    }
-    row->triangles = triangles;
-  }
-  return 0;
-}
+/* ---- Loops ---- */
 
 typedef struct mcor_loops
 {
   int cube_case, count;
-  int length[4], edge[4][12];
+  mcor_adaptive_loop of[4];
 } mcor_loops;
 
+/* Finds the loops of a case. joined: bits axis * 2 + side of the ambiguous faces whose corners above
+ * are joined. */
 static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 {
-  int next[MCOR_CELL_EDGES];
-  mcor_link_edges(cube_case, joined, next);
+  cl_uint above = 0;
+  for (int position = 0; position < 27; ++position)
+  {
+    above |= (cl_uint)mcor_corner_above(cube_case, mcor_corner_at(position)) << position;
+  }
+  mcor_adaptive_links links;
+  mcor_adaptive_link(0, above, &links);
+  for (int face = 0; face < 6; ++face)
+  {
+    int ring[4]; /* clockwise: segments cut off runs of nodes below */
+    for (int i = 0; i < 4; ++i)
+    {
+      ring[i] = mcor_adaptive_face_node(face, 6 - 2 * i);
+    }
+    if (joined >> face & 1)
+    {
+      mcor_adaptive_link_ring(ring, 4, ~above, &links);
+    }
+  }
   loops->cube_case = cube_case;
   loops->count = 0;
-  for (int e = 0; e < MCOR_CELL_EDGES; ++e)
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS && loops->count < 4; ++slot)
   {
-    if (next[e] < 0)
-    {
-      continue;
-    }
-    int length = 0;
-    for (int at = e; next[at] >= 0; ++length)
-    {
-      loops->edge[loops->count][length] = at;
-      const int following = next[at];
-      next[at] = -1;
-      at = following;
-    }
-    loops->length[loops->count++] = length;
+    mcor_adaptive_trace(0, slot, &links, &loops->of[loops->count]);
+    loops->count += loops->of[loops->count].length > 0;
   }
 }
 
-static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
+/* Allows diagonals between two opposite edges of each ambiguous face. There are two such pairs; the
+ * cell below the face may use one, and the cell above the other. The face's lowest corner decides
+ * which one. This makes the three faces around a corner alike; otherwise few tunnels could be made. */
+static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
-  const int last = loops->length[i] - 1;
-  const int cut = mcor_cut_loop(loops->edge[i], 0, last, MCOR_NO_DIAGONALS, row) ||
-    mcor_cut_loop(loops->edge[i], 0, last, loops->cube_case, row);
-  assert(cut);
-  (void)cut;
+  for (int i = 0; i < loop->length; ++i)
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      const int normal = face >> 1, side = face & 1, axis = loop->slot[i] >> 5;
+      const int first = side ^ mcor_corner_above(cube_case, side << normal);
+      const bool is_end = axis == (normal + (first ? 1 : 2)) % 3;
+      if (is_end &&
+        (loop->facets[i] >> (24 + face) & 1)) /* the two edges lie in different facets */
+      {
+        const cl_uint facet = loop->place[i][3 - normal - axis] > 0 ? 2 : 1;
+        loop->facets[i] &= ~((cl_uint)15 << 4 * face) | facet << 4 * face;
+      }
+    }
+  }
 }
 
-/* ---- tunnels ---- */
+static void mcor_add_triangles(mcor_cell_row* row, const uint8_t* slots, int triangles)
+{
+  for (int i = 0; i < 3 * triangles; ++i)
+  {
+    row->edges[3 * row->triangles + i] =
+      (uint8_t)((slots[i] >> 5) << 3 | mcor_corner_at(slots[i] & 31));
+  }
+  row->triangles = (uint8_t)(row->triangles + triangles);
+}
+
+/* Fills a loop with a disc. */
+static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
+{
+  mcor_adaptive_loop loop = loops->of[i];
+  uint8_t slots[3 * MCOR_ADAPTIVE_TRIANGLES];
+  int cost = mcor_adaptive_cut_loop(0, &loop, slots);
+  if (cost >= MCOR_ADAPTIVE_FORBIDDEN)
+  {
+    mcor_allow_diagonals(loops->cube_case, &loop);
+    cost = mcor_adaptive_cut_loop(0, &loop, slots);
+  }
+  assert(cost < MCOR_ADAPTIVE_FORBIDDEN);
+  (void)cost;
+  mcor_add_triangles(row, slots, loop.length - 2);
+}
+
+/* ---- Tunnels ---- */
 
 /* Gives corners the same number in `region` if the cell's surface connects them on their side. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
@@ -202,21 +146,14 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   }
   for (int round = 0; round < 8; ++round)
   {
-    for (int face = 0; face < 6; ++face)
+    for (int i = 0; i < 24; ++i)
     {
-      int corner[4];
-      mcor_face_corners(face >> 1, face & 1, corner);
-      const int ambiguous = mcor_face_ambiguous(cube_case, face);
-      for (int i = 0; i < 4; ++i)
+      const int face = i / 4, ambiguous = mcor_face_ambiguous(cube_case, face);
+      const int a = mcor_face_corner(face, i), b = mcor_face_corner(face, i + 1 + ambiguous);
+      const int above = mcor_corner_above(cube_case, a);
+      if (ambiguous ? above == (joined >> face & 1) : above == mcor_corner_above(cube_case, b))
       {
-        const int a = corner[i], b = corner[(i + 1 + ambiguous) % 4];
-        const int above = mcor_corner_above(cube_case, a);
-        const int connected =
-          ambiguous ? above == (joined >> face & 1) : above == mcor_corner_above(cube_case, b);
-        if (connected)
-        {
-          region[a] = region[b] = region[a] < region[b] ? region[a] : region[b];
-        }
+        region[a] = region[b] = region[a] < region[b] ? region[a] : region[b];
       }
     }
   }
@@ -226,24 +163,22 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
  * back along the second, adds a triangle. */
 typedef struct mcor_strip
 {
-  int cube_case;
-  const int *first, *second;
-  int first_length, second_length, start; /* the first side: first[0], second[start] */
+  mcor_adaptive_loop first, second;
+  int start; /* the first side: first vertex of the first loop, vertex `start` of the second */
   uint8_t used[12][12];
-  int step[24]; /* 0: along the first loop */
-  int best_cost, best_start, best_step[24];
+  int best_cost;
+  uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */
 } mcor_strip;
 
-/* Returns the squared distance between the middles of two edges, in half cubes; much more if both
- * are in one face. */
-static int mcor_side_cost(int edge_a, int edge_b)
+/* Returns the squared distance between two vertices, in half cubes; much more if both are in one
+ * face. */
+static int mcor_side_cost(const mcor_strip* strip, int i, int j)
 {
-  int cost = mcor_allow_side(edge_a, edge_b, MCOR_NO_DIAGONALS) ? 0 : 1000;
+  int cost = (strip->first.facets[i] & strip->second.facets[j]) >> 24 ? 1000 : 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int a = 2 * (edge_a >> axis & 1) + (edge_a >> 3 == axis);
-    const int b = 2 * (edge_b >> axis & 1) + (edge_b >> 3 == axis);
-    cost += (a - b) * (a - b);
+    const int d = (strip->first.place[i][axis] - strip->second.place[j][axis]) / 2;
+    cost += d * d;
   }
   return cost;
 }
@@ -252,31 +187,31 @@ static int mcor_side_cost(int edge_a, int edge_b)
  * second. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
-  if (cost >= strip->best_cost || a > strip->first_length || b > strip->second_length)
+  const mcor_adaptive_loop *first = &strip->first, *second = &strip->second;
+  const int n = first->length, m = second->length;
+  if (cost >= strip->best_cost || a > n || b > m)
   {
     return;
   }
-  const int steps = a + b;
-  if (a == strip->first_length && b == strip->second_length)
+  if (a == n && b == m)
   {
     strip->best_cost = cost;
-    strip->best_start = strip->start;
-    memcpy(strip->best_step, strip->step, sizeof strip->step);
+    memcpy(strip->best, strip->path, sizeof strip->path);
     return;
   }
-  const int i = a % strip->first_length;
-  const int j =
-    (strip->start + strip->second_length - b % strip->second_length) % strip->second_length;
-  if (strip->used[i][j] || !mcor_allow_side(strip->first[i], strip->second[j], strip->cube_case))
+  const int i = a % n, j = (strip->start + m - b % m) % m;
+  if (strip->used[i][j] || (first->facets[i] & second->facets[j] & 0xffffff))
   {
     return;
   }
-  cost += mcor_side_cost(strip->first[i], strip->second[j]);
+  const uint8_t triangles[2][3] = { { first->slot[i], first->slot[(i + 1) % n], second->slot[j] },
+    { second->slot[(j + m - 1) % m], second->slot[j], first->slot[i] } };
   strip->used[i][j] = 1;
-  strip->step[steps] = 0;
-  mcor_search_strip(strip, a + 1, b, cost);
-  strip->step[steps] = 1;
-  mcor_search_strip(strip, a, b + 1, cost);
+  for (int back = 0; back < 2; ++back)
+  {
+    memcpy(strip->path + 3 * (a + b), triangles[back], sizeof triangles[back]);
+    mcor_search_strip(strip, a + !back, b + back, cost + mcor_side_cost(strip, i, j));
+  }
   strip->used[i][j] = 0;
 }
 
@@ -284,37 +219,18 @@ static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor_cell_row* row)
 {
   const int limit = 1 << 20;
-  mcor_strip strip = { .cube_case = loops->cube_case,
-    .first = loops->edge[first],
-    .second = loops->edge[second],
-    .first_length = loops->length[first],
-    .second_length = loops->length[second],
-    .best_cost = limit };
-  for (strip.start = 0; strip.start < strip.second_length; ++strip.start)
+  mcor_strip strip = { .first = loops->of[first], .second = loops->of[second], .best_cost = limit };
+  mcor_allow_diagonals(loops->cube_case, &strip.first);
+  mcor_allow_diagonals(loops->cube_case, &strip.second);
+  for (strip.start = 0; strip.start < strip.second.length; ++strip.start)
   {
     mcor_search_strip(&strip, 0, 0, 0);
   }
-  if (strip.best_cost == limit)
+  if (strip.best_cost < limit)
   {
-    return 0;
+    mcor_add_triangles(row, strip.best, strip.first.length + strip.second.length);
   }
-  int i = 0, j = strip.best_start;
-  for (int n = 0; n < strip.first_length + strip.second_length; ++n)
-  {
-    const int next = (i + 1) % strip.first_length;
-    const int last = (j + strip.second_length - 1) % strip.second_length;
-    if (strip.best_step[n])
-    {
-      mcor_add_triangle(row, strip.second[last], strip.second[j], strip.first[i]);
-      j = last;
-    }
-    else
-    {
-      mcor_add_triangle(row, strip.first[i], strip.first[next], strip.second[j]);
-      i = next;
-    }
-  }
-  return 1;
+  return strip.best_cost < limit;
 }
 
 /* Finds the pair of loops that a tunnel may connect. The tunnel must join two regions on `side` (1:
@@ -326,7 +242,8 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   mcor_find_regions(loops->cube_case, joined, region);
   for (int i = 0; i < loops->count; ++i)
   {
-    const int edge = loops->edge[i][0], lower = edge & 7, upper = lower | 1 << (edge >> 3);
+    const int slot = loops->of[i].slot[0], lower = mcor_corner_at(slot & 31),
+              upper = lower | 1 << (slot >> 5);
     around[i] = region[mcor_corner_above(loops->cube_case, lower) == side ? upper : lower];
     for (int j = 0; j < i; ++j)
     {

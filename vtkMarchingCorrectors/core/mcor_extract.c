@@ -160,10 +160,6 @@ static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* inp
   MCOR_FAIL_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(PAIRS_WITH_LEVELS), context->lattice.levels);
   const bool has_particles = context->grid.count > 0; /* the particles that reach the box */
-  if (has_particles && options->capping)
-  {
-    MCOR_TRY(mcor_check_caps(context));
-  }
   if (has_particles && options->filled)
   {
     MCOR_TRY(mcor_begin_fill(context));

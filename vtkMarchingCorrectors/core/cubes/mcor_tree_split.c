@@ -10,7 +10,7 @@
  * images.
  *
  * Sets of bricks consist of clusters of 4^3 bricks, which are masks. The bricks that a particle
- * reaches, and the bricks above a cluster, are added by masks, too. */
+ * reaches are added by masks, too. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -46,27 +46,6 @@ static bool mcor_split_cluster(
   return made;
 }
 
-/* Adds those of 4^3 bricks whose bits are set. first: their first brick, any brick. */
-static bool mcor_split_cube(
-  const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
-{
-  bool made = true;
-  for (int d = 0; d < 8 && made; ++d)
-  {
-    uint64_t part = bricks;
-    int cluster[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const int by = first[a] & 3, shift = 2 * a, beyond = d >> a & 1;
-      cluster[a] = first[a] - by + MCOR_CLUSTER * beyond;
-      part = beyond ? part >> ((-by & 3) << shift) & mcor_layers(a, by)
-                    : (part & mcor_layers(a, MCOR_CLUSTER - by)) << (by << shift);
-    }
-    made = part == 0 || mcor_split_cluster(tree, level, cluster, part, set);
-  }
-  return made;
-}
-
 /* ---- Bricks that particles split ---- */
 
 typedef struct mcor_tree_job
@@ -74,7 +53,6 @@ typedef struct mcor_tree_job
   const mcor_context* context;
   const mcor_input* input;
   const mcor_tree* tree;
-  bool homes;   /* a particle splits only its home, the brick at its place */
   double reach; /* support radius of h = 1, in cubes */
   bool is_cube; /* the support is a cube */
   /* Edges of a level's bricks, in cubes, and their inverses. */
@@ -112,8 +90,8 @@ static uint64_t mcor_reached_bricks(
   return bricks;
 }
 
-/* Adds to the set the bricks that a particle reaches, unless they are split in the tree already.
- * *all: whether all bricks that the particle may reach are split in the tree. */
+/* Adds to the set the bricks that a particle reaches. *all: whether all bricks that the particle may
+ * reach were in the set already. */
 static bool mcor_split_reached(
   const mcor_tree_job* job, const mcor_splitter* p, mcor_brick_set* set, bool* all)
 {
@@ -130,9 +108,8 @@ static bool mcor_split_reached(
         const bool stored = mcor_has_cluster(tree, p->level, c);
         const uint64_t key = mcor_cluster_key(&tree->lattice->rungs[p->level], c);
         uint64_t bricks = mcor_bricks_between(p->first, p->last, c);
-        bricks &= stored ? ~mcor_table_find(&tree->split[p->level].clusters, key) : UINT64_MAX;
+        bricks &= stored ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
         *all = *all && bricks == 0;
-        bricks &= bricks && stored ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
         bricks &= bricks && !job->is_cube ? mcor_reached_bricks(job, p, c) : UINT64_MAX;
         made = bricks == 0 || mcor_split_cluster(tree, p->level, c, bricks, set);
       }
@@ -150,34 +127,25 @@ static bool mcor_split_by_particle(
   const mcor_rung* rung = &job->tree->lattice->rungs[p->level];
   const double *edge = job->edge[p->level], *per_edge = job->per_edge[p->level];
   const int axes = job->context->space.axes;
-  bool near = !job->is_cube, made, all = true;
+  bool near = !job->is_cube, all;
   int home[3] = { 0 };
   for (int a = 0; a < axes; ++a)
   {
     home[a] = (int)(p->x[a] * per_edge[a]);
     near = near && p->reach < 0.999 * edge[a];
   }
-  near = near || job->homes;
   const uint64_t key = mcor_brick_key(rung, home);
   uint64_t* place = &done[key % MCOR_BLOCK_BRICKS];
   if (near && *place == key)
   {
     return true;
   }
-  mcor_brick_set* set = &job->split[slice][p->level];
-  if (job->homes)
+  for (int a = 0; a < axes; ++a)
   {
-    made = mcor_set_add_brick(set, rung, home);
+    p->first[a] = near ? home[a] - 1 : (int)ceil((p->x[a] - p->reach) * per_edge[a]) - 1;
+    p->last[a] = near ? home[a] + 1 : (int)((p->x[a] + p->reach) * per_edge[a]);
   }
-  else
-  {
-    for (int a = 0; a < axes; ++a)
-    {
-      p->first[a] = near ? home[a] - 1 : (int)ceil((p->x[a] - p->reach) * per_edge[a]) - 1;
-      p->last[a] = near ? home[a] + 1 : (int)((p->x[a] + p->reach) * per_edge[a]);
-    }
-    made = mcor_split_reached(job, p, set, &all);
-  }
+  const bool made = mcor_split_reached(job, p, &job->split[slice][p->level], &all);
   *place = near && all ? key : *place;
   return made;
 }
@@ -225,14 +193,14 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Splits bricks by all particles. homes: each particle splits only the brick at its place. */
+/* Splits bricks by all particles. */
 static mcor_status mcor_split_by_particles(
-  mcor_context* context, const mcor_input* input, bool homes, mcor_tree* tree)
+  mcor_context* context, const mcor_input* input, mcor_tree* tree)
 {
   const mcor_options* options = context->run.options;
   mcor_tree_job* job = malloc(sizeof *job);
   MCOR_TRY(mcor_allocated(context, job));
-  *job = (mcor_tree_job){ .context = context, .input = input, .tree = tree, .homes = homes };
+  *job = (mcor_tree_job){ .context = context, .input = input, .tree = tree };
   job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale / context->lattice.cube;
   job->is_cube = mcor_kernel_of(options->sph_kernel)->is_tensor;
   for (int i = 0; i < 3 * (tree->top + 2); ++i)
@@ -265,19 +233,6 @@ static mcor_status mcor_split_by_particles(
 
 /* ---- Bricks above split ones ---- */
 
-/* Returns which of four higher bricks along an axis touch bricks of a cluster. The second and third
- * of the four are parents. Brick i of the cluster touches its parent i / 2 and the other of the
- * four that is nearest. */
-static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
-{
-  const int step = 1 << 2 * axis;
-  const uint64_t layer = mcor_layers(axis, 1), low = bricks & layer,
-                 second = bricks >> step & layer, third = bricks >> 2 * step & layer,
-                 high = bricks >> 3 * step & layer;
-  return low | (low | second | third) << step | (second | third | high) << 2 * step |
-    high << 3 * step;
-}
-
 /* Splits, level by level, the higher bricks that touch a split brick: its parent, and the bricks
  * beyond those sides of the parent at which it lies. */
 static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
@@ -285,20 +240,29 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
   for (int level = 1; level <= tree->top; ++level)
   {
     const mcor_table* clusters = &tree->split[level].clusters;
+    const mcor_rung* rungs = &tree->lattice->rungs[level];
     for (size_t i = 0; i < clusters->capacity; ++i)
     {
       int first[3];
-      uint64_t above = clusters->entries[i].value;
-      mcor_first_of_cluster(&tree->lattice->rungs[level], clusters->entries[i].key, first);
-      for (int a = 0; a < context->space.axes; ++a)
+      mcor_first_of_cluster(rungs, clusters->entries[i].key, first);
+      for (int bit = 0; bit < 64 << context->space.axes; ++bit)
       {
-        first[a] = first[a] / 2 - 1;
-        above = mcor_spread_layers(a, above);
-      }
-      const bool made = mcor_split_cube(tree, level + 1, first, above, &tree->split[level + 1]);
-      if (!made)
-      {
-        MCOR_TRY(mcor_fail_leaves(context));
+        const int b = bit & 63, d = bit >> 6; /* d: bits x, y, z: beyond a side */
+        int above[3], placed[3];
+        if (!(clusters->entries[i].value >> b & 1))
+        {
+          continue;
+        }
+        for (int a = 0; a < 3; ++a)
+        {
+          const int at = first[a] + (b >> 2 * a & 3);
+          above[a] = at / 2 + (d >> a & 1) * (at & 1 ? 1 : -1);
+        }
+        if (mcor_place_brick(tree, level + 1, above, placed) &&
+          !mcor_set_add_brick(&tree->split[level + 1], rungs + 1, placed))
+        {
+          MCOR_TRY(mcor_fail_leaves(context));
+        }
       }
       if (i % MCOR_TREE_STEP == 0)
       {
@@ -313,15 +277,10 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
   return MCOR_OK;
 }
 
-/* Goes through the particles twice. First, each particle splits only the brick at its place, and
- * the bricks above these are split. Then most particles have nothing left to split, so the second
- * time is quick. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree)
 {
   MCOR_TRY(mcor_number_bricks(context, tree));
-  MCOR_TRY(mcor_split_by_particles(context, input, true, tree));
-  MCOR_TRY(mcor_split_above(context, tree));
-  MCOR_TRY(mcor_split_by_particles(context, input, false, tree));
+  MCOR_TRY(mcor_split_by_particles(context, input, tree));
   if (context->run.options->ranks) /* adds bricks that other ranks' particles split */
   {
     uint64_t* own = NULL;

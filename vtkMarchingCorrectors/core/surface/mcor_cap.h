@@ -170,8 +170,6 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether a cap closes this side of this call's box. */
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
-/* Fails if caps would need too many nodes. */
-mcor_status mcor_check_caps(mcor_context* context);
 
 /* Finds the bricks of `nodes`, whose axes and ranges are set; fails if they are too many.
  * iso_value: in the caller's unit. */

@@ -238,29 +238,6 @@ mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_c
   return status;
 }
 
-mcor_status mcor_check_caps(mcor_context* context)
-{
-  const mcor_options* options = context->run.options;
-  double least = INFINITY;
-  for (int i = 0; i < options->iso_count; ++i)
-  {
-    least = fmin(least, options->iso_values[i]);
-  }
-  mcor_status status = MCOR_OK;
-  for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
-  {
-    const bool has_lower = mcor_has_cap_side(context, a, 0);
-    if (!context->box.is_empty && (has_lower || mcor_has_cap_side(context, a, 1)))
-    {
-      mcor_cap_nodes nodes;
-      mcor_set_cap_extent(context, a, !has_lower, &nodes);
-      status = mcor_find_cap_bricks(context, least, &nodes);
-      mcor_free_cap_nodes(&nodes);
-    }
-  }
-  return status;
-}
-
 /* ---- Nodes ---- */
 
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)

@@ -67,42 +67,30 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
   return status;
 }
 
-/* Maps the buffers of the vertices. */
+/* Maps the buffers of the vertices: all of each that the caller wants. */
 static mcor_status mcor_map_vertices(mcor_download* d)
 {
   mcor_context* context = d->context;
   const mcor_mesh* mesh = &context->mesh;
-  const unsigned wanted = context->run.options->outputs;
+  const unsigned wanted = context->run.options->outputs,
+                 curved = MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size,
                cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  const struct
-  {
-    bool wanted;
-    mcor_mapping mapping;
-  } all[MCOR_DOWNLOADS] = { { true, { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned } },
-    { true, { &mesh->node, n * 4 * sizeof(cl_int), &d->node } },
-    { true, { &mesh->offset, n * 4 * real, &d->offset } },
-    { true, { &mesh->linear, (size_t)mesh->march_count * real, &d->linear } },
-    { true, { &mesh->field_value, n * real, &d->value } },
-    { true, { &mesh->gradient, n * 4 * real, &d->gradient } },
-    { true, { &mesh->vertex_weight, n * real, &d->weight } },
-    { true, { &mesh->flag, n, &d->flag } },
-    { wanted & MCOR_OUT_BOUNDARY_EIGENVALUE,
-      { &context->trim.eigenvalue, n * real, &d->eigenvalue } },
-    { wanted & MCOR_OUT_NEAREST_PARTICLE,
-      { &context->attributes.nearest, n * sizeof(cl_int), &d->nearest } },
-    { wanted & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE),
-      { &mesh->curvature, 2 * n * real, &d->curvature } },
-    { (wanted & MCOR_OUT_POINT_KEYS) && cuts > 0,
-      { &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts } } };
-  for (int i = 0; i < MCOR_DOWNLOADS; ++i)
-  {
-    if (all[i].wanted)
-    {
-      d->mappings[d->mapped++] = all[i].mapping;
-    }
-  }
-  return mcor_map_all(context, d->mappings, d->mapped);
+  const mcor_mapping all[MCOR_DOWNLOADS] = { { &mesh->scanned, (n + 1) * sizeof(cl_int),
+                                               &d->scanned },
+    { &mesh->node, n * 4 * sizeof(cl_int), &d->node }, { &mesh->offset, n * 4 * real, &d->offset },
+    { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
+    { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
+    { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag },
+    { &context->trim.eigenvalue, wanted & MCOR_OUT_BOUNDARY_EIGENVALUE ? n * real : 0,
+      &d->eigenvalue },
+    { &context->attributes.nearest, wanted & MCOR_OUT_NEAREST_PARTICLE ? n * sizeof(cl_int) : 0,
+      &d->nearest },
+    { &mesh->curvature, wanted & curved ? 2 * n * real : 0, &d->curvature },
+    { &mesh->cut_edges, wanted & MCOR_OUT_POINT_KEYS ? cuts * sizeof(cl_ulong) : 0, &d->cuts } };
+  memcpy(d->mappings, all, sizeof all);
+  d->mapped = MCOR_DOWNLOADS;
+  return mcor_map_all(context, d->mappings, MCOR_DOWNLOADS);
 }
 
 static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
@@ -131,9 +119,9 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
   const mcor_lattice* lattice = &d->context->lattice;
   const int axis = mcor_node_of(d, v)[3] & 3;
-  return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
-      mcor_length_of(d, v, lattice->edge[axis])
-                                          : 0;
+  return v < d->context->mesh.march_count
+    ? fabs(mcor_get_real(d->context, d->linear, v)) * mcor_length_of(d, v, lattice->edge[axis])
+    : 0;
 }
 
 /* Estimates what the device's rounding of sums may add to a residual: a few units of rounding of

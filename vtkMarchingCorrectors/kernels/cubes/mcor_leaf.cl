@@ -179,24 +179,14 @@ void mcor_leaf_mark_edge(const mcor_leaf_edge* edge, uint around, __global uint*
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
-  const uint corners = mcor_leaf_corner_nodes(0xff), nodes = split | corners;
-  for (int lower = 0; lower < 26; ++lower)
+  mcor_adaptive_links links;
+  mcor_adaptive_link(split, above, &links);
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
-    const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
-    for (int axis = 0; axis < 3 && (nodes >> lower & 1); ++axis)
+    if (links.next[slot] != 0xff)
     {
-      const int step = mcor_adaptive_step(axis), middle = lower + step;
-      if (p[axis] == 2)
-      {
-        continue;
-      }
-      const bool whole = !(nodes >> middle & 1);
-      const int upper = whole ? middle + step : middle;
-      if ((!whole || (corners >> lower & 1)) && ((above >> lower ^ above >> upper) & 1))
-      {
-        const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, split, axis, lower);
-        mcor_leaf_mark_edge(&edge, edge.quadrants, quadrants);
-      }
+      const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, split, slot >> 5, slot & 31);
+      mcor_leaf_mark_edge(&edge, edge.quadrants, quadrants);
     }
   }
 }

@@ -13,7 +13,7 @@
  *
  * Merged vertices, and vertices that moved, are appended to the mesh. At the end they take the
  * places, and so the keys, of the vertices that they replace; those of a bunch take the first
- * vertex's place. */
+ * vertex's place. The bunch's other vertices stay in the mesh, but no triangle uses them. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -144,82 +144,24 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
     mesh->level_first[1][l] = first + i;
   }
   MCOR_TRY(mcor_launch_correction(context, MCOR_ON_BOUNDARY, true));
+  MCOR_TRY(mcor_read_points(bunches));
   for (int i = 0; i < count; ++i)
   {
+    bunches->points[first + i].replaces = bunches->starts.of[i].vertex;
     mcor_set_place(bunches, bunches->starts.of[i].vertex, first + i);
   }
-  return mcor_read_points(bunches);
+  return MCOR_OK;
 }
 
-/* ---- In order again ---- */
+/* ---- All of it ---- */
 
-typedef struct mcor_gathering
-{
-  const int32_t* from;
-  size_t width;
-  void *in, *out;
-} mcor_gathering;
-
-static void mcor_gather_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_gathering* g = data;
-  for (int64_t i = first; i < last; ++i)
-  {
-    memcpy((uint8_t*)g->out + (size_t)i * g->width,
-      (const uint8_t*)g->in + (size_t)g->from[i] * g->width, g->width);
-  }
-  (void)slice;
-}
-
-/* Gathers an array's elements, `width` bytes each. */
-static mcor_status mcor_gather(
-  mcor_context* context, mcor_buffer* array, size_t width, const int32_t* from, int old, int count)
-{
-  mcor_buffer in = *array;
-  mcor_gathering g = { .from = from, .width = width };
-  *array = (mcor_buffer){ 0 };
-  mcor_status status = mcor_reserve(context, array, (size_t)count * width);
-  MCOR_THEN(status, mcor_map(context, &in, (size_t)old * width, false, &g.in));
-  MCOR_THEN(status, mcor_map(context, array, (size_t)count * width, true, &g.out));
-  MCOR_THEN(
-    status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_gather_slice, &g, NULL));
-  const mcor_mapping mapped[] = { { &in, 0, &g.in }, { array, 0, &g.out } };
-  status = mcor_unmap_all(context, mapped, 2, status);
-  mcor_release(context, &in);
-  return status;
-}
-
-/* Drops the triangles that vanish, and the vertices that are replaced. */
-static mcor_status mcor_drop_replaced(mcor_bunches* bunches, const int cut_first[])
+/* Keeps the triangles that are left, and copies the vertices that were appended to the places of the
+ * vertices that they replace. */
+static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
 {
   mcor_context* context = bunches->context;
   mcor_mesh* mesh = &context->mesh;
-  const size_t real = context->cl.real_size, means = (size_t)context->attributes.count * real;
-  const int old = mesh->vertex_count;
-  const size_t n = (size_t)bunches->vertex_count;
-  int count = 0;
-  size_t left = 0;
-  /* below: how many vertices stay before each vertex; from: the places of those that stay; number:
-   * their numbers, by place. */
-  int32_t* const below = malloc((2 * n + 1 + (size_t)old) * sizeof *below);
-  MCOR_TRY(mcor_allocated(context, below));
-  int32_t *const from = below + n + 1, *const number = from + n;
-  memset(number, 0xff, (size_t)old * sizeof *number);
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
-  {
-    const int32_t place = bunches->of[v].now;
-    below[v] = count;
-    if (number[place] < 0)
-    {
-      number[place] = count;
-      from[count++] = place;
-    }
-    else if (bunches->of[v].held)
-    {
-      from[count++] = v;
-    }
-  }
-  below[bunches->vertex_count] = count;
+  size_t left = 0, count = 0;
   for (int64_t t = 0; t < bunches->triangle_count; ++t)
   {
     int32_t place[3];
@@ -227,101 +169,89 @@ static mcor_status mcor_drop_replaced(mcor_bunches* bunches, const int cut_first
     {
       for (size_t c = 0; c < 3; ++c)
       {
-        bunches->triangles[3 * left + c] = number[place[c]];
+        bunches->triangles[3 * left + c] =
+          place[c] < bunches->vertex_count ? place[c] : bunches->points[place[c]].replaces;
       }
-      if (bunches->cells)
+      if (cells)
       {
-        bunches->cells[left] = bunches->cells[t];
+        cells[left] = cells[t];
       }
       ++left;
     }
   }
-  for (size_t i = 0; i < bunches->cut_count; ++i)
+  for (int32_t place = bunches->vertex_count; place < bunches->point_count; ++place)
   {
-    cl_ulong* cut = &bunches->cuts[i];
-    *cut = (cl_ulong)below[*cut >> 32] << 32 | (cl_ulong)below[*cut & UINT32_MAX];
-  }
-  for (int l = 0; l < context->lattice.levels; ++l)
-  {
-    mesh->level_first[0][l] = below[mesh->level_first[0][l]];
-    mesh->level_first[1][l] = below[cut_first[l]];
-  }
-  mesh->march_count = below[bunches->march_count];
-  mesh->cap_first = below[mesh->cap_first];
-  mesh->vertex_count = count;
-  mesh->triangle_count = (int)left;
-  struct
-  {
-    mcor_buffer* array;
-    size_t width;
-  } const arrays[] = { { &mesh->node, 16 }, { &mesh->offset, 4 * real }, { &mesh->linear, real },
-    { &mesh->field_value, real }, { &mesh->gradient, 4 * real }, { &mesh->vertex_weight, real },
-    { &mesh->flag, 1 }, { &mesh->means, means } };
-  mcor_status status = MCOR_OK;
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
-  {
-    if (arrays[i].width > 0)
+    const int32_t v = bunches->points[place].replaces;
+    if (bunches->of[v].now == place)
     {
-      MCOR_THEN(status, mcor_gather(context, arrays[i].array, arrays[i].width, from, old, count));
+      pairs[count++] = v;
+      pairs[count++] = place;
     }
   }
-  free(below);
-  MCOR_THEN(status,
-    mcor_write(
-      context, &mesh->cut_edges, bunches->cuts, bunches->cut_count * sizeof *bunches->cuts));
-  MCOR_THEN(
-    status, mcor_write(context, &mesh->triangles, bunches->triangles, 3 * left * sizeof(cl_int)));
-  if (bunches->cells)
+  mesh->triangle_count = (int)left;
+  MCOR_TRY(mcor_write(context, &mesh->triangles, bunches->triangles, 3 * left * sizeof(cl_int)));
+  if (cells)
+  {
+    MCOR_TRY(mcor_write(context, &context->box.cells, cells, left * sizeof *cells));
+  }
+  const struct
+  {
+    const mcor_buffer* array;
+    int width;
+  } arrays[] = { { &mesh->offset, 4 }, { &mesh->linear, 1 }, { &mesh->field_value, 1 },
+    { &mesh->gradient, 4 }, { &mesh->vertex_weight, 1 },
+    { &mesh->means, context->attributes.count } };
+  mcor_buffer replaced = { 0 };
+  mcor_status status = mcor_write(context, &replaced, pairs, count * sizeof *pairs);
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     MCOR_THEN(status,
-      mcor_write(context, &context->box.cells, bunches->cells, left * sizeof *bunches->cells));
+      MCOR_LAUNCH(context, "mcor_march_replace", MCOR_LIGHT, count / 2, MCOR_INT((int)(count / 2)),
+        MCOR_BUFFER(&replaced), MCOR_INT(arrays[i].width), MCOR_BUFFER(arrays[i].array)));
   }
+  mcor_release(context, &replaced);
   return status;
 }
-
-/* ---- All of it ---- */
 
 static mcor_status mcor_merge(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)bunches->vertex_count, triangles = (size_t)bunches->triangle_count,
-               corners = 3 * triangles * sizeof(int32_t),
-               cuts = bunches->cut_count * sizeof *bunches->cuts,
-               cells = mcor_follows_cells(context) ? triangles * sizeof *bunches->cells : 0;
-  int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];
-  memcpy(cut_first, mesh->level_first[1], sizeof cut_first);
+               corners = 3 * triangles * sizeof(int32_t);
   bunches->of = malloc(n * sizeof *bunches->of);
   bunches->triangles = malloc(corners);
   bunches->before = malloc(corners);
-  bunches->cuts = malloc(cuts + 1);
-  bunches->cells = cells > 0 ? malloc(cells) : NULL;
-  MCOR_TRY(mcor_allocated(context,
-    bunches->of && bunches->triangles && bunches->before && bunches->cuts &&
-      (bunches->cells || cells == 0)));
+  MCOR_TRY(mcor_allocated(context, bunches->of && bunches->triangles && bunches->before));
   mcor_use_large_pages(bunches->of, n * sizeof *bunches->of);
   mcor_use_large_pages(bunches->triangles, corners);
   mcor_use_large_pages(bunches->before, corners);
   MCOR_TRY(mcor_read(context, &mesh->triangles, 0, bunches->triangles, corners));
-  MCOR_TRY(mcor_read(context, &mesh->cut_edges, 0, bunches->cuts, cuts));
-  MCOR_TRY(mcor_read(context, &context->box.cells, 0, bunches->cells, cells));
   MCOR_TRY(mcor_read_points(bunches));
   MCOR_TRY(mcor_find_bunches(bunches));
   MCOR_TRY(mcor_add_vertices(bunches));
   MCOR_TRY(mcor_take_apart(bunches));
   MCOR_TRY(mcor_move_slivers(bunches));
-  return mcor_drop_replaced(bunches, cut_first);
+  const size_t bytes = mcor_follows_cells(context) ? triangles * sizeof(cl_ulong) : 0;
+  cl_ulong* cells = bytes > 0 ? malloc(bytes) : NULL;
+  cl_int* pairs = malloc(2 * ((size_t)bunches->point_count - n) * sizeof *pairs + 1);
+  mcor_status status = mcor_allocated(context, pairs && (cells || bytes == 0));
+  MCOR_THEN(status, mcor_read(context, &context->box.cells, 0, cells, bytes));
+  MCOR_THEN(status, mcor_end_bunches(bunches, cells, pairs));
+  free(cells);
+  free(pairs);
+  return status;
 }
 
 mcor_status mcor_compact(mcor_context* context)
 {
-  const mcor_mesh* mesh = &context->mesh;
+  mcor_mesh* mesh = &context->mesh;
   mcor_bunches bunches = { .context = context,
     .corners = context->space.axes,
     .march_count = mesh->march_count,
     .vertex_count = mesh->vertex_count,
-    .triangle_count = mesh->triangle_count,
-    .cut_count = (size_t)(mesh->cap_first - mesh->march_count) };
+    .triangle_count = mesh->triangle_count };
+  int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];
   if (mesh->triangle_count == 0 || mesh->march_count == 0)
   {
     return MCOR_OK;
@@ -330,12 +260,14 @@ mcor_status mcor_compact(mcor_context* context)
   {
     bunches.edge[a] = mcor_edge_of(&context->lattice, a);
   }
+  memcpy(cut_first, mesh->level_first[1], sizeof cut_first);
   const mcor_status status = mcor_merge(&bunches);
+  memcpy(mesh->level_first[1], cut_first, sizeof cut_first);
+  mesh->march_count = bunches.march_count;
+  mesh->vertex_count = bunches.vertex_count;
   free(bunches.of);
   free(bunches.triangles);
   free(bunches.before);
-  free(bunches.cuts);
-  free(bunches.cells);
   free(bunches.points);
   free(bunches.starts.of);
   return status;

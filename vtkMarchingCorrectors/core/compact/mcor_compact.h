@@ -55,8 +55,9 @@ typedef struct mcor_point
 {
   int64_t at[3];
   cl_int node[4];
-  float uphill[3]; /* unit gradient, or 0 without a gradient */
-  bool missed;     /* a vertex that moved on a line did not reach the surface */
+  int32_t replaces; /* of an appended vertex: the vertex, or the first of the bunch */
+  float uphill[3];  /* unit gradient, or 0 without a gradient */
+  bool missed;      /* a vertex that moved on a line did not reach the surface */
 } mcor_point;
 
 /* A vertex, or the first vertex of a merged bunch, that is to be corrected on a line from `at`. */
@@ -74,7 +75,6 @@ typedef struct mcor_bunches
   double edge[3]; /* of the lattice, in units of positions of points */
   /* The mesh before merging. */
   int march_count, vertex_count, triangle_count;
-  size_t cut_count;
   cl_int* triangles;      /* [triangle_count][3] */
   cl_ulong *cells, *cuts; /* [triangle_count], if mcor_follows_cells; [cut_count] */
   mcor_bunch_vertex* of;  /* [vertex_count] */

@@ -28,7 +28,7 @@
 typedef struct mcor_keying
 {
   const mcor_bunches* bunches;
-  const void* ends;
+  void* ends;
   int side[3][4];
 } mcor_keying;
 
@@ -71,7 +71,6 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   const mcor_lattice* lattice = &context->lattice;
   const mcor_mesh* mesh = &context->mesh;
   mcor_keying keying = { .bunches = bunches };
-  void* ends;
   for (int i = 0; i < 12; ++i)
   {
     const int axis = i / 4, upper = i % 2, period = lattice->period[axis];
@@ -79,24 +78,28 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
       : period > 0                       ? lattice->period_first[axis] + upper * period
                                          : -1;
   }
-  MCOR_TRY(mcor_map(
-    context, &mesh->ends, 2 * (size_t)bunches->march_count * context->cl.real_size, false, &ends));
-  keying.ends = ends;
-  const mcor_status status = mcor_parallel_run(
-    context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL);
+  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  void* cut_edges = NULL;
+  const mcor_mapping views[] = {
+    { &mesh->ends, 2 * (size_t)bunches->march_count * context->cl.real_size, &keying.ends },
+    { &mesh->cut_edges, cuts * sizeof(cl_ulong), &cut_edges }
+  };
+  mcor_status status = mcor_map_all(context, views, cuts > 0 ? 2 : 1);
+  MCOR_THEN(status,
+    mcor_parallel_run(
+      context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL));
   /* Freezes vertices beside caps, and holds vertices beside cuts. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
     bunches->of[bunches->triangles[c]].key = MCOR_FROZEN;
   }
-  for (size_t i = 0; i < bunches->cut_count; ++i)
+  for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
   {
-    bunches->of[bunches->cuts[i] >> 32].held = true;
-    bunches->of[bunches->cuts[i] & UINT32_MAX].held = true;
+    const cl_ulong cut = ((const cl_ulong*)cut_edges)[i];
+    bunches->of[cut >> 32].held = bunches->of[cut & UINT32_MAX].held = true;
   }
-  const mcor_mapping mapped = { &mesh->ends, 0, &ends };
-  return mcor_unmap_all(context, &mapped, 1, status);
+  return mcor_unmap_all(context, views, 2, status);
 }
 
 /* ---- Bunches ---- */

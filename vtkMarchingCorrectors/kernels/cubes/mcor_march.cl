@@ -232,6 +232,17 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   }
 }
 
+/* One work-item = one vertex that another one replaces, pairs[i].x and .y. Copies `width` numbers. */
+__kernel void mcor_march_replace(
+  const int count, __global const int2* pairs, const int width, __global real* numbers)
+{
+  MCOR_ITEM(i, i < count);
+  for (int k = 0; k < width; ++k)
+  {
+    numbers[pairs[i].x * (long)width + k] = numbers[pairs[i].y * (long)width + k];
+  }
+}
+
 /* One work-item = one mask. Writes its number of bits. */
 __kernel void mcor_march_bits(
   const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)

@@ -6,7 +6,6 @@ import gzip
 import importlib.util
 import itertools
 import struct
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -653,20 +652,6 @@ class Conversion(Case):
         data = mc.read_pyvista(self.at("swift.hdf5"))
         self.assertNotIn("SmoothingLengths", data.point_data)
         self.assertLess(np.abs(data["SmoothingLength"] - H).max(), 1e-12)
-
-    def test_program(self):
-        def run(*arguments):
-            return subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", *map(str, arguments)],
-                                  stderr=subprocess.PIPE, text=True)
-
-        write_gadget(self.at("s.hdf5"))
-        done = run(self.at("s.hdf5"), self.at("o.vtp"))
-        self.assertEqual((done.returncode, done.stderr, pyvista.read(self.at("o.vtp")).n_points), (0, "", len(X)))
-        self.at("empty.hdf5").touch()
-        done = run(self.at("empty.hdf5"), self.at("o.vtp"))
-        self.assertEqual((done.returncode, done.stderr), (1, "marchingcorrectors: empty.hdf5 is empty.\n"))
-        self.assertEqual(run().returncode, 2)
-        self.assertEqual(run(self.at("s.hdf5"), self.at("s.hdf5")).returncode, 1)
 
 
 if __name__ == "__main__":

@@ -236,6 +236,7 @@ static mcor_input input_of(
   return input;
 }
 
+/* Compares each case with the plain contour, and with its boxes. */
 static void surfaces(void** state)
 {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -264,19 +265,6 @@ static void surfaces(void** state)
     CORE_CHECK(s->residual_max <= 1.5 * old->residual_max &&
         s->vertices_above_tolerance <= old->vertices_above_tolerance,
       at->name, s->residual_max, old->residual_max, s->vertices_above_tolerance);
-  }
-}
-
-static void boxes(void** state)
-{
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
-  {
-    const compact_case* at = cases + i;
-    CORE_SET set = at->make();
-    const mcor_array attribute = core_array(set.position, 3);
-    const mcor_input input = input_of(at, &set, &attribute);
-    mcor_options options = options_of(at);
-    options.compact = 1;
     if (at->period[1] == 0 && at->make != make_plane)
     {
       core_check_cuts(*state, at->name, &input, &options);
@@ -343,4 +331,4 @@ static void boxes_in_period(void** state)
   core_check_these_cuts(*state, "levels, period", &input, &options, core_cuts, 2);
 }
 
-CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes, boxes_in_period, away_from_caps)
+CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps)

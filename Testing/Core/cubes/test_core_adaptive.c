@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and empty space costs nothing. The oracle
- * checks their edges and triangles, core_adaptive_parts their bits in boxes. */
+/* Surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and few nodes are evaluated. The oracle
+ * checks their edges and triangles, core_adaptive_parts their bits in boxes, core_warning groups of sizes that are far
+ * apart. */
 
 #include "core_fixture.h"
 
@@ -45,30 +46,4 @@ static void few_nodes_are_evaluated(void** state)
   assert_true(surface.statistics.cells_used > 100);
 }
 
-/* Two groups differ in size by a factor of 4000, and lie as far apart. Memory must not grow with the finest lattice
- * between them. */
-static void far_apart(void** state)
-{
-  static const double half = 0.5;
-  CORE_SET set = particle_set_make(2 * 216);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    const double size = i < 216 ? 1 : 4000;
-    const int64_t k = i % 216, at[3] = { k % 6, k / 6 % 6, k / 36 };
-    for (int a = 0; a < 3; ++a)
-    {
-      set.position[3 * i + a] = size * ((double)at[a] + (a == 0 && i >= 216 ? 6 : 0));
-    }
-    set.smoothing_length[i] = 1.3 * size;
-    set.volume[i] = size * size * size;
-  }
-  const mcor_input input = core_input(&set);
-  const mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  CORE_SURFACE surface = core_extract(*state, &input, &options);
-  CORE_REPORT report = core_check_mesh(&surface);
-  assert_int_equal(report.components, 2);
-  assert_int_equal(report.boundary_edges, 0);
-  assert_true(surface.triangle_count < 20000);
-}
-
-CORE_MAIN(core_set_up, core_tear_down, one_level_is_uniform, few_nodes_are_evaluated, far_apart)
+CORE_MAIN(core_set_up, core_tear_down, one_level_is_uniform, few_nodes_are_evaluated)

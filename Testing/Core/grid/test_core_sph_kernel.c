@@ -28,17 +28,18 @@ static const char source[] =
   "  out[5 * i + 4] = MCOR_GET(gradient[2], MCOR_LANES - 1) * MCOR_NORM;\n"
   "}\n";
 
-/* Evaluates W (h = 1 / inv_h, without the factor 1 / h^3) in double precision. Free the result. */
-static double* evaluate(
-  mcor_context* context, mcor_sph_kernel kernel, const double* offsets, int count, double inv_h)
+/* Evaluates W (h = 1 / inv_h, without the factor 1 / h^3) at offsets of the precision's type. Free the result. */
+static void* evaluate(mcor_context* context, mcor_sph_kernel kernel, mcor_type precision,
+  const void* offsets, int count, double inv_h)
 {
   mcor_buffer in = { 0 }, out = { 0 };
-  const size_t bytes = (size_t)count * 5 * sizeof(double);
-  double* result = malloc(bytes);
+  const size_t size = precision == MCOR_FLOAT64 ? sizeof(double) : sizeof(float),
+               bytes = (size_t)count * 5 * size;
+  void* result = malloc(bytes);
   assert_non_null(result);
-  core_build(context, kernel, MCOR_SHEPARD, MCOR_FLOAT64);
+  core_build(context, kernel, MCOR_SHEPARD, precision);
   core_extend_program(context, source);
-  CORE_OK(context, mcor_write(context, &in, offsets, (size_t)count * 3 * sizeof(double)));
+  CORE_OK(context, mcor_write(context, &in, offsets, (size_t)count * 3 * size));
   CORE_OK(context, mcor_reserve(context, &out, bytes));
   CORE_OK(context,
     MCOR_LAUNCH(context, "test_kernel", MCOR_LIGHT, count, MCOR_INT(count), MCOR_REAL(inv_h),
@@ -63,7 +64,7 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
   {
     offsets[i] = reach * (2 * random_unit(&seed) - 1);
   }
-  CORE_FREED double* w = evaluate(context, kernel, offsets, N, 1 / h);
+  CORE_FREED double* w = evaluate(context, kernel, MCOR_FLOAT64, offsets, N, 1 / h);
   for (int i = 0; i < N; ++i)
   {
     double gradient[3];
@@ -87,7 +88,7 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   const double support = mcor_support_factor(kernel);
   const double offsets[6][3] = { { support, 0, 0 }, { 0, -support * 1.5, 0 },
     { 0, 0, support * 1e6 }, { 0, support * 0.98, 0 }, { 0, 0, 0 }, { -support * 1.0001, 0.1, 0 } };
-  CORE_FREED double* w = evaluate(context, kernel, offsets[0], 6, 1);
+  CORE_FREED double* w = evaluate(context, kernel, MCOR_FLOAT64, offsets[0], 6, 1);
   for (int i = 0; i < 6; ++i)
   {
     const double* at = w + 5 * i;
@@ -111,20 +112,12 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel)
     N = 3000
   };
   const double support = mcor_support_factor(kernel), zero[3] = { 0, 0, 0 };
-  float offset[3 * N] = { 0 }, found[5 * N];
+  float offset[3 * N] = { 0 };
   for (int i = 0; i < N; ++i)
   {
     offset[3 * i + i % 3] = (float)(support * (i + 0.5) / N);
   }
-  mcor_buffer in = { 0 }, out = { 0 };
-  core_build(context, kernel, MCOR_SHEPARD, MCOR_FLOAT32);
-  core_extend_program(context, source);
-  CORE_OK(context, mcor_write(context, &in, offset, sizeof offset));
-  CORE_OK(context, mcor_reserve(context, &out, sizeof found));
-  CORE_OK(context,
-    MCOR_LAUNCH(context, "test_kernel", MCOR_LIGHT, N, MCOR_INT(N), MCOR_REAL(1), MCOR_BUFFER(&in),
-      MCOR_BUFFER(&out)));
-  CORE_OK(context, mcor_read(context, &out, 0, found, sizeof found));
+  CORE_FREED float* found = evaluate(context, kernel, MCOR_FLOAT32, offset, N, 1);
   const double greatest = oracle_kernel_value((oracle_kernel)kernel, 1, zero, NULL);
   double error = 0, share = 0, slope = 0, steepest = 0;
   for (int i = 0; i < N; ++i)
@@ -140,8 +133,6 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel)
   CORE_CHECK(
     error < 1.5e-6 && slope < 3e-6 * steepest && (share < 3e-5 || kernel == MCOR_M_PRIME_4),
     mcor_sph_kernel_name(kernel), error, share, slope / steepest);
-  mcor_release(context, &in);
-  mcor_release(context, &out);
 }
 
 static void test_kernels(void** state)

@@ -298,7 +298,7 @@ static void test_told_residual(void** state)
   static const double sizes[] = { 1.0 / 100, 1.0 / 4000, 1.0 / 10000 };
   for (int i = 0; i < 3; ++i)
   {
-    CORE_SET set = far_apart(sizes[i]);
+    CORE_SET set = far_apart(sizes[i]); /* Memory must not grow with the finest cubes between the blocks. */
     check_told_residual(*state, &set, MCOR_WEIGHT_SUM);
     check_told_residual(*state, &set, MCOR_SHEPARD);
   }

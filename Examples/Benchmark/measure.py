@@ -308,8 +308,7 @@ def compete(name, path, count, runs, limit, smaller=None, arguments=()):
 
 
 class Report:
-    """Collects text, and prints each line at once, because a whole benchmark takes long. Tables are Markdown, aligned so that they can be read on a
-    terminal, too."""
+    """Collects text, and prints each line at once, because a whole benchmark takes long. Tables are Markdown."""
 
     def __init__(self):
         self.lines = []
@@ -324,18 +323,8 @@ class Report:
 
     def table(self, header, rows):
         """Aligns the first column to the left, all others to the right."""
-        rows = [[str(cell) for cell in row] for row in rows]
-        widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
-
-        def line(cells):
-            left, *right = cells
-            return "| " + " | ".join([left.ljust(widths[0]),
-                                      *(cell.rjust(width) for cell, width in zip(right, widths[1:]))]) + " |"
-
-        self.text(line(header))
-        self.text("| " + " | ".join(["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]) + " |")
-        for row in rows:
-            self.text(line(row))
+        for cells in (header, ["---", *["---:"] * (len(header) - 1)], *rows):
+            self.text("| " + " | ".join(map(str, cells)) + " |")
         self.text()
 
 

@@ -98,6 +98,7 @@ typedef struct mcor_cl
   int kernel_count;
   int64_t kernel_room;
   int device_number, units;       /* number in the list of devices; compute units */
+  cl_uint width;                  /* of the device's vectors of float */
   int place, count;               /* number of this process, and how many processes share the
                                    * devices */
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */

@@ -144,7 +144,7 @@ static cl_device_type mcor_type_of(cl_device_id device)
 
 static void mcor_query_device(mcor_cl* cl)
 {
-  cl_uint units = 1, width = 1;
+  cl_uint units = 1;
   cl_bool unified = CL_FALSE;
   cl_device_fp_config fp32 = 0, fp64 = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
@@ -161,8 +161,9 @@ static void mcor_query_device(mcor_cl* cl)
    * or gpu, is for tests. */
   const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
   const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
-  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && width > 1;
+  clGetDeviceInfo(
+    cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof cl->width, &cl->width, NULL);
+  cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && cl->width > 1;
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
    * when they are launched. So it gains nothing from parts. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));

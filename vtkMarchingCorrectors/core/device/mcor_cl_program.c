@@ -102,13 +102,10 @@ static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = mcor_test_setting("MCOR_LANES");
   const int number = forced ? atoi(forced) : 0;
-  cl_uint width = 1;
-  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return number == 8 || number == 16          ? number
-    : forced && *forced                       ? 1
-    : !cl->is_cpu                             ? 1
-    : precision == MCOR_FLOAT64 || width < 16 ? 8
-                                              : 16;
+  return number == 8 || number == 16              ? number
+    : (forced && *forced) || !cl->is_cpu          ? 1
+    : precision == MCOR_FLOAT64 || cl->width < 16 ? 8
+                                                  : 16;
 }
 
 bool mcor_has_ahead(const mcor_cl* cl, const mcor_build* build)

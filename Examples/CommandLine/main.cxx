@@ -231,9 +231,9 @@ bool MakeSurface(Sharing& sharing)
       }
       if (!job.Picture.File.empty())
       {
-        const auto picture = LoadExtra().NewPicture(job.Picture);
+        const Picture picture = LoadExtra().NewPicture(job.Picture);
         WriteOutput(job.Picture.File,
-          DrawSurface(sharing, job.Picture.File, run.Surface, particles, *picture, colors));
+          DrawSurface(sharing, job.Picture.File, run.Surface, particles, picture, colors));
       }
     });
   return true;

@@ -44,4 +44,4 @@ vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file)
 
 }
 
-const Extra MarchingCorrectorsExtra = { Picture::New, ReadHdf, ListHdfTimes, ReadSurface };
+const Extra MarchingCorrectorsExtra = { NewPicture, ReadHdf, ListHdfTimes, ReadSurface };

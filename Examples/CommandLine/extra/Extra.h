@@ -5,7 +5,7 @@
 
 #include "vtkSmartPointer.h"
 
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,28 +14,21 @@ class vtkDataObject;
 class vtkDataSet;
 struct PictureOptions;
 
-/// Draws pictures of a surface, or of a probed data set, inside the outline of a frame. In a
-/// series, such as a film's steps, the view has room for all pictures so far: the eye moves back if
-/// something would be cut off, and otherwise stays.
-class Picture
-{
-public:
-  /// Is called by LoadExtra().NewPicture(). Throws std::runtime_error with one sentence if this VTK
-  /// renders through an X server and there is none: VTK itself would abort.
-  static std::unique_ptr<Picture> New(const PictureOptions& options);
-  virtual ~Picture() = default;
-
-  /// Returns the bytes of a .png file. file: its name in the sentence of a std::runtime_error;
-  /// sliceAxis: the axis along which a slice is seen; below 0: there is no slice.
-  virtual std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-    const ColorScale& colors, int sliceAxis = -1) = 0;
-};
+/// Draws a picture of a surface, or of a probed data set, inside the outline of a frame, and returns
+/// the bytes of a .png file. In a series, such as a film's steps, the view has room for all pictures
+/// so far: the eye moves back if something would be cut off, and otherwise stays. file: its name in
+/// the sentence of a std::runtime_error; sliceAxis: the axis along which a slice is seen; below 0:
+/// there is no slice.
+using Picture = std::function<std::string(const std::string& file, vtkDataSet* data,
+  vtkDataSet* frame, const ColorScale& colors, int sliceAxis)>;
 
 /// Names functions that need large libraries: VTK's rendering, and HDF5. Loading these libraries
 /// takes longer than a small run, so the functions are in a library of their own.
 struct Extra
 {
-  std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);
+  /// Throws std::runtime_error with one sentence if this VTK renders through an X server and there is
+  /// none: VTK itself would abort.
+  Picture (*NewPicture)(const PictureOptions& options);
 
   /// Reads the points of one step of a .vtkhdf file, or lists the times of its steps. Throws
   /// std::runtime_error.
@@ -53,6 +46,7 @@ extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectors
 // values lie in other files. Without steps, there are no times.
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
+Picture NewPicture(const PictureOptions& options);
 
 /// Loads the library. Throws std::runtime_error if that fails.
 const Extra& LoadExtra();

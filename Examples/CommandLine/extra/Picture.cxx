@@ -39,6 +39,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <set>
 
 #include <dlfcn.h>
@@ -173,7 +174,7 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
 }
 
 /// The window, and what is shown in it.
-class Scene : public Picture
+class Scene
 {
 public:
   explicit Scene(const PictureOptions& options)
@@ -191,7 +192,7 @@ public:
   }
 
   std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-    const ColorScale& colors, int sliceAxis) override
+    const ColorScale& colors, int sliceAxis)
   {
     const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
     Messages() = {};
@@ -235,11 +236,8 @@ private:
     this->Renderer->RemoveAllViewProps();
     vtkNew<vtkDataSetMapper> mapper;
     mapper->SetInputDataObject(data);
-    mapper->SetScalarModeToUsePointFieldData();
-    if (!colors.ArrayOf(data))
-    {
-      mapper->SetScalarModeToUseCellFieldData();
-    }
+    colors.ArrayOf(data) ? mapper->SetScalarModeToUsePointFieldData()
+                         : mapper->SetScalarModeToUseCellFieldData();
     const bool isColored = colors.ArrayOf(data) || colors.CellArrayOf(data);
     mapper->SetScalarVisibility(isColored);
     if (isColored)
@@ -252,10 +250,7 @@ private:
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.45, 0.72, 0.95);
     actor->GetProperty()->SetLighting(!isFlat);
-    if (isColored && !isFlat) // colours in shade still differ
-    {
-      actor->GetProperty()->SetAmbient(0.3);
-    }
+    actor->GetProperty()->SetAmbient(isColored && !isFlat ? 0.3 : 0.0); // colours in shade differ
     actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.4);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);
@@ -391,9 +386,10 @@ private:
 
 }
 
-std::unique_ptr<Picture> Picture::New(const PictureOptions& options)
+Picture NewPicture(const PictureOptions& options)
 {
   const Activity drawing(
     options.File + " could not be written", "the graphics driver may be at fault");
-  return std::make_unique<Scene>(options);
+  return [scene = std::make_shared<Scene>(options)](const auto&... what)
+  { return scene->Draw(what...); };
 }

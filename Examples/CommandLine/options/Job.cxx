@@ -95,6 +95,13 @@ bool IsOfSteps(const Job& j)
   return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
 }
 
+/// Whether there are several inputs, or files that list or number the steps.
+bool HasSteps(const Job& j)
+{
+  return j.Inputs.size() > 1 || IsOfSteps(j) ||
+    (!j.Inputs.empty() && IsListOfSteps(j.Inputs.front()));
+}
+
 /// Whether the output has one of the arrays that --derive makes.
 bool UsesDerived(const Job& j)
 {
@@ -113,7 +120,7 @@ const std::vector<Rule> Rules = {
     "gauges and fluxes have one level; leave out all but one --iso value" },
   { GAUGE, IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
     "the output of --gauge-grid is a .vti file, not '{output}'" },
-  { METER, IF((j.IsFlux() || !j.Has("--gauge-grid")) && !IsTo(j, ".csv")),
+  { METER, IF(!j.Has("--gauge-grid") && !IsTo(j, ".csv")),
     "the output of gauges and fluxes is a .csv file, not '{output}'" },
   { METER, IF(!(j.Gauge->GetLevel() > 0.0)),
     "gauges and fluxes need an --iso value above 0, the weight at which the fluid ends; 0.5 is "
@@ -339,23 +346,20 @@ std::vector<std::string> Job::InputFiles() const
 
 unsigned Job::Mode() const
 {
-  const bool hasSteps = this->Inputs.size() > 1 || IsOfSteps(*this) ||
-    (!this->Inputs.empty() && IsListOfSteps(this->Inputs.front()));
-  return this->Has("--project")                                  ? PROJECT
-    : this->IsFlux()                                             ? FLUX
-    : this->HasGauges() && !(this->Has("--numbers") && hasSteps) ? GAUGE
-    : this->Has("--probe")                                       ? PROBE
-    : this->Has("--slice")                                       ? SLICE
-    : this->Has("--line")                                        ? LINE
-    : hasSteps                                                   ? FILM
-                                                                 : SURFACE;
+  const bool hasGauges = this->Has("--gauge") || this->Has("--gauges") || this->Has("--gauge-grid");
+  return this->Has("--project")                                 ? PROJECT
+    : this->Has("--flux") || this->Has("--fluxes")              ? FLUX
+    : hasGauges && !(this->Has("--numbers") && HasSteps(*this)) ? GAUGE
+    : this->Has("--probe")                                      ? PROBE
+    : this->Has("--slice")                                      ? SLICE
+    : this->Has("--line")                                       ? LINE
+    : HasSteps(*this)                                           ? FILM
+                                                                : SURFACE;
 }
 
 bool Job::IsFilm() const
 {
-  return this->Mode() == FILM ||
-    (this->Has("--project") &&
-      (this->Inputs.size() > 1 || IsOfSteps(*this) || IsListOfSteps(this->Inputs.front())));
+  return (this->Mode() & (FILM | PROJECT)) && HasSteps(*this);
 }
 
 std::string WordOf(const std::string& member)

@@ -82,9 +82,9 @@ struct Job
 
   vtkNew<vtkMarchingCorrectors> Surface;
   vtkNew<vtkSPHDerivatives> Derivatives; ///< used if Derive is not empty
-  vtkNew<vtkSPHProbe> Probe;             ///< used if IsProbe()
-  vtkNew<vtkSPHGauge> Gauge;             ///< used if HasGauges()
-  vtkNew<vtkSPHFlux> Flux;               ///< used if IsFlux()
+  vtkNew<vtkSPHProbe> Probe;             ///< used for POINTS
+  vtkNew<vtkSPHGauge> Gauge;             ///< used for gauges, of films, too
+  vtkNew<vtkSPHFlux> Flux;               ///< used for FLUX
   vtkNew<vtkSPHProjection> Projection;   ///< used with --project
 
   /// Lists all filters, for settings that several share.
@@ -93,17 +93,8 @@ struct Job
     return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux,
       this->Projection };
   }
-  bool IsProbe() const
-  {
-    return this->Has("--probe") || this->Has("--slice") || this->Has("--line");
-  }
   /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
-  bool IsFlux() const { return this->Has("--flux") || this->Has("--fluxes"); }
-  bool HasGauges() const
-  {
-    return this->Has("--gauge") || this->Has("--gauges") || this->Has("--gauge-grid");
-  }
   /// Lists all files that the run reads, but not the files that these list.
   std::vector<std::string> InputFiles() const;
   /// Returns one of the modes, which the options and the names of the files tell.

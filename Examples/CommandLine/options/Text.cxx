@@ -4,9 +4,9 @@
 
 #include "Job.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -170,18 +170,13 @@ std::string EscapedForXml(const std::string& text)
   return escaped;
 }
 
-std::string Joined(const std::vector<std::string>& texts, const std::string& sign)
-{
-  return Joined(texts, sign, sign);
-}
-
-std::string Joined(
-  const std::vector<std::string>& texts, const std::string& sign, const std::string& last)
+std::string Joined(const std::vector<std::string>& texts, const std::string& sign, const char* last)
 {
   std::string joined;
   for (std::size_t i = 0; i < texts.size(); ++i)
   {
-    joined += (i == 0 ? "" : i + 1 < texts.size() ? sign : last) + texts[i];
+    const bool isLast = last && i + 1 == texts.size();
+    joined += (i == 0 ? "" : isLast ? last : sign) + texts[i];
   }
   return joined;
 }
@@ -373,4 +368,26 @@ std::vector<double> ToBox(Text option, Text text)
       std::string("the lower number first along ") + "xyz"[a], text);
   }
   return box;
+}
+
+bool EndsWith(Text text, Text end)
+{
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool HasStepNumber(Text name)
+{
+  const std::size_t percent = std::min(name.find('%'), name.size());
+  const std::size_t letter = name.find_first_not_of("0123456789", percent + 1);
+  return letter != std::string::npos && name[letter] == 'd' && letter - percent <= 3 &&
+    std::count(name.begin(), name.end(), '%') == 1;
+}
+
+std::string NameOfStep(Text name, std::size_t step)
+{
+  const std::size_t percent = name.find('%');
+  const auto width = static_cast<std::size_t>(std::atoi(name.c_str() + percent + 1));
+  std::string number = std::to_string(step);
+  number.insert(0, width > number.size() ? width - number.size() : 0, '0');
+  return name.substr(0, percent) + number + name.substr(name.find('d', percent) + 1);
 }

@@ -3,6 +3,7 @@
 #ifndef Text_h
 #define Text_h
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <functional>
@@ -61,9 +62,8 @@ double Rounded(double number);
 std::string EscapedForXml(const std::string& text);
 
 /// Returns the texts with this sign between them; "" for none. last: the sign before the last text.
-std::string Joined(const std::vector<std::string>& texts, const std::string& sign = ", ");
-std::string Joined(
-  const std::vector<std::string>& texts, const std::string& sign, const std::string& last);
+std::string Joined(const std::vector<std::string>& texts, const std::string& sign = ", ",
+  const char* last = nullptr);
 
 // ---- Values of options ----
 
@@ -108,10 +108,7 @@ std::vector<double> ToBox(const std::string& option, const std::string& text);
 
 // ---- Names of files ----
 
-inline bool EndsWith(const std::string& text, const std::string& end)
-{
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
+bool EndsWith(const std::string& text, const std::string& end);
 
 /// Whether this is the name of a .pvd file, ParaView's list of files and their times.
 inline bool IsCollectionFile(const std::string& file)
@@ -138,14 +135,9 @@ template <typename FunctionT>
 const FileFormat<FunctionT>* FindFormat(
   const std::vector<FileFormat<FunctionT>>& formats, const std::string& file)
 {
-  for (const FileFormat<FunctionT>& format : formats)
-  {
-    if (EndsWith(file, format.Ending))
-    {
-      return &format;
-    }
-  }
-  return nullptr;
+  const auto found = std::find_if(formats.begin(), formats.end(),
+    [&file](const FileFormat<FunctionT>& format) { return EndsWith(file, format.Ending); });
+  return found == formats.end() ? nullptr : &*found;
 }
 
 /// Returns the endings as ".vtp, .vtu or .vtk".
@@ -162,23 +154,9 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
 
 /// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent
 /// sign.
-inline bool HasStepNumber(const std::string& name)
-{
-  const std::size_t percent = name.find('%');
-  const std::size_t letter =
-    percent == std::string::npos ? percent : name.find_first_not_of("0123456789", percent + 1);
-  return letter != std::string::npos && name[letter] == 'd' && letter - percent <= 3 &&
-    std::count(name.begin(), name.end(), '%') == 1;
-}
+bool HasStepNumber(const std::string& name);
 
 /// Returns the name of a step: frame_0007.png for frame_%04d.png.
-inline std::string NameOfStep(const std::string& name, std::size_t step)
-{
-  const std::size_t percent = name.find('%');
-  const auto width = static_cast<std::size_t>(std::atoi(name.c_str() + percent + 1));
-  std::string number = std::to_string(step);
-  number.insert(0, width > number.size() ? width - number.size() : 0, '0');
-  return name.substr(0, percent) + number + name.substr(name.find('d', percent) + 1);
-}
+std::string NameOfStep(const std::string& name, std::size_t step);
 
 #endif

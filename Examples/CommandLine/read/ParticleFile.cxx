@@ -11,6 +11,7 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -78,12 +79,6 @@ std::vector<double> ListTimesOfHdf(File file)
   return times;
 }
 
-/// Refuses a step that is not the first one.
-void RefuseStep(File file, std::size_t step)
-{
-  RequireToRead(step == 0, file, "it has no step " + std::to_string(step));
-}
-
 /// Returns the time of the list itself or, if it has none, of its first piece; all pieces have the
 /// same time.
 std::vector<double> ListTimesOfPieces(const std::string& file)
@@ -143,7 +138,8 @@ Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step 
   CheckRegularFile(file);
   const Kind* kind = KindOf(formats, file);
   Require(kind, file + " is not a " + ListEndings(formats) + " file");
-  RefuseStep(file, kind->Read == ReadHdf || kind->Read == ReadText ? 0 : step);
+  RequireToRead(step == 0 || kind->Read == ReadHdf || kind->Read == ReadText, file,
+    "it has no step " + std::to_string(step));
   Data data;
   ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
   return data;
@@ -269,13 +265,6 @@ void ReadSet(const std::string& name, ParticleSets& sets)
   }
 }
 
-bool IsList(const std::string& name)
-{
-  const std::string file = StepOf(name).first;
-  const FileFormat<Kind>* format = FindFormat(ParticleFormats, file);
-  return format && format->Process.ListParts;
-}
-
 /// Returns the files that a list of pieces names; for any other file, the file itself.
 std::vector<std::string> ListParts(const std::string& name)
 {
@@ -285,11 +274,13 @@ std::vector<std::string> ListParts(const std::string& name)
   {
     return { name };
   }
-  RefuseStep(file, step);
+  RequireToRead(step == 0, file, "it has no step " + std::to_string(step));
   const std::vector<std::string> parts = kind->ListParts(file);
   for (const std::string& part : parts)
   {
-    RequireToRead(!IsList(part), file, "its piece " + part + " is a list itself");
+    const FileFormat<Kind>* format = FindFormat(ParticleFormats, StepOf(part).first);
+    RequireToRead(
+      !format || !format->Process.ListParts, file, "its piece " + part + " is a list itself");
   }
   return parts;
 }
@@ -319,8 +310,7 @@ void CheckRegularFile(const std::string& file)
 void ReadWithCare(const std::string& file, const std::function<void()>& read)
 {
   Messages() = {};
-  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
-  const Silence silence;
+  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged", true);
   try
   {
     read();
@@ -354,6 +344,17 @@ std::vector<std::string> NamesOf(vtkFieldData* data)
     names.emplace_back(array->GetName() ? array->GetName() : "");
   }
   return names;
+}
+
+void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<double>& numbers)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  for (const double number : numbers)
+  {
+    array->InsertNextValue(number);
+  }
+  data->AddArray(array);
 }
 
 std::string ParticleFileEndings()
@@ -401,13 +402,13 @@ void OpenSources(const std::vector<std::string>& files)
 {
   for (const std::string& file : files)
   {
-    FailureOf([&] { CheckRegularFile(StepOf(file).first); });
     FailureOf(
-      [&]
+      [&file]
       {
+        CheckRegularFile(StepOf(file).first);
         for (const std::string& part : ListParts(file))
         {
-          FailureOf([&] { CheckRegularFile(StepOf(part).first); });
+          FailureOf([&part] { CheckRegularFile(StepOf(part).first); });
         }
       });
   }
@@ -436,7 +437,7 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
   {
     ReadSet(all[i], sets);
   }
-  sets.IsList = files.size() > 1 || IsList(files.front());
+  sets.IsList = files.size() > 1 || all != files;
   return sets;
 }
 
@@ -445,12 +446,8 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
   std::vector<vtkSmartPointer<vtkPointSet>> parts;
   for (std::size_t i = 0; i < sets.Sets.size(); ++i)
   {
-    const vtkSmartPointer<vtkPointSet> part =
-      TakeParticles(sets.Files[i], sets.Sets[i], sets.HaveVertices);
-    if (part->GetNumberOfPoints() > 0)
-    {
-      parts.push_back(part);
-    }
+    const auto part = TakeParticles(sets.Files[i], sets.Sets[i], sets.HaveVertices);
+    parts.insert(parts.end(), part->GetNumberOfPoints() > 0 ? 1 : 0, part);
   }
   if (parts.empty())
   {

@@ -21,6 +21,9 @@ struct vtkSPHPeriod;
 std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data);
 std::vector<std::string> NamesOf(vtkFieldData* data);
 
+/// Adds an array of these numbers, one in each tuple, to field data, or to a table's row.
+void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<double>& numbers);
+
 /// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .vtk".
 std::string ParticleFileEndings();
 

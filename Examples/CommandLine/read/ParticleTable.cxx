@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "ParticleFile.h"
 #include "Text.h"
 #include "TextTable.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkNew.h"
 #include "vtkSPHSay.h"
 
 #include <algorithm>
@@ -107,17 +106,6 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     std::iota(positions.begin(), positions.end(), std::size_t(0));
   }
   return ParticlesOf(file, table, positions);
-}
-
-void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<double>& values)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  for (const double value : values)
-  {
-    array->InsertNextValue(value);
-  }
-  particles->GetFieldData()->AddArray(array);
 }
 
 /// Returns the count that a line gives, or a negative number if it gives none.
@@ -443,11 +431,11 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   const std::vector<double> period = PeriodOf(step);
   if (period != std::vector<double>(6))
   {
-    AddNumbers(particles, "PeriodicBounds", period);
+    AddNumbers(particles->GetFieldData(), "PeriodicBounds", period);
   }
   if (!std::isnan(step.Time))
   {
-    AddNumbers(particles, "TimeValue", { step.Time });
+    AddNumbers(particles->GetFieldData(), "TimeValue", { step.Time });
   }
   return particles;
 }

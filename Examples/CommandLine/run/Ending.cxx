@@ -58,7 +58,8 @@ char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // after an endless recursion, the usual stack is full
 volatile std::sig_atomic_t ClearsLine = 0;
-volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< the true one, also during Silence
+volatile std::sig_atomic_t StandardError =
+  STDERR_FILENO; ///< the true one, also while an Activity is silent
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
@@ -179,79 +180,61 @@ std::string FaultsOfDrivers(const std::string& device)
     ", or memory ran out";
 }
 
-Activity::Activity(const std::string& failure, const std::string& hint)
+Activity::Activity(const std::string& failure, const std::string& hint, bool isSilent)
   : Outer(Failure, Hint)
+  , IsSilent(isSilent)
 {
   Set(Failure, Printable(failure));
   Set(Hint, hint);
+  if (isSilent)
+  {
+    std::fflush(stderr);
+    const int before = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (before >= 0 && nowhere >= 0)
+    {
+      StandardError = before;
+      dup2(nowhere, STDERR_FILENO);
+    }
+    close(nowhere);
+  }
 }
 
 Activity::~Activity()
 {
   Set(Failure, this->Outer.first);
   Set(Hint, this->Outer.second);
-}
-
-Silence::Silence()
-{
-  std::fflush(stderr);
-  const int before = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (before >= 0 && nowhere >= 0)
-  {
-    StandardError = before;
-    dup2(nowhere, STDERR_FILENO);
-  }
-  close(nowhere);
-}
-
-Silence::~Silence()
-{
-  std::fflush(stderr);
   const int before = StandardError;
-  if (before != STDERR_FILENO)
+  if (this->IsSilent && before != STDERR_FILENO)
   {
+    std::fflush(stderr);
     dup2(before, STDERR_FILENO);
     StandardError = STDERR_FILENO;
     close(before);
   }
 }
 
-TemporaryFile::TemporaryFile(const std::string& begin)
-  : Name(begin + "XXXXXX")
+int MakeTemporary(std::string& name)
 {
+  name += "XXXXXX";
   const std::lock_guard<std::mutex> guard(FilesLock);
-  this->Descriptor = mkstemp(&this->Name[0]);
-  this->Descriptor >= 0 ? Files.push_back(this->Name) : this->Name.clear();
+  const int descriptor = mkstemp(&name[0]);
+  descriptor >= 0 ? Files.push_back(name) : name.clear();
+  return descriptor;
 }
 
-TemporaryFile::~TemporaryFile()
+bool EndTemporary(const std::string& name, const std::string& target)
 {
-  this->Close();
-  const std::lock_guard<std::mutex> guard(FilesLock);
-  if (!this->Name.empty())
-  {
-    unlink(this->Name.c_str());
-    Files.erase(std::find(Files.begin(), Files.end(), this->Name));
-  }
-}
-
-bool TemporaryFile::Close()
-{
-  const int descriptor = this->Descriptor;
-  this->Descriptor = -1;
-  return descriptor < 0 || close(descriptor) == 0;
-}
-
-bool TemporaryFile::TakePlaceOf(const std::string& file)
-{
-  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // before the lock is taken, because
-                                                          // this may hang
+  // This is done before the lock is taken, because it may hang.
+  if (!target.empty() && std::rename(name.c_str(), target.c_str()) != 0)
   {
     return false;
   }
   const std::lock_guard<std::mutex> guard(FilesLock);
-  Files.erase(std::find(Files.begin(), Files.end(), this->Name));
-  this->Name.clear();
+  if (target.empty())
+  {
+    unlink(name.c_str());
+  }
+  Files.erase(std::find(Files.begin(), Files.end(), name));
   return true;
 }

@@ -19,50 +19,28 @@ void KeepWatchOfCrashes();
 /// loads this file. Names the folder of such files if it exists, unless `device` is the built-in one.
 std::string FaultsOfDrivers(const std::string& device);
 
-/// Sets the sentence for a crash while this object lives: "FAILURE: ...; HINT".
+/// Sets the sentence for a crash while this object lives: "FAILURE: ...; HINT". isSilent: only this
+/// sentence then reaches standard error, where libraries would write messages about a damaged file.
 class Activity
 {
 public:
-  Activity(const std::string& failure, const std::string& hint);
+  Activity(const std::string& failure, const std::string& hint, bool isSilent = false);
   ~Activity();
   Activity(const Activity&) = delete;
   void operator=(const Activity&) = delete;
 
 private:
   const std::pair<std::string, std::string> Outer; ///< the sentence around this object's life
+  const bool IsSilent;
 };
 
-/// While such an object lives, only the program's own sentence about a crash reaches standard
-/// error, where libraries would write messages about a damaged file.
-class Silence
-{
-public:
-  Silence();
-  ~Silence();
-  Silence(const Silence&) = delete;
-  void operator=(const Silence&) = delete;
-};
+/// Makes a new file, whose name is `name` and six more characters, and becomes `name`; or "" if this
+/// fails. Returns its descriptor; below 0: it failed, and errno tells why. The file is removed when
+/// the program ends, unless EndTemporary() was called.
+int MakeTemporary(std::string& name);
 
-/// A new file with an unpredictable name. It is removed with the object, or when the program ends,
-/// unless it takes the place of another file.
-class TemporaryFile
-{
-public:
-  /// Makes a file named `begin` and six more characters. If this fails, errno tells why.
-  explicit TemporaryFile(const std::string& begin);
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  void operator=(const TemporaryFile&) = delete;
-
-  int GetDescriptor() const { return this->Descriptor; } ///< below 0: there is no file
-
-  /// Returns false, and sets errno, if the written bytes were not stored.
-  bool Close();
-  bool TakePlaceOf(const std::string& file);
-
-private:
-  std::string Name;
-  int Descriptor = -1;
-};
+/// Lets the file take the place of `target`, or, without one, removes the file. Returns false, and
+/// sets errno, if this fails.
+bool EndTemporary(const std::string& name, const std::string& target = "");
 
 #endif

@@ -174,13 +174,13 @@ std::string DescribeSize(vtkImageData* image)
   return text.str();
 }
 
-std::string DrawField(
-  const Job& job, vtkDataSet* field, const std::string& file, Picture& picture, ColorScale& colors)
+std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file,
+  const Picture& picture, ColorScale& colors)
 {
   vtkSmartPointer<vtkDataSet> shown = field;
   std::string name;
   int axis = job.Slice.Axis;
-  if (job.IsProbe())
+  if (job.Mode() & POINTS)
   {
     vtkNew<vtkThreshold> valid; // without this, arrays would be 0 elsewhere, which looks like a value
     valid->SetInputData(field);
@@ -202,7 +202,7 @@ std::string DrawField(
   }
   colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
   colors.Include(shown);
-  return picture.Draw(file, shown, field, colors, axis);
+  return picture(file, shown, field, colors, axis);
 }
 
 namespace
@@ -297,7 +297,7 @@ bool MakePointTable(Sharing& sharing)
 bool MakeField(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  const bool isProbe = job.IsProbe();
+  const bool isProbe = job.Mode() & POINTS;
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
   vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
@@ -348,8 +348,8 @@ bool MakeField(Sharing& sharing)
       if (!job.Picture.File.empty())
       {
         ColorScale colors(job.Picture);
-        const auto picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(job.Picture.File, DrawField(job, result, job.Picture.File, *picture, colors));
+        const Picture picture = LoadExtra().NewPicture(job.Picture);
+        WriteOutput(job.Picture.File, DrawField(job, result, job.Picture.File, picture, colors));
       }
     });
   return true;

@@ -21,7 +21,6 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <memory>
 #include <utility>
 
 namespace
@@ -53,10 +52,7 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
 vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
 {
   auto empty = vtkSmartPointer<vtkImageData>::New();
-  empty->SetExtent(like->GetExtent());
-  empty->SetOrigin(like->GetOrigin());
-  empty->SetSpacing(like->GetSpacing());
-  empty->SetDirectionMatrix(like->GetDirectionMatrix());
+  empty->CopyStructure(like);
   vtkNew<vtkDoubleArray> values;
   values->SetName(like->GetPointData()->GetScalars()->GetName());
   values->SetNumberOfTuples(empty->GetNumberOfPoints());
@@ -185,7 +181,7 @@ private:
             vtkImageData* shown = isSeen && step == i ? image : this->Empty.Get();
             this->Write(step, DataSetBytes(this->Surfaces[step], shown),
               [&](const std::string& frame)
-              { return DrawField(this->Options, shown, frame, *this->Drawn, this->FrameColors); });
+              { return DrawField(this->Options, shown, frame, this->Drawn, this->FrameColors); });
             this->Keep(step, nullptr, DescribeSize(shown), cost);
           }
         }
@@ -218,7 +214,7 @@ private:
         this->Write(i, SurfaceBytes(file, surface, this->Colors),
           [&](const std::string& frame) {
             return DrawSurface(
-              this->Shared, frame, surface, particles, *this->Drawn, this->FrameColors);
+              this->Shared, frame, surface, particles, this->Drawn, this->FrameColors);
           });
         this->Last = run.Statistics;
         const vtkIdType triangles = surface->GetNumberOfPolys(),
@@ -287,7 +283,7 @@ private:
   ColorScale Colors, FrameColors;
   std::string Pieces, Numbers; ///< texts of the tables
   GrowingFile ListFile, PieceFile, NumberFile;
-  std::unique_ptr<Picture> Drawn; ///< used if pictures are wanted
+  Picture Drawn;                       ///< empty if no pictures are wanted
   vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid; null: no place known
   std::vector<std::pair<std::size_t, double>> Waiting; ///< steps without a known place, and seconds
 };

@@ -69,9 +69,9 @@ class MeterTable : public TableSeries
 {
 public:
   explicit MeterTable(Sharing& sharing)
-    : TableSeries(sharing, sharing.Options.Grid.Counts[0] > 0 ? "" : sharing.Options.Output)
-    , IsFlux(this->Options.IsFlux())
-    , IsImage(this->Options.Grid.Counts[0] > 0)
+    : TableSeries(sharing, sharing.Options.Has("--gauge-grid") ? "" : sharing.Options.Output)
+    , IsFlux(this->Options.Mode() == FLUX)
+    , IsImage(this->Options.Has("--gauge-grid"))
     , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
   {
     Require(!this->IsImage || this->Times.Get().size() == 1,
@@ -181,16 +181,6 @@ void MeasureLines(Run& run, const std::string& isoName)
     run.Levels[i].Area = areClosed[i] ? 0.5 * sums[i].Norm() : NoNumber;
   }
 }
-
-/// Adds an array with one number to statistics, or to a table's row.
-void AddNumber(vtkFieldData* data, const std::string& name, double value)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  array->InsertNextValue(value);
-  data->AddArray(array);
-}
-
 }
 
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
@@ -216,16 +206,17 @@ std::size_t AddGauges(const Job& job)
 bool MakeMeterTable(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  const std::vector<Place> sections = job.IsFlux() ? ListSections(job) : std::vector<Place>();
+  const bool isFlux = job.Mode() == FLUX;
+  const std::vector<Place> sections = isFlux ? ListSections(job) : std::vector<Place>();
   for (const Place& section : sections)
   {
     const char* name = section.Name.c_str();
     section.File.empty() ? section.Add(job.Flux, name, section.Numbers.data())
                          : job.Flux->AddSurface(name, ReadDataSet(section.File));
   }
-  const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
+  const std::size_t places = isFlux ? sections.size() : AddGauges(job);
   return MeterTable(sharing).Make(
-    std::to_string(places) + (job.IsFlux() ? " section" : " gauge") + (places == 1 ? "" : "s"));
+    std::to_string(places) + (isFlux ? " section" : " gauge") + (places == 1 ? "" : "s"));
 }
 
 // Describes the particles to the filter of pieces as to the filter of the surface. Surfaces of
@@ -289,12 +280,12 @@ void AddPieces(
     return;
   }
   run.Surface->ShallowCopy(split->GetOutput());
-  AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
+  AddNumbers(run.Statistics, "Pieces", { static_cast<double>(pieces->GetNumberOfRows()) });
   for (const auto& [name, number] : { std::pair("Area", area), std::pair("Volume", volume) })
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
     {
-      AddNumber(run.Statistics, name, number);
+      AddNumbers(run.Statistics, name, { number });
     }
   }
   vtkNew<vtkTable> table;
@@ -348,27 +339,27 @@ void AddFilmNumbers(
     const Level& level = run.Levels[i];
     vtkNew<vtkTable> table;
     vtkFieldData* row = table->GetRowData();
-    AddNumber(row, "time", time);
-    AddNumber(row, "iso", level.Iso);
-    AddNumber(row, "triangles",
-      areMany ? triangles[i] : static_cast<double>(run.Surface->GetNumberOfPolys()));
-    AddNumber(row, "area", level.Area);
-    AddNumber(row, "volume", level.Volume);
+    AddNumbers(row, "time", { time });
+    AddNumbers(row, "iso", { level.Iso });
+    AddNumbers(row, "triangles",
+      { areMany ? triangles[i] : static_cast<double>(run.Surface->GetNumberOfPolys()) });
+    AddNumbers(row, "area", { level.Area });
+    AddNumbers(row, "volume", { level.Volume });
     if (areMany)
     {
-      AddNumber(row, "between",
-        level.Volume - (i + 1 < run.Levels.size() ? run.Levels[i + 1].Volume : 0.0));
+      AddNumbers(row, "between",
+        { level.Volume - (i + 1 < run.Levels.size() ? run.Levels[i + 1].Volume : 0.0) });
     }
     if (job.Has("--components"))
     {
-      AddNumber(row, "pieces", level.Pieces);
+      AddNumbers(row, "pieces", { level.Pieces });
     }
     for (vtkIdType g = 0; gauges && g < gauges->GetNumberOfRows(); ++g)
     {
       const std::string name = gauges->GetValueByName(g, "gauge").ToString();
       for (const char* what : { "last", "depth", "crossings" })
       {
-        AddNumber(row, name + "." + what, gauges->GetValueByName(g, what).ToDouble());
+        AddNumbers(row, name + "." + what, { gauges->GetValueByName(g, what).ToDouble() });
       }
     }
     AppendTable(text, table);

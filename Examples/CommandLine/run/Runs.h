@@ -3,6 +3,8 @@
 #ifndef Runs_h
 #define Runs_h
 
+#include "Extra.h"
+
 #include "vtkFieldData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -11,7 +13,6 @@
 #include <vector>
 
 class ColorScale;
-class Picture;
 class Sharing;
 class vtkDataSet;
 class vtkImageData;
@@ -86,9 +87,9 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
 /// Returns the bytes of a .png file of the surface, or of the field's points or image.
 ///@{
 std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
-  vtkPointSet* particles, Picture& picture, ColorScale& colors);
-std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file, Picture& picture,
-  ColorScale& colors);
+  vtkPointSet* particles, const Picture& picture, ColorScale& colors);
+std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file,
+  const Picture& picture, ColorScale& colors);
 ///@}
 
 /// Returns the image of the projection, on the first process. Throws if no particle is seen.

@@ -49,23 +49,18 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
 {
   double value = 0.0;
   const bool isArray = particles->GetPointData()->HasArray(job.SmoothingLength.c_str());
-  if (!isArray && job.NeighborRatio > 0.0)
+  if (!isArray && (job.NeighborRatio > 0.0 || job.SmoothingLength == "estimate"))
   {
     filter->EstimateSmoothingLengthOn();
-    filter->SetSmoothingLengthEstimate(vtkSPHAlgorithm::ESTIMATE_NEIGHBORS);
+    filter->SetSmoothingLengthEstimate(job.NeighborRatio > 0.0 ? vtkSPHAlgorithm::ESTIMATE_NEIGHBORS
+                                                               : vtkSPHAlgorithm::ESTIMATE_SPACING);
     filter->SetNeighborRatio(job.NeighborRatio);
-  }
-  else if (!isArray && job.SmoothingLength == "estimate")
-  {
-    filter->EstimateSmoothingLengthOn();
-  }
-  else if (IsConstant(job.SmoothingLength, particles, value))
-  {
-    filter->SetSmoothingLength(value);
   }
   else
   {
-    filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
+    IsConstant(job.SmoothingLength, particles, value)
+      ? filter->SetSmoothingLength(value)
+      : filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
   }
   IsConstant(job.Mass, particles, value) ? filter->SetMass(value)
                                          : filter->SetMassArrayName(job.Mass.c_str());
@@ -404,9 +399,9 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
 }
 
 std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
-  vtkPointSet* particles, Picture& picture, ColorScale& colors)
+  vtkPointSet* particles, const Picture& picture, ColorScale& colors)
 {
   colors.Suggest(surface, sharing.Options.Surface->GetIsoValueArrayName());
   colors.Include(surface);
-  return picture.Draw(file, surface, particles, colors);
+  return picture(file, surface, particles, colors, -1);
 }

@@ -126,23 +126,8 @@ Identity Identify(const Target& target)
   return { folder.st_dev, folder.st_ino, fs::path(target.Path).filename().string() };
 }
 
-/// Returns false, and sets errno, if not all bytes could be written.
-bool WriteAll(int descriptor, const std::string& bytes)
-{
-  for (std::size_t done = 0; done < bytes.size();)
-  {
-    const ssize_t written = write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (written < 0 && errno != EINTR)
-    {
-      return false;
-    }
-    done += written > 0 ? static_cast<std::size_t>(written) : 0;
-  }
-  return true;
-}
-
 /// Sets mode, owner and group to those of the replaced file; for a new file, the umask decides.
-void SetAttributes(int descriptor, const Target& target)
+bool SetAttributes(int descriptor, const Target& target)
 {
   const struct stat& old = target.Status;
   const mode_t mask = umask(0);
@@ -155,9 +140,30 @@ void SetAttributes(int descriptor, const Target& target)
     const bool sameOwner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
     mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
   }
-  Check(fchmod(descriptor, mode) == 0, target.Name);
+  return fchmod(descriptor, mode) == 0;
 }
 
+/// Writes all bytes to the target, or to the file that will replace it, and closes the file. Returns
+/// false, and sets errno, if the bytes were not stored.
+bool Store(int descriptor, const std::string& bytes, const Target& target)
+{
+  bool isGood = descriptor >= 0;
+  for (std::size_t done = 0; isGood && done < bytes.size();)
+  {
+    const ssize_t written = write(descriptor, bytes.data() + done, bytes.size() - done);
+    isGood = written >= 0 || errno == EINTR;
+    done += written > 0 ? static_cast<std::size_t>(written) : 0;
+  }
+  // Some file systems have no fsync, and some report a full disk only here.
+  isGood = isGood &&
+    (!target.IsReplaced() ||
+      (SetAttributes(descriptor, target) &&
+        (fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP)));
+  const int problem = errno;
+  const bool isClosed = descriptor < 0 || close(descriptor) == 0;
+  errno = isGood ? errno : problem;
+  return isGood && isClosed;
+}
 }
 
 /// An output under way: a new file that will replace the target, or bytes for a target that is
@@ -165,8 +171,7 @@ void SetAttributes(int descriptor, const Target& target)
 struct OutputFiles::Output
 {
   Target Place;
-  std::string Bytes;
-  std::unique_ptr<TemporaryFile> File;
+  std::string Bytes, File;
 };
 
 void CheckOutputs(const std::vector<std::string>& outputs)
@@ -196,49 +201,49 @@ void CheckOutputs(const std::vector<std::string>& outputs)
 }
 
 OutputFiles::OutputFiles() = default;
-OutputFiles::~OutputFiles() = default;
+
+OutputFiles::~OutputFiles()
+{
+  for (const Output& output : this->Files)
+  {
+    if (!output.File.empty())
+    {
+      EndTemporary(output.File);
+    }
+  }
+}
 
 void OutputFiles::Write(const std::string& file, const std::string& bytes)
 {
-  Output output = { Find(file), "", nullptr };
+  this->Files.push_back({ Find(file), "", "" });
+  Output& output = this->Files.back();
   if (!output.Place.IsReplaced())
   {
     output.Bytes = bytes;
+    return;
   }
-  else
-  {
-    const std::string& path = output.Place.Path;
-    const std::size_t longest = 200; // a name has at most 255 bytes
-    output.File = std::make_unique<TemporaryFile>(
-      FolderOf(path) + "/." + fs::path(path).filename().string().substr(0, longest) + ".");
-    const int descriptor = output.File->GetDescriptor();
-    Check(descriptor >= 0 && WriteAll(descriptor, bytes), file);
-    SetAttributes(descriptor, output.Place);
-    // Some file systems have no fsync, and some report a full disk only here.
-    Check(fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP, file);
-    Check(output.File->Close(), file);
-  }
-  this->Files.push_back(std::move(output));
+  const fs::path path = output.Place.Path;
+  const std::size_t longest = 200; // a name has at most 255 bytes
+  output.File = FolderOf(path) + "/." + path.filename().string().substr(0, longest) + ".";
+  const int descriptor = MakeTemporary(output.File);
+  Check(Store(descriptor, bytes, output.Place), file);
 }
 
 void OutputFiles::Commit()
 {
-  for (const Output& output : this->Files)
+  for (Output& output : this->Files)
   {
     const Target& target = output.Place;
-    if (output.File)
+    if (target.IsReplaced())
     {
-      Check(output.File->TakePlaceOf(target.Path), target.Name);
+      Check(EndTemporary(output.File, target.Path), target.Name);
+      output.File.clear();
       continue;
     }
     const int descriptor = target.Descriptor >= 0
       ? fcntl(target.Descriptor, F_DUPFD_CLOEXEC, 0)
       : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    const bool isWritten = descriptor >= 0 && WriteAll(descriptor, output.Bytes);
-    const int problem = errno;
-    const bool isClosed = descriptor < 0 || close(descriptor) == 0;
-    errno = isWritten ? errno : problem;
-    Check(isWritten && isClosed, target.Name);
+    Check(Store(descriptor, output.Bytes, target), target.Name);
   }
   this->Files.clear();
 }

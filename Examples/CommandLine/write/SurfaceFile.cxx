@@ -13,7 +13,6 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
-#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -57,25 +56,16 @@ void Put(char*& next, T value)
   next += sizeof(value);
 }
 
-void PutVector(char*& next, const double (&vector)[3])
-{
-  for (const double value : vector)
-  {
-    Put(next, static_cast<float>(value));
-  }
-}
-
-/// Calls use(corners) for each triangle.
+/// Calls use(count, points) for each cell.
 template <typename F>
-void ForTriangles(vtkPolyData* surface, const F& use)
+void ForCells(vtkCellArray* cells, const F& use)
 {
-  vtkCellArray* triangles = surface->GetPolys();
   vtkIdType count = 0;
-  const vtkIdType* corners = nullptr;
-  for (vtkIdType i = 0; i < triangles->GetNumberOfCells(); ++i)
+  const vtkIdType* points = nullptr;
+  for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i)
   {
-    triangles->GetCellAtId(i, count, corners);
-    use(corners);
+    cells->GetCellAtId(i, count, points);
+    use(count, points);
   }
 }
 
@@ -85,73 +75,63 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
-  const vtkIdType count = surface->GetNumberOfPolys();
-  char* next = Grow(bytes, 4 + 50 * static_cast<std::size_t>(count));
-  Put(next, static_cast<std::uint32_t>(count));
-  ForTriangles(surface,
-    [&next, surface](const vtkIdType* corners)
+  const vtkIdType triangles = surface->GetNumberOfPolys();
+  char* next = Grow(bytes, 4 + 50 * static_cast<std::size_t>(triangles));
+  Put(next, static_cast<std::uint32_t>(triangles));
+  ForCells(surface->GetPolys(),
+    [&next, surface](vtkIdType, const vtkIdType* corners)
     {
-      double points[3][3], normal[3];
+      double vectors[4][3]; // the normal, and the corners
       for (int k = 0; k < 3; ++k)
       {
-        surface->GetPoint(corners[k], points[k]);
+        surface->GetPoint(corners[k], vectors[k + 1]);
       }
-      vtkTriangle::ComputeNormal(points[0], points[1], points[2], normal);
-      PutVector(next, normal);
-      for (const auto& point : points)
+      vtkTriangle::ComputeNormal(vectors[1], vectors[2], vectors[3], vectors[0]);
+      for (const auto& vector : vectors)
       {
-        PutVector(next, point);
+        for (const double value : vector)
+        {
+          Put(next, static_cast<float>(value));
+        }
       }
       Put(next, std::uint16_t(0));
     });
 }
 
-/// Appends a word and a vector. With nine digits, every float is read back exactly.
-void AppendLine(std::string& text, const char* word, const double (&vector)[3])
-{
-  char line[96];
-  std::snprintf(line, sizeof(line), "%s %.9g %.9g %.9g\n", word, vector[0], vector[1], vector[2]);
-  text += line;
-}
-
+/// Writes .obj. With nine digits, every float is read back exactly.
 void WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
+  const auto addVectors = [&bytes](const char* word, vtkDataArray* vectors)
+  {
+    for (vtkIdType i = 0; vectors && i < vectors->GetNumberOfTuples(); ++i)
+    {
+      char line[96];
+      double v[3];
+      vectors->GetTuple(i, v);
+      std::snprintf(line, sizeof(line), "%s %.9g %.9g %.9g\n", word, v[0], v[1], v[2]);
+      bytes += line;
+    }
+  };
+  const auto addCells = [&bytes](const char* word, vtkCellArray* cells, bool haveNormals)
+  {
+    ForCells(cells,
+      [&](vtkIdType count, const vtkIdType* points)
+      {
+        bytes += word;
+        for (vtkIdType k = 0; k < count; ++k)
+        {
+          const std::string number = std::to_string(points[k] + 1);
+          bytes += " " + number + (haveNormals ? "//" + number : "");
+        }
+        bytes += "\n";
+      });
+  };
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
   bytes = "# by marching-correctors\n";
-  double vector[3];
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    surface->GetPoint(i, vector);
-    AppendLine(bytes, "v", vector);
-  }
-  for (vtkIdType i = 0; normals && i < surface->GetNumberOfPoints(); ++i)
-  {
-    normals->GetTuple(i, vector);
-    AppendLine(bytes, "vn", vector);
-  }
-  ForTriangles(surface,
-    [&](const vtkIdType* corners)
-    {
-      bytes += "f";
-      for (int k = 0; k < 3; ++k)
-      {
-        const std::string number = std::to_string(corners[k] + 1);
-        bytes += " " + number + (normals ? "//" + number : "");
-      }
-      bytes += "\n";
-    });
-  vtkNew<vtkIdList> line;
-  const vtkIdType lines = surface->GetNumberOfPolys() > 0 ? 0 : surface->GetNumberOfLines();
-  for (vtkIdType l = 0; l < lines; ++l)
-  {
-    surface->GetLines()->GetCellAtId(l, line);
-    bytes += "l";
-    for (const vtkIdType point : *line)
-    {
-      bytes += " " + std::to_string(point + 1);
-    }
-    bytes += "\n";
-  }
+  addVectors("v", surface->GetPoints() ? surface->GetPoints()->GetData() : nullptr);
+  addVectors("vn", normals);
+  surface->GetNumberOfPolys() > 0 ? addCells("f", surface->GetPolys(), normals)
+                                  : addCells("l", surface->GetLines(), false);
 }
 
 /// A component of an array, under a name that no other column has, because readers go by names.
@@ -268,8 +248,8 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
       types[c].PutValue(next, array->GetComponent(i, columns[c].Component));
     }
   }
-  ForTriangles(surface,
-    [&next](const vtkIdType* corners)
+  ForCells(surface->GetPolys(),
+    [&next](vtkIdType, const vtkIdType* corners)
     {
       Put(next, static_cast<std::uint8_t>(3));
       for (int k = 0; k < 3; ++k)
@@ -304,20 +284,21 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     bytes += (column.Array ? "," : "") + TableField(column.Name);
   }
   bytes += "\n";
-  vtkNew<vtkIdList> line;
-  for (vtkIdType l = 0; l < surface->GetNumberOfLines(); ++l)
-  {
-    surface->GetLines()->GetCellAtId(l, line);
-    for (const vtkIdType point : *line)
+  vtkIdType line = 0;
+  ForCells(surface->GetLines(),
+    [&](vtkIdType count, const vtkIdType* points)
     {
-      for (const Column& column : columns)
+      for (vtkIdType k = 0; k < count; ++k)
       {
-        bytes += column.Array ? "," + TableField(column.Array, point, column.Component)
-                              : std::to_string(l);
+        for (const Column& column : columns)
+        {
+          bytes += column.Array ? "," + TableField(column.Array, points[k], column.Component)
+                                : std::to_string(line);
+        }
+        bytes += "\n";
       }
-      bytes += "\n";
-    }
-  }
+      ++line;
+    });
 }
 
 /// Describes an array. VTK's XML name of its type tells the size.

@@ -479,6 +479,10 @@ static void test_profile(void** state)
   CORE_SURFACE kept = core_extract(full, &input, &options);
   assert_true(core_hash(&kept) == expected);
   remove(path);
+  setenv("MCOR_PROFILE", "/dev/full", 1);
+  CORE_CONTEXT no_space = NULL;
+  assert_int_equal(mcor_create_context(NULL, &no_space), MCOR_INVALID_ARGUMENT);
+  assert_true(core_told(no_space, "PROFILE_FILE|/dev/full|No space left"));
   setenv("MCOR_PROFILE", "/nonexistent/profile.csv", 1);
   CORE_CONTEXT none = NULL;
   const mcor_status status = mcor_create_context(NULL, &none);

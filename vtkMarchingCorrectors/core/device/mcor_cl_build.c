@@ -67,34 +67,10 @@ static void* mcor_build_thread(void* data)
   return NULL;
 }
 
-static mcor_status mcor_list_jobs(
-  mcor_context* context, struct mcor_builder* builder, int programs, int* count)
-{
-  mcor_cl* cl = &context->cl;
-  for (size_t i = 0; i < MCOR_BUILT_AHEAD; ++i)
-  {
-    const mcor_program number = mcor_build_order[i];
-    mcor_build_job* job = &builder->jobs[number];
-    const char* sources[MCOR_SOURCE_LIMIT];
-    if (cl->programs[number] || !(mcor_parts_of(cl, number) & programs))
-    {
-      continue;
-    }
-    for (int s = mcor_program_sources(cl, mcor_parts_of(cl, number), sources); s > 0; --s)
-    {
-      job->size += (double)strlen(sources[s - 1]);
-    }
-    mcor_program_options(cl, number, job->options, sizeof job->options);
-    MCOR_TRY(mcor_make_program(context, number, &job->program));
-    ++*count;
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs)
 {
   mcor_cl* cl = &context->cl;
-  const int threads = mcor_limit_threads(mcor_processors(1));
+  int threads = mcor_limit_threads(mcor_processors(1)), jobs = 0;
   if (mcor_is_native(cl) || threads < 2)
   {
     return MCOR_OK;
@@ -106,9 +82,26 @@ mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int
   builder->device = cl->device;
   pthread_mutex_init(&builder->lock, NULL);
   pthread_cond_init(&builder->done, NULL);
-  int count = 0;
-  MCOR_TRY(mcor_list_jobs(context, builder, programs, &count));
-  while (builder->thread_count < threads && builder->thread_count < count &&
+  for (size_t i = 0; i < MCOR_BUILT_AHEAD; ++i)
+  {
+    const mcor_program number = mcor_build_order[i];
+    const int parts = mcor_parts_of(cl, number);
+    mcor_build_job* job = &builder->jobs[number];
+    const char* sources[MCOR_SOURCE_LIMIT];
+    if (cl->programs[number] || !(parts & programs))
+    {
+      continue;
+    }
+    for (int s = mcor_program_sources(cl, parts, sources); s > 0; --s)
+    {
+      job->size += (double)strlen(sources[s - 1]);
+    }
+    mcor_program_options(cl, number, job->options, sizeof job->options);
+    MCOR_TRY(mcor_make_program(context, number, &job->program));
+    ++jobs;
+  }
+  threads = threads < jobs ? threads : jobs;
+  while (builder->thread_count < threads &&
     pthread_create(&builder->threads[builder->thread_count], NULL, mcor_build_thread, builder) == 0)
   {
     ++builder->thread_count;

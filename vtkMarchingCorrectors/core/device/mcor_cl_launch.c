@@ -172,14 +172,13 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   for (size_t i = 0; i < arg_count; ++i)
   {
     const mcor_arg* arg = args + i;
-    const cl_int integer = arg->integer;
     const cl_float single = (cl_float)arg->real;
     const void* const value = arg->kind == MCOR_ARG_BUFFER ? (const void*)&arg->buffer->mem
-      : arg->kind == MCOR_ARG_INT                          ? (const void*)&integer
+      : arg->kind == MCOR_ARG_INT                          ? (const void*)&arg->integer
       : cl->real_size == sizeof single                     ? (const void*)&single
                                                            : &arg->real;
     const size_t size = arg->kind == MCOR_ARG_BUFFER ? sizeof(cl_mem)
-      : arg->kind == MCOR_ARG_INT                    ? sizeof integer
+      : arg->kind == MCOR_ARG_INT                    ? sizeof(cl_int)
                                                      : cl->real_size;
     MCOR_CL_TRY(context, clSetKernelArg(kernel->kernel, (cl_uint)i, size, value), name);
   }

@@ -5,6 +5,7 @@
  * PoCL's. */
 
 #include "core_fixture.h"
+#include "mcor_cl_memory.h"
 
 #include <stdlib.h>
 
@@ -85,7 +86,8 @@ static void move_array(
   free(bytes);
 }
 
-/* Arrays in buffers give the same surfaces as the same arrays in the host's memory. */
+/* Arrays in buffers give the same surfaces as the same arrays in the host's memory. On a CPU nothing is copied that has no other
+ * bytes between its values. */
 static void test_input(void** state)
 {
   mcor_context* context = *state;
@@ -110,6 +112,14 @@ static void test_input(void** state)
     other.positions.components = in_rows ? 0 : 3; /* positions always have 3 */
     other.attributes = &attribute;
     other.attribute_count = 1;
+    mcor_sight sight;
+    cl_int error;
+    CORE_OK(context, mcor_see_input(context, &other, &sight));
+    void* const view = clEnqueueMapBuffer(own.queue, other.positions.memory, CL_TRUE, CL_MAP_READ,
+      other.positions.offset, sizeof(double), 0, NULL, NULL, &error);
+    assert_true((sight.input.positions.data == view) == !in_rows);
+    clEnqueueUnmapMemObject(own.queue, other.positions.memory, view, 0, NULL, NULL);
+    mcor_end_sight(&sight);
     CORE_SURFACE surface = core_extract(context, &other, &options);
     assert_int_equal(surface.point_count, expected.point_count);
     assert_memory_equal(surface.points, expected.points, 24 * (size_t)surface.point_count);

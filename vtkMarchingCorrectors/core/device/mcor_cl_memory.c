@@ -1,28 +1,45 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays in OpenCL buffers of the caller's. The host checks and measures particles, so it reads
- * these buffers, by queues in their own contexts. */
+/* Arrays in OpenCL buffers of the caller's. The host checks and measures particles, so it maps these
+ * buffers, or copies what has other bytes between values, by queues in their own contexts. */
 
 #include "mcor_cl_memory.h"
 #include "mcor_cl_call.h"
 #include "mcor_input.h"
+
+/* A buffer of the caller's that the host sees. */
+typedef struct mcor_seen
+{
+  cl_command_queue queue;
+  cl_mem mapped; /* NULL: values are a copy */
+  void* values;
+} mcor_seen;
 
 static size_t mcor_size_of(mcor_type type)
 {
   return type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
 }
 
-/* Reads the values of an array's buffer to `to`, or writes them from `from`; the other one is NULL.
- * What lies between values stays. */
-static mcor_status mcor_transfer(
-  mcor_context* context, const mcor_array* array, int64_t count, void* to, const void* from)
+/* Returns the bytes of one particle's values. */
+static size_t mcor_width_of(const mcor_array* array)
+{
+  return mcor_size_of(array->type) * (size_t)mcor_components(array);
+}
+
+/* Returns the bytes from one particle's values to the next one's. */
+static size_t mcor_stride_of(const mcor_array* array)
+{
+  return array->stride ? array->stride : mcor_width_of(array);
+}
+
+/* Makes a queue in the own context of a buffer that has room for an array. */
+static mcor_status mcor_reach_memory(
+  mcor_context* context, const mcor_array* array, int64_t count, cl_command_queue* queue)
 {
   const cl_mem memory = array->memory;
-  const size_t width = mcor_size_of(array->type) * (size_t)mcor_components(array);
-  const size_t stride = array->stride ? array->stride : width, first = array->offset;
-  const size_t rest = (size_t)(count - 1), bytes = (size_t)count * width;
-  const size_t at[3] = { first, 0, 0 }, none[3] = { 0 }, region[3] = { width, (size_t)count, 1 };
+  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
+  const size_t first = array->offset, rest = (size_t)(count - 1);
   cl_context own = NULL;
   size_t size = 0, found = 0;
   cl_device_id devices[64];
@@ -36,22 +53,32 @@ static mcor_status mcor_transfer(
     "clGetMemObjectInfo");
   MCOR_CL_TRY(context, clGetContextInfo(own, CL_CONTEXT_DEVICES, sizeof devices, devices, &found),
     "clGetContextInfo");
-  const cl_command_queue queue = clCreateCommandQueue(own, devices[0], 0, &error);
+  *queue = clCreateCommandQueue(own, devices[0], 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
-  if (stride == width)
+  return MCOR_OK;
+}
+
+static mcor_status mcor_see(
+  mcor_context* context, mcor_array* array, int64_t count, mcor_seen* seen)
+{
+  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
+  const size_t at[3] = { array->offset, 0, 0 }, none[3] = { 0 }, bytes = (size_t)count * width;
+  const size_t rows[3] = { width, (size_t)count, 1 };
+  cl_int error;
+  MCOR_TRY(mcor_reach_memory(context, array, count, &seen->queue));
+  if (stride == width && array->offset % mcor_size_of(array->type) == 0)
   {
-    error = to ? clEnqueueReadBuffer(queue, memory, CL_TRUE, first, bytes, to, 0, NULL, NULL)
-               : clEnqueueWriteBuffer(queue, memory, CL_TRUE, first, bytes, from, 0, NULL, NULL);
+    array->data = seen->values = clEnqueueMapBuffer(
+      seen->queue, array->memory, CL_TRUE, CL_MAP_READ, *at, bytes, 0, NULL, NULL, &error);
+    MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
+    seen->mapped = array->memory;
+    return MCOR_OK;
   }
-  else
-  {
-    error = to ? clEnqueueReadBufferRect(
-                   queue, memory, CL_TRUE, at, none, region, stride, 0, width, 0, to, 0, NULL, NULL)
-               : clEnqueueWriteBufferRect(queue, memory, CL_TRUE, at, none, region, stride, 0,
-                   width, 0, from, 0, NULL, NULL);
-  }
-  clReleaseCommandQueue(queue);
-  MCOR_CL_TRY(context, error, to ? "clEnqueueReadBuffer" : "clEnqueueWriteBuffer");
+  array->data = seen->values = malloc(bytes);
+  MCOR_TRY(mcor_allocated(context, seen->values != NULL));
+  error = clEnqueueReadBufferRect(seen->queue, array->memory, CL_TRUE, at, none, rows, stride, 0,
+    width, 0, seen->values, 0, NULL, NULL);
+  MCOR_CL_TRY(context, error, "clEnqueueReadBufferRect");
   return MCOR_OK;
 }
 
@@ -83,9 +110,9 @@ mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_
   {
     return MCOR_OK;
   }
-  sight->copies = calloc((size_t)most, sizeof *sight->copies);
+  sight->seen = calloc((size_t)most, sizeof *sight->seen);
   sight->attributes = calloc((size_t)attributes + 1, sizeof *sight->attributes);
-  MCOR_TRY(mcor_allocated(context, sight->copies && sight->attributes));
+  MCOR_TRY(mcor_allocated(context, sight->seen && sight->attributes));
   for (int i = 0; i < attributes; ++i)
   {
     sight->attributes[i] = input->attributes[i];
@@ -97,12 +124,7 @@ mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_
       i < MCOR_INPUT_ARRAYS ? arrays[i] : sight->attributes + (i - MCOR_INPUT_ARRAYS);
     if (mcor_is_unseen(array))
     {
-      const size_t values = (size_t)input->count * (size_t)mcor_components(array);
-      void* copy = sight->copies[sight->count++] = malloc(values * mcor_size_of(array->type));
-      MCOR_TRY(mcor_allocated(context, copy != NULL));
-      mcor_use_large_pages(copy, values * mcor_size_of(array->type));
-      MCOR_TRY(mcor_transfer(context, array, input->count, copy, NULL));
-      array->data = copy;
+      MCOR_TRY(mcor_see(context, array, input->count, &sight->seen[sight->count++]));
     }
   }
   return MCOR_OK;
@@ -112,9 +134,22 @@ void mcor_end_sight(mcor_sight* sight)
 {
   for (int i = 0; i < sight->count; ++i)
   {
-    free(sight->copies[i]);
+    const mcor_seen* seen = sight->seen + i;
+    if (seen->mapped)
+    {
+      clEnqueueUnmapMemObject(seen->queue, seen->mapped, seen->values, 0, NULL, NULL);
+      clFinish(seen->queue);
+    }
+    else
+    {
+      free(seen->values);
+    }
+    if (seen->queue)
+    {
+      clReleaseCommandQueue(seen->queue);
+    }
   }
-  free(sight->copies);
+  free(sight->seen);
   free(sight->attributes);
   *sight = (mcor_sight){ .count = 0 };
 }
@@ -153,10 +188,23 @@ mcor_status mcor_store(
   {
     return MCOR_OK;
   }
+  cl_command_queue queue = NULL;
+  MCOR_TRY(mcor_reach_memory(context, to, count, &queue));
   void* made;
   const void* values = mcor_convert(from, to->type, count * components, &made);
+  const size_t width = mcor_width_of(to), stride = mcor_stride_of(to);
+  const size_t at[3] = { to->offset, 0, 0 }, none[3] = { 0 }, bytes = (size_t)count * width;
+  const size_t rows[3] = { width, (size_t)count, 1 };
   mcor_status status = mcor_allocated(context, values != NULL);
-  MCOR_THEN(status, mcor_transfer(context, to, count, NULL, values));
+  if (status == MCOR_OK)
+  {
+    const cl_int error = stride == width
+      ? clEnqueueWriteBuffer(queue, to->memory, CL_TRUE, *at, bytes, values, 0, NULL, NULL)
+      : clEnqueueWriteBufferRect(
+          queue, to->memory, CL_TRUE, at, none, rows, stride, 0, width, 0, values, 0, NULL, NULL);
+    status = error == CL_SUCCESS ? MCOR_OK : mcor_cl_fail(context, error, "clEnqueueWriteBuffer");
+  }
   free(made);
+  clReleaseCommandQueue(queue);
   return status;
 }

@@ -109,6 +109,27 @@ particle_set core_make_block(
   return set;
 }
 
+particle_set core_make_splash(int n, double jitter, uint64_t seed)
+{
+  const int block = n * n * n, side = 2 * n, sheet = block + side * side, thread = sheet + side;
+  particle_set set = particle_set_make(thread + 4);
+  for (int i = 0; i < set.count; ++i)
+  {
+    const int s = i - block;
+    const double in_block[3] = { i % n, i / n % n, i / (n * n) },
+                 in_sheet[3] = { s % side, s / side, n + 6 }, in_thread[3] = { i - sheet, -8, 0 },
+                 drop[3] = { 8 * (i - thread), -20, 0 };
+    const double* at = i < block ? in_block : i < sheet ? in_sheet : i < thread ? in_thread : drop;
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = at[a] + jitter * (random_unit(&seed) - 0.5);
+    }
+    set.volume[i] = 1;
+    set.scalar[i] = core_slope(set.position + 3 * i) + random_unit(&seed);
+  }
+  return set;
+}
+
 particle_set core_make_graded(double ratio, double step)
 {
   particle_set set = particle_set_make(60000);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the library with the oracle on particle sets from formulas: every kernel, field, cube
- * factor and h scale on one set; every set with its fields; ways to give volumes and smoothing
+/* Compares the library with the oracle on particle sets from formulas: every kernel, field and cube
+ * factor on one set; every set with its fields; ways to give volumes and smoothing
  * lengths; scaled and shifted data; single and double precision. */
 
 #include "oracle_case.h"
@@ -107,7 +107,7 @@ static void run_variant(
   particle_set_free(&set);
 }
 
-/* ---- every combination of kernel, field, cube factor and h scale ---- */
+/* ---- every combination of kernel, field and cube factor; h scales take turns, but the first kernel has all ---- */
 
 static void run_matrix(oracle_suite* suite)
 {
@@ -122,6 +122,10 @@ static void run_matrix(oracle_suite* suite)
     v.field = (mcor_field)(n % 18 / 6);
     v.cube_factor = cube_factors[n % 6 / 3];
     v.h_scale = h_scales[n % 3];
+    if (v.kernel != MCOR_CUBIC_SPLINE && n % 3 != (n / 3 + n / 18) % 3)
+    {
+      continue;
+    }
     /* there are gaps between the particles */
     v.rough = v.kernel == MCOR_M_PRIME_4 && v.h_scale < 1.0;
     run_variant(suite, &v, NULL);

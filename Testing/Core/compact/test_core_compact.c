@@ -7,27 +7,13 @@
 #include "core_parts.h"
 #include "core_period.h"
 
-/* Makes a block, a sheet, a thread and lone drops. */
 static particle_set make_splash(double jitter, uint64_t seed)
 {
-  const int n = 10, side = 20;
-  particle_set set = particle_set_make((int64_t)n * n * n + side * side + side + 4);
-  for (int64_t p = 0; p < set.count; ++p)
+  particle_set set = core_make_splash(10, jitter, seed);
+  for (int64_t i = 0; i < 3 * set.count; ++i)
   {
-    const int i = (int)p, s = i - n * n * n, t = s - side * side, d = t - side;
-    const double block[3] = { i % n, i / n % n, i / (n * n) };
-    const double sheet[3] = { s % side, s / side, n + 6.0 };
-    const double other[3] = { d < 0 ? t : 8.0 * d, d < 0 ? -8 : -20, 0 };
-    for (int a = 0; a < 3; ++a)
-    {
-      set.position[3 * p + a] = (s < 0      ? block
-                                    : t < 0 ? sheet
-                                            : other)[a] -
-        5 + jitter * (random_unit(&seed) - 0.5);
-    }
-    set.smoothing_length[p] = 1.2;
-    set.volume[p] = 1;
-    set.scalar[p] = core_slope(set.position + 3 * p) + random_unit(&seed);
+    set.position[i] -= 5;
+    set.smoothing_length[i / 3] = 1.2;
   }
   return set;
 }
@@ -110,7 +96,7 @@ static const compact_case cases[] = {
     MCOR_FLOAT32, { 0 }, 0.8, 0.0002 },
   { "in double precision", make_rough, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.6, 0, 0,
     MCOR_TOPOLOGY_TABLE, MCOR_FLOAT64, { 0 }, 0.8, 0.002 },
-  { "scalar", make_smooth, MCOR_SHEPARD, { 4, 0 }, 0.4, 0, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32,
+  { "scalar", make_smooth, MCOR_SHEPARD, { 8, 4 }, 0.4, 0, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32,
     { 0 }, 0.65, 0.2 },
   { "noise", make_noise, MCOR_SHEPARD, { 0.1, 0.1 }, 0.9, 0, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32,
     { 0 }, 0.85, 0.4 },

@@ -8,38 +8,12 @@
 
 #define WIDEST 2.0
 
-/* Makes a block of n x n x n, a sheet above it, a thread, and lone drops. */
 static particle_set make_scene(int n, double jitter, uint64_t seed)
 {
-  const int side = 2 * n;
-  particle_set set = particle_set_make((int64_t)n * n * n + side * side + side + 4);
-  int64_t p = 0;
-  for (int i = 0; i < n * n * n; ++i, ++p)
-  {
-    set.position[3 * p] = i % n;
-    set.position[3 * p + 1] = i / n % n;
-    set.position[3 * p + 2] = i / (n * n);
-  }
-  for (int i = 0; i < side * side; ++i, ++p)
-  {
-    set.position[3 * p] = i % side;
-    set.position[3 * p + 1] = i / side;
-    set.position[3 * p + 2] = n + 6;
-  }
-  for (int i = 0; i < side + 4; ++i, ++p)
-  {
-    set.position[3 * p] = i < side ? i : 8 * (i - side);
-    set.position[3 * p + 1] = i < side ? -8 : -20;
-    set.position[3 * p + 2] = 0;
-  }
+  particle_set set = core_make_splash(n, jitter, seed);
   for (int64_t i = 0; i < set.count; ++i)
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      set.position[3 * i + a] += jitter * (random_unit(&seed) - 0.5);
-    }
     set.smoothing_length[i] = 1.1;
-    set.volume[i] = 1;
     set.scalar[i] = set.position[3 * i];
   }
   return set;

@@ -18,8 +18,13 @@
  * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
  * h_median. If the watched particles lie in a tilted plane, it also finds whether all others do. */
 
+#define MCOR_WATCH_CELLS 64
 typedef struct mcor_watch
 {
+  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
+   * None reaches the outermost intervals. */
+  double low[3], per_length[3];
+  uint32_t reached[3][MCOR_WATCH_CELLS];
   int count;
   const mcor_sample* sample;
   double support;
@@ -30,6 +35,14 @@ typedef struct mcor_watch
    * the sign reversed. */
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
+
+/* Written to be vectorised. */
+static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
+{
+  const double cell = (x - watch->low[axis]) * watch->per_length[axis];
+  const double above = cell > 0 ? cell : 0;
+  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
+}
 
 /* ---- A plane that is tilted in space ---- */
 
@@ -83,8 +96,8 @@ static bool mcor_has_normal(const mcor_watch* watch)
 }
 
 /* Watches the positions of a chunk. low, high: their bounds. */
-MCOR_VECTOR_LOOPS static void mcor_watch_positions(mcor_watch* watch, int slice, int count,
-  double x[3][MCOR_CHUNK], const double low[3], const double high[3])
+static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
+  const double low[3], const double high[3])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   double* beyond = watch->beyond[slice];
@@ -94,32 +107,45 @@ MCOR_VECTOR_LOOPS static void mcor_watch_positions(mcor_watch* watch, int slice,
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  for (int s = 0; s < watch->count; ++s)
+  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* those that may reach the chunk, each particle */
+  for (int s = 0; s < watch->count && count > 0; ++s)
   {
     const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
-    bool reaches = count > 0;
+    bool reaches = true;
     for (int a = 0; a < 3; ++a)
     {
       reaches = reaches && low[a] - at[a] <= reach && at[a] - high[a] <= reach;
     }
-    if (!reaches)
-    {
-      continue;
-    }
-    double square[MCOR_CHUNK], unused = DBL_MAX;
-    int64_t neighbours = 0;
+    chunk |= (uint32_t)reaches << s;
+  }
+  if (!chunk)
+  {
+    return;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
     for (int i = 0; i < count; ++i)
     {
-      const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
-      square[i] = dx * dx + dy * dy + dz * dz;
-      neighbours += square[i] < reach * reach;
+      const uint32_t along = watch->reached[a][mcor_watch_cell(watch, a, x[a][i])];
+      reached[i] = a > 0 ? reached[i] & along : along;
     }
-    for (int i = 0; i < count; ++i) /* a particle at the same place is not the nearest one */
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    uint32_t bits = reached[i];
+    for (int s = 0; bits; ++s, bits >>= 1)
     {
-      square[i] = square[i] > 0 ? square[i] : DBL_MAX;
+      if (!(bits & 1))
+      {
+        continue;
+      }
+      const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
+      const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
+      const double square = dx * dx + dy * dy + dz * dz;
+      double* nearest = &watch->nearest[slice][s];
+      watch->neighbours[slice][s] += square < reach * reach;
+      *nearest = square > 0 && square < *nearest ? square : *nearest;
     }
-    watch->neighbours[slice][s] += neighbours;
-    mcor_widen_range(square, count, &watch->nearest[slice][s], &unused);
   }
 }
 
@@ -177,6 +203,28 @@ static void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
   *watch = (mcor_watch){ .sample = fluid->of,
     .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
     .support = mcor_support_factor(context->run.options->sph_kernel) };
+  for (int a = 0; a < 3; ++a)
+  {
+    double low = DBL_MAX, high = -DBL_MAX;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double reach = watch->support * watch->sample[s].h;
+      low = fmin(low, watch->sample[s].x[a] - reach);
+      high = fmax(high, watch->sample[s].x[a] + reach);
+    }
+    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
+    watch->low[a] = low - cell;
+    watch->per_length[a] = cell > 0 ? 1 / cell : 0;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double x = watch->sample[s].x[a], reach = watch->support * watch->sample[s].h;
+      const int last = mcor_watch_cell(watch, a, x + reach);
+      for (int c = mcor_watch_cell(watch, a, x - reach); c <= last; ++c)
+      {
+        watch->reached[a][c] |= UINT32_C(1) << s;
+      }
+    }
+  }
   for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
   {
     watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;

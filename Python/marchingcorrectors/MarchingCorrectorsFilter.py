@@ -414,16 +414,12 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._warn_once("unused", particles.unused)
             if choice.DetectPeriod and not period:
                 raise Unusable(say("CELL_TILTED" if cell else "NO_PERIOD"))
-        except (Unusable, Error) as sentence:
-            if getattr(sentence, "particles", None):
-                self._note(sentence.particles)
-            self._fail(sentence.args[0])
-            return
-        try:
             self._extract(particles, options, output)
         except Cancelled:
             pass
-        except Error as sentence:
+        except (Unusable, Error) as sentence:
+            if getattr(sentence, "particles", None):
+                self._note(sentence.particles)
             self._fail(sentence.args[0])
 
     def _note(self, particles):

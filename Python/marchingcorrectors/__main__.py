@@ -11,9 +11,9 @@ import signal
 import sys
 import warnings
 
-from ._command import COMMANDS, in_shell, run
+from ._command import COMMANDS, run
 from ._film import run_convert
-from ._library import Error
+from ._library import Error, in_shell
 
 
 def main(arguments):

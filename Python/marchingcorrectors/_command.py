@@ -15,7 +15,7 @@ from . import _film, _structs as c, io
 from ._call import Keywords, Ranges, own_keywords
 from ._find import Found
 from ._functions import free_surface, isosurface, probe
-from ._library import InvalidArgument, Sentence, lib, word_by
+from ._library import InvalidArgument, lib
 from ._meters import gauge
 from .io._outputs import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
@@ -86,8 +86,6 @@ OWN = {"--dp", "--coefh", "--walls", "--solids", "--threads", "--quiet"}
 OF = {"surface": {"--scalar", "--iso", "--free-surface", "--curvature", "--cubes", "--times", "--attributes", "--no-attributes"},
       "gauge": {"--iso", "--free-surface", "--gauge"}, "slice": {"--slice", "--resolution", "--attributes", "--no-attributes"},
       "line": {"--line", "--resolution", "--attributes", "--no-attributes"}}
-MEMBERS = {"estimate_smoothing_length": "--smoothing-length estimate",
-           **{member: option for option, (_, _, _, member) in c.PROGRAM.items() if member}}
 
 
 def keyword_of(option):
@@ -164,18 +162,6 @@ def describe_unknown(command, word):
         return f"there is no option {word}.{did_you_mean(word, options_of(command))}"
     others = [other for other in COMMANDS if word in options_of(other)]
     return f"{word} is for {' and '.join(others) or 'the program marching-correctors'}, not for {command}; leave it out"
-
-
-@word_by
-def option_word(name, value):
-    option = MEMBERS.get(name, "")
-    return option and (f"{option} {value}=VALUE" if value and name == "fluid" else f"{option} {value}".strip())
-
-
-def in_shell(failure):
-    """Returns a sentence with the program's words for options."""
-    sentence = failure.args[0] if failure.args else ""
-    return sentence.say(option_word) if isinstance(sentence, Sentence) else str(failure)
 
 
 def find_words(given, names, particles, command):

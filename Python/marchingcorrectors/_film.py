@@ -11,7 +11,7 @@ import numpy as np
 
 from . import io
 from ._between import between, frames
-from ._library import Error, InvalidArgument
+from ._library import Error, InvalidArgument, in_shell
 from ._spray import take_spray
 from ._surface import Surface
 from ._usd import Film, find_velocity, is_usd
@@ -61,7 +61,7 @@ def run(given, inputs, steps, make):
                     print(f"{given.output}: {label}, {said}", flush=True)
             except (Error, OSError) as error:
                 failed += 1
-                print(f"marchingcorrectors: step {i} ({label}): {error}", file=sys.stderr)
+                print(f"marchingcorrectors: step {i} ({label}): {in_shell(error)}", file=sys.stderr)
         made = film.steps
         if not made:
             raise InvalidArgument(f"{given.output} was not written, because none of its steps could be made.")

@@ -97,6 +97,22 @@ def _python_word(name, value):
     return "" if not known else name if not value else f"{name}={value}" if value[0].isdigit() or value == "True" else f'{name}="{value}"'
 
 
+MEMBERS = {"estimate_smoothing_length": "--smoothing-length estimate",
+           **{member: option for option, (_, _, _, member) in c.PROGRAM.items() if member}}
+
+
+@word_by
+def option_word(name, value):
+    option = MEMBERS.get(name, "")
+    return option and (f"{option} {value}=VALUE" if value and name == "fluid" else f"{option} {value}".strip())
+
+
+def in_shell(failure):
+    """Returns a sentence with the program's words for options."""
+    sentence = failure.args[0] if failure.args else ""
+    return sentence.say(option_word) if isinstance(sentence, Sentence) else str(failure)
+
+
 def fill_slots(code, text):
     """Returns a Sentence. text: bytes, with slots such as {cube_size}."""
     sentence = Sentence(take_text(lib.mcor_fill_slots(text, _python_word, None)))

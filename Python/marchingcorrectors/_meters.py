@@ -120,23 +120,23 @@ class Fluxes(Result):
         return f"<Fluxes: {len(self.names)} sections, {int((self.area > 0).sum())} in fluid>"
 
 
-def _numbers(values, shape, name, units=None):
-    array = contiguous(units.lengths(values, "section") if units else values, "section").astype(np.float64)
-    if array.shape != shape:
-        raise InvalidArgument(f"Section '{name}' has an array of the shape {array.shape} where it is {shape}. A section is "
-                              f"{FORMS}.")
-    return array
-
-
 def _as_section(section, name, units):
     """Returns a section's kind of shape, points (n, 3) and radius."""
+    def numbers(values, shape):
+        array = contiguous(values, "section").astype(np.float64)
+        if array.shape != shape:
+            raise InvalidArgument(f"Section '{name}' has an array of the shape {array.shape} where it is {shape}. A section is "
+                                  f"{FORMS}.")
+        return array
+
     kinds = c.ENUMS["mcor_section_shape"]
     if isinstance(section, (tuple, list)) and len(section) and isinstance(section[0], str):
+        lengths = [units.lengths(each, "section") for each in section[1:2] + section[3:]]
         if section[0] == "disc" and len(section) == 4:
-            points = [_numbers(section[1], (3,), name, units), _numbers(without_unit(section[2]), (3,), name)]
-            return kinds["MCOR_SECTION_DISC"], np.stack(points), float(_numbers(section[3], (1,), name, units)[0])
+            points = [numbers(lengths[0], (3,)), numbers(without_unit(section[2]), (3,))]
+            return kinds["MCOR_SECTION_DISC"], np.stack(points), float(numbers(lengths[1], (1,))[0])
         if section[0] == "box" and len(section) == 2:
-            return kinds["MCOR_SECTION_BOX"], np.ascontiguousarray(_numbers(section[1], (6,), name, units).reshape(3, 2).T), 0.0
+            return kinds["MCOR_SECTION_BOX"], np.ascontiguousarray(numbers(lengths[0], (6,)).reshape(3, 2).T), 0.0
         raise InvalidArgument(f"Section '{name}' begins with '{section[0]}'. A section is {FORMS}.")
     array = contiguous(units.lengths(section, "section"), "section").astype(np.float64)
     shape = {(3, 3): "RECTANGLE", (2, 3): "LINES"}.get(array.shape)

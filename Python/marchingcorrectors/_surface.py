@@ -247,9 +247,7 @@ def _save_ply(path, surface):
     lines = ["ply", "format binary_little_endian 1.0", "comment by marching-correctors", f"element vertex {len(surface.points)}",
              *(f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns.items()),
              f"element face {len(surface.triangles)}", "property list uchar uint vertex_indices", "end_header", ""]
-    points = np.zeros(len(surface.points), [(name, "<" + column.dtype.str[1:]) for name, column in columns.items()])
-    for name, column in columns.items():
-        points[name] = column
+    points = np.rec.fromarrays(list(columns.values()), [(name, "<" + column.dtype.str[1:]) for name, column in columns.items()])
     faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<u4", 3)])
     faces["count"], faces["corners"] = 3, surface.triangles
     with open(path, "wb") as file:

@@ -161,6 +161,8 @@ class Command(unittest.TestCase):
                                 ([*FLUID, "--memory-limit", "1"], "Choose a larger --cube-size")):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
+        self.run_it("surface", "a.usdc", *FLUID, "--memory-limit", "1", status=1)
+        self.assertRegex(self.said, "step 0 .*Choose a larger --cube-size")
         for words, sentence in ((["--screenshot", "a.png"], "--screenshot is for the program marching-correctors, not for surface; leave it out"),
                                 (["--iso", "1", "--iso", "2"], "--iso is given twice"), (["--cube-size", "abc"], "--cube-size: it must be a number, not 'abc'"),
                                 (["--attributes", "Mass", "--no-attributes"], "--no-attributes: not allowed with argument --attributes"),

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads solvers' binary files: GADGET's formats 1 and 2, DualSPHysics' .bi4, Houdini's .bgeo, as of SPlisHSPlasH, and Phantom's dumps."""
+import itertools
 import os
 import re
 import struct
@@ -54,6 +55,11 @@ def no_particles(path, types):
     return FileError(f"{path.name} has no particles of type {', '.join(map(str, types))}.")
 
 
+def bytes_at(file, place, count):
+    file.seek(place)
+    return file.read(count)
+
+
 def order_of(head):
     """Returns the byte order, from the first record: the header, or a name of four letters and a number."""
     for order in "<>":
@@ -68,78 +74,56 @@ class BinaryFile:
 
     def __init__(self, path):
         with open(path, "rb") as file:
-            self.file, self.path, self.state = file, path, state_of(file)
-            head = file.read(8)
-            self.order = order_of(head)
+            self.path, self.state, head = path, state_of(file), file.read(8)
+            self.order, is_named = order_of(head), head[4:8] == b"HEAD"
             if self.order is None:
                 raise FileError(f"{path.name} is no file of GADGET's.")
-            self.named = head[4:8] == b"HEAD"
-            file.seek(0)
-            self.read_header()
-            self.arrays = by_name(path.name, self.read_arrays())
+            records = self.records(file)
+            begin, size = next(itertools.islice(records, int(is_named), None), (0, 0))
+            if size != 256:
+                raise FileError(f"{path.name} has a damaged header.")
+            values = struct.unpack(self.order + HEADER, bytes_at(file, begin, struct.calcsize("<" + HEADER)))
+            self.counts, self.masses, (self.time, self.redshift) = values[:6], values[6:12], values[12:14]
+            self.files, self.box_size, self.hubble_parameter = values[23], values[24], values[27]
+            if min(self.counts) < 0:
+                raise FileError(f"{path.name} claims {min(self.counts)} particles of a type.")
+            with_masses = sum(count for count, mass in zip(self.counts, self.masses) if not mass)
+            labels = ["POS", "VEL", "ID", *["MASS"] * bool(with_masses), "U", "RHO", *["NE", "NH"] * bool(values[22]), "HSML"]
+            blocks = zip(labels, records)
+            if is_named:
+                blocks = ((bytes_at(file, begin, 4).decode("latin-1").strip(), record) for (begin, _), record in zip(records, records))
+            self.arrays = by_name(path.name, self.read_arrays(blocks, with_masses))
         if "POS" not in self.arrays:
             raise FileError(f"{path.name} has no positions.")
 
-    def record(self):
-        """Returns where the next record begins, and its number of bytes; None at the end."""
-        before = self.file.read(4)
-        if not before:
-            return None
-        begin = self.file.tell()
-        size = struct.unpack(self.order + "I", before)[0] if len(before) == 4 else self.state[1]
-        if begin + size + 4 > self.state[1]:
-            raise FileError(say("FILE_ENDS", self.path.name, begin))
-        self.file.seek(begin + size)
-        if self.file.read(4) != before:
-            raise FileError(say("RECORD_ENDS", self.path.name, begin))
-        return begin, size
+    def records(self, file):
+        """Yields where each record begins, and its number of bytes."""
+        begin = 4
+        while begin - 4 < self.state[1]:
+            before = bytes_at(file, begin - 4, 4)
+            size = struct.unpack(self.order + "I", before)[0] if len(before) == 4 else self.state[1]
+            if begin + size + 4 > self.state[1]:
+                raise FileError(say("FILE_ENDS", self.path.name, begin))
+            if bytes_at(file, begin + size, 4) != before:
+                raise FileError(say("RECORD_ENDS", self.path.name, begin))
+            yield begin, size
+            begin += size + 8
 
-    def label(self):
-        """Returns the name of the next array, in format 2, or None at the end."""
-        found = self.record()
-        if found is None:
-            return None
-        self.file.seek(found[0])
-        text = self.file.read(8)[:4].decode("latin-1").strip()
-        self.file.seek(found[0] + found[1] + 4)
-        return text
-
-    def read_header(self):
-        if self.named:
-            self.label()
-        begin, size = self.record() or (0, 0)
-        if size != 256:
-            raise FileError(f"{self.path.name} has a damaged header.")
-        self.file.seek(begin)
-        values = struct.unpack(self.order + HEADER, self.file.read(struct.calcsize("<" + HEADER)))
-        self.file.seek(begin + size + 4)
-        self.counts, self.masses, (self.time, self.redshift) = values[:6], values[6:12], values[12:14]
-        self.has_cooling, self.files = values[22], values[23]
-        self.box_size, self.hubble_parameter = values[24], values[27]
-        if min(self.counts) < 0:
-            raise FileError(f"{self.path.name} claims {min(self.counts)} particles of a type.")
-
-    def read_arrays(self):
+    def read_arrays(self, blocks, with_masses):
         """Yields (label, RawArray) of each array that is known, or has a fitting size."""
-        total, gas = sum(self.counts), self.counts[0]
-        with_masses = sum(count for count, mass in zip(self.counts, self.masses) if not mass)
-        counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), total), "MASS": with_masses}
-        order = iter(["POS", "VEL", "ID", *["MASS"] * bool(with_masses), "U", "RHO", *["NE", "NH"] * bool(self.has_cooling),
-                      "HSML"])
-        while True:
-            label = self.label() if self.named else next(order, None)
-            found = self.record() if label is not None else None
-            if found is None:
-                return
-            begin, size = found
-            count, columns = counts.get(label, gas), 3 if label in VECTORS else 1
+        counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), sum(self.counts)), "MASS": with_masses}
+        for label, (begin, size) in blocks:
+            count, columns = counts.get(label, self.counts[0]), 3 if label in VECTORS else 1
             width = size // (count * columns) if count else 0
-            if width * count * columns != size or width not in (4, 8):
-                if label in counts:
-                    raise FileError(f"{self.path.name}: '{label}' has {size} bytes for {count} particles.")
-                continue
-            kind = np.dtype(f"{self.order}{'u' if label == 'ID' else 'f'}{width}")
-            yield label, RawArray(self.path, self.state, begin, kind, count, columns)
+            if width * count * columns == size and width in (4, 8):
+                kind = np.dtype(f"{self.order}{'u' if label == 'ID' else 'f'}{width}")
+                yield label, RawArray(self.path, self.state, begin, kind, count, columns)
+            elif label in counts:
+                raise FileError(f"{self.path.name}: '{label}' has {size} bytes for {count} particles.")
+
+    def holds(self, label, kind):
+        """Returns whether an array has values of particles of type `kind`."""
+        return not self.masses[kind] if label == "MASS" else kind == 0 or self.arrays[label].count == sum(self.counts)
 
     def load(self, label, kind):
         """Returns one array of the particles of type `kind`."""
@@ -147,18 +131,12 @@ class BinaryFile:
             return np.full(self.counts[kind], self.masses[kind])
         if label not in self.arrays:
             raise FileError(f"{self.path.name} has no {LABELS.get(label, label)}.")
-        array = self.arrays[label]
-        if label == "MASS":
-            begin = sum(count for count, mass in zip(self.counts[:kind], self.masses) if not mass)
-        else:
-            begin = sum(self.counts[:kind]) if array.count == sum(self.counts) else 0
-        return array.rows(begin, self.counts[kind]).load()
+        begin = sum(self.counts[other] for other in range(kind) if self.holds(label, other))
+        return self.arrays[label].rows(begin, self.counts[kind]).load()
 
     def labels_of(self, kind):
         """Returns the arrays that particles of a type have."""
-        whole, gas = sum(self.counts), self.counts[0]
-        return [label for label, array in self.arrays.items() if label in ("POS", "MASS") or array.count == whole
-                or (kind == 0 and array.count == gas)]
+        return [label for label in self.arrays if label == "MASS" or self.holds(label, kind)]
 
 
 def read_gadget_binary(path, types):

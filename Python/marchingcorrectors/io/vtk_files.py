@@ -347,7 +347,10 @@ class Legacy:
             end = self.data.find(b"\n", self.at, self.at + 1000)
             end = min(len(self.data), self.at + 1000) if end < 0 else end
             words, self.at = self.data[self.at:end].split(), end + 1
-            if words:
+            if words == [b"METADATA"]:  # They end with an empty line.
+                found = re.compile(rb"\n\r?\n").search(self.data, self.at)
+                self.at = found.end() if found else len(self.data)
+            elif words:
                 return [word.decode(errors="replace") for word in words]
         return []
 
@@ -405,7 +408,7 @@ class Legacy:
             return self.arrays if word == "POINT_DATA" else self.cell_arrays
         elif word == "FIELD":
             for _ in range(int(rest[1])):
-                name, columns, count, kind = self.next_array()
+                name, columns, count, kind = self.line()
                 put(name, kind, count, columns)
         elif word == "SCALARS":
             if self.line()[0].upper() != "LOOKUP_TABLE":
@@ -419,23 +422,9 @@ class Legacy:
             put(rest[0], "float" if self.text else "unsigned_char", self.count, rest[1])
         elif word == "LOOKUP_TABLE":
             self.values("float" if self.text else "unsigned_char", rest[1], 4)
-        elif word == "METADATA":
-            self.skip_metadata()
         else:
             raise self.damaged()
         return into
-
-    def next_array(self):
-        words = self.line()
-        if words == ["METADATA"]:
-            self.skip_metadata()
-            words = self.line()
-        return words
-
-    def skip_metadata(self):
-        """Skips metadata, which end with an empty line."""
-        end = re.compile(rb"\n\r?\n").search(self.data, self.at)
-        self.at = end.end() if end else len(self.data)
 
 
 def lists_of(legacy):

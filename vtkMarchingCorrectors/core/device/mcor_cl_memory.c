@@ -82,47 +82,28 @@ static mcor_status mcor_see(
   return MCOR_OK;
 }
 
-static bool mcor_is_unseen(const mcor_array* array)
-{
-  return array->memory && !array->data;
-}
-
-#define MCOR_INPUT_ARRAYS 8 /* without attributes */
-
 mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_sight* sight)
 {
   *sight = (mcor_sight){ .input = *input };
   mcor_input* own = &sight->input;
   own->positions = mcor_positions_of(input);
-  mcor_array* const arrays[MCOR_INPUT_ARRAYS] = { &own->positions, &own->smoothing_length,
-    &own->widening, &own->volume, &own->mass, &own->density, &own->scalar, &own->scalar_dot };
-  const bool has_attributes = input->attributes && input->attribute_count > 0;
+  mcor_array* const arrays[] = { &own->positions, &own->smoothing_length, &own->widening,
+    &own->volume, &own->mass, &own->density, &own->scalar, &own->scalar_dot };
+  const int fixed = (int)(sizeof arrays / sizeof *arrays);
+  const bool has_attributes = input->count > 0 && input->attributes && input->attribute_count > 0;
   const int attributes = has_attributes ? input->attribute_count : 0;
-  const int most = MCOR_INPUT_ARRAYS + attributes;
-  bool some = false;
-  for (int i = 0; i < most; ++i)
-  {
-    some = some ||
-      mcor_is_unseen(
-        i < MCOR_INPUT_ARRAYS ? arrays[i] : input->attributes + (i - MCOR_INPUT_ARRAYS));
-  }
-  if (!some || input->count <= 0)
-  {
-    return MCOR_OK;
-  }
-  sight->seen = calloc((size_t)most, sizeof *sight->seen);
+  sight->seen = calloc((size_t)(fixed + attributes), sizeof *sight->seen);
   sight->attributes = calloc((size_t)attributes + 1, sizeof *sight->attributes);
   MCOR_TRY(mcor_allocated(context, sight->seen && sight->attributes));
   for (int i = 0; i < attributes; ++i)
   {
     sight->attributes[i] = input->attributes[i];
+    own->attributes = sight->attributes;
   }
-  own->attributes = sight->attributes;
-  for (int i = 0; i < most; ++i)
+  for (int i = 0; i < fixed + attributes && input->count > 0; ++i)
   {
-    mcor_array* array =
-      i < MCOR_INPUT_ARRAYS ? arrays[i] : sight->attributes + (i - MCOR_INPUT_ARRAYS);
-    if (mcor_is_unseen(array))
+    mcor_array* array = i < fixed ? arrays[i] : sight->attributes + (i - fixed);
+    if (array->memory && !array->data)
     {
       MCOR_TRY(mcor_see(context, array, input->count, &sight->seen[sight->count++]));
     }

@@ -11,7 +11,7 @@
 typedef struct mcor_sight
 {
   mcor_input input;
-  mcor_array* attributes; /* of this input, where some array is in a buffer; else NULL */
+  mcor_array* attributes; /* of this input */
   struct mcor_seen* seen; /* [count] */
   int count;
 } mcor_sight;

@@ -3,6 +3,7 @@
 #include "vtkSPHMeter.h"
 
 #include "vtkAbstractArray.h"
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
@@ -21,7 +22,6 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -152,19 +152,19 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  const double infinity = std::numeric_limits<double>::infinity();
-  double low[3] = { infinity, infinity, infinity }, high[3] = { -infinity, -infinity, -infinity };
+  vtkBoundingBox box;
   for (const Place& place : places)
   {
     const size_t count = place.Numbers.size();
     const double radius = count % 3 == 1 ? place.Numbers.back() : 0.0;
-    for (size_t i = 0; i < (count % 3 == 1 ? 3 : count); ++i)
+    for (size_t i = 0; i < (count % 3 == 1 ? 3 : count); i += 3)
     {
-      low[i % 3] = std::min(low[i % 3], place.Numbers[i] - radius);
-      high[i % 3] = std::max(high[i % 3], place.Numbers[i] + radius);
+      const double* x = place.Numbers.data() + i;
+      box.AddPoint(x[0] - radius, x[1] - radius, x[2] - radius);
+      box.AddPoint(x[0] + radius, x[1] + radius, x[2] + radius);
     }
   }
-  run->PlaceBox(low, high);
+  run->PlaceBox(box.GetMinPoint(), box.GetMaxPoint());
   vtkSPHParticles* input = run->Share(mine);
   const auto count = static_cast<vtkIdType>(places.size());
   vtkSPHAddColumn<vtkDoubleArray>(

@@ -153,13 +153,6 @@ extern "C"
     const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
   void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
 
-  /* Joins pieces of lines from several parts, each from one point to the next, into the
-   * surface's lines, as mcor_extract does, and measures them. The surface must have all points,
-   * each once, in the order of their keys; if band_value is set, its triangles are read, too.
-   * MCOR_OUT_OF_CAPACITY: memory ran out. */
-  mcor_status mcor_join_lines(
-    const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface);
-
   /* Does for mcor_probe and mcor_derive what mcor_measure_globals does for mcor_extract. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);

@@ -244,13 +244,10 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   {
     auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
     marks->SetName(MCOR_WALL_BLOCK);
-    marks->SetNumberOfTuples(total);
-    vtkIdType at = 0;
     for (std::size_t b = 0; b < blocks.size(); ++b)
     {
       const vtkIdType count = blocks[b]->GetNumberOfPoints();
-      std::fill_n(marks->GetPointer(at), count, walls[b] ? 1 : 0);
-      at += count;
+      std::fill_n(marks->WritePointer(marks->GetNumberOfValues(), count), count, walls[b] ? 1 : 0);
     }
     joined->GetPointData()->AddArray(marks);
   }

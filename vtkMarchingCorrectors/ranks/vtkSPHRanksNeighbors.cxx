@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -53,7 +52,7 @@ std::vector<vtkIdType> ListWithin(
   const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres, vtkStaticPointLocator* locator)
 {
   vtkNew<vtkIdList> near;
-  std::set<vtkIdType> within;
+  std::vector<bool> areWithin(static_cast<std::size_t>(locator->GetDataSet()->GetNumberOfPoints()));
   for (const Sphere& sphere : spheres)
   {
     for (int image = 0; image < 27; ++image)
@@ -69,11 +68,20 @@ std::vector<vtkIdType> ListWithin(
       if (isThere)
       {
         locator->FindPointsWithinRadius(sphere[3], at, near);
-        within.insert(near->begin(), near->end());
+        std::for_each(near->begin(), near->end(),
+          [&areWithin](vtkIdType i) { areWithin[static_cast<std::size_t>(i)] = true; });
       }
     }
   }
-  return { within.begin(), within.end() };
+  std::vector<vtkIdType> within;
+  for (std::size_t i = 0; i < areWithin.size(); ++i)
+  {
+    if (areWithin[i])
+    {
+      within.push_back(static_cast<vtkIdType>(i));
+    }
+  }
+  return within;
 }
 
 /**

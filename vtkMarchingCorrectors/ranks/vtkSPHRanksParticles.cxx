@@ -37,19 +37,20 @@ std::size_t SizeOf(vtkAbstractArray* array, vtkIdType tuples)
 /** Packs the message for a rank: the number of tuples, then the tuples; empty if there are none. */
 std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
 {
-  diy::MemoryBuffer bytes;
   const auto count = static_cast<vtkIdType>(ids.size());
+  if (count == 0)
+  {
+    return {};
+  }
+  diy::MemoryBuffer bytes;
+  diy::save(bytes, count);
   vtkNew<vtkIdList> list;
   list->SetNumberOfIds(count);
   std::copy(ids.begin(), ids.end(), list->GetPointer(0));
-  if (count > 0)
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
   {
-    diy::save(bytes, count);
-  }
-  for (std::size_t a = 0; count > 0 && a < arrays.size(); ++a)
-  {
-    const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(arrays[a], count);
-    arrays[a]->GetTuples(list, part);
+    const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(array, count);
+    array->GetTuples(list, part);
     const std::size_t size = SizeOf(part, count);
     if (size > 0)
     {

@@ -4,6 +4,7 @@
 // No rank may return here while another goes on: all agree first on what one of them has found.
 #include "vtkSPHSharedRun.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
@@ -224,7 +225,7 @@ void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double h
 void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 {
   const vtkSPHRanksSpace space(this->Options, this->Globals);
-  double box[6] = { Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity };
+  vtkBoundingBox bounds;
   this->Numbers.clear();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -240,14 +241,12 @@ void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
     this->Numbers.push_back(i);
     space.Enter(place.At);
     this->PlacesOfWork.push_back(place);
-    for (int a = 0; a < 3; ++a)
-    {
-      box[2 * a] = std::min(box[2 * a], place.At[a]);
-      box[2 * a + 1] = std::max(box[2 * a + 1], place.At[a]);
-    }
+    bounds.AddPoint(place.At);
   }
   this->Places = vtkSmartPointer<vtkPolyData>::New();
   this->Places->SetPoints(points);
+  double box[6];
+  bounds.GetBounds(box);
   this->Ranks.ReduceRanges(box, 3);
   for (int side = 0; side < 6; ++side)
   {

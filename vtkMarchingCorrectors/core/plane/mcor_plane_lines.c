@@ -132,24 +132,6 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
   }
 }
 
-mcor_status mcor_join_lines(
-  const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface)
-{
-  mcor_joining joining;
-  bool made = mcor_create_joining(surface->point_count, &joining);
-  for (int64_t i = 0; i < count && made; ++i)
-  {
-    mcor_join_line(&joining, pieces[i][0], pieces[i][1]);
-  }
-  made = made && mcor_join(&joining, surface);
-  free(joining.at);
-  if (made)
-  {
-    mcor_measure_lines(surface, mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1));
-  }
-  return made ? MCOR_OK : MCOR_OUT_OF_CAPACITY;
-}
-
 /* Makes normals, to the right of the lines: at all points of a preview, or if the caller wants it;
  * else only where the gradient vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)

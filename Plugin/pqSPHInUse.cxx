@@ -587,8 +587,8 @@ void pqSPHInUse::narrowColours()
   }
 }
 
-// Asks a hidden filter like this one, with the values that the panel shows, applied or not. The list
-// of iso values has the scalar range as its domain, so it shows the range and follows it.
+// Shows what the next Apply would find: copies it from a hidden filter with the values that the
+// panel shows, applied or not. The range that it finds is the domain of the list of iso values.
 void pqSPHInUse::lookAhead()
 {
   SCOPED_UNDO_EXCLUDE(); // the user did nothing

@@ -401,8 +401,8 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   }
 }
 
-// Finds each answer as far as it is known: the range needs no smoothing length, the number of cells
-// no scalar. With several blocks, the iso value is the first block's.
+// Finds what the next update would find. Each value needs only some of the arrays: the range no
+// smoothing length, the number of cells no scalar. The iso value is the first block's.
 vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
   vtkAhead& next = this->Next;

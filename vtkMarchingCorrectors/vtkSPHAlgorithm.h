@@ -252,8 +252,8 @@ public:
 
   ///@{
   /**
-   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. Sums are those
-   * of two dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO,
+   * 2: x, y or z is exactly the same for all particles, so they lie in a plane. Sums are
+   * two-dimensional, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO,
    * the default): 2 if exactly one coordinate is the same for all particles, else 3.
    */
   enum DimensionType

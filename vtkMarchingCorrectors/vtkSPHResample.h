@@ -79,7 +79,7 @@ public:
 
   /**
    * How many points a volume has along x, y and z. 0, the default: the shape of the fluid decides;
-   * about a million in all, one along the axis of particles in a plane.
+   * about a million in all. If the particles lie in a plane, one point along the constant axis.
    */
   vtkSPHVector3Macro(Dimensions, int, 0, 0, 0);
 

@@ -27,11 +27,11 @@ ENOUGH_SECONDS = 120.0  # After this many seconds a competitor is not run again.
 
 # Each set has arguments for make_particles.py, and options that tell the program about the particles.
 SETS = {
-    # These sets have 70 neighbours and constant h, for comparisons with other software.
+    # Particles have 70 neighbours and constant h, for comparisons with other software.
     "tank": ("tank", (), ()),
-    # These have 200 neighbours and constant h, and stand for the paper's tsunami.
+    # This set stands for the paper's tsunami: particles have 200 neighbours and constant h.
     "dense-tank": ("tank", ("--ratio", "1.814"), ("--kernel", "quadratic")),
-    # These have 70 neighbours and variable h, and stand for the paper's dam break.
+    # This set stands for the paper's dam break: particles have 70 neighbours and variable h.
     "dam-break": ("dam_break", (), ()),
     # A full lattice stands for the paper's vortex rings. It has no free surface, so nothing is trimmed: with a shortened kernel, weights between the
     # particles of a lattice are low.

@@ -78,8 +78,9 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 }
 
 /**
- * Returns the pieces of this rank's elements, of which the first rank knows all. numbers: become
- * their numbers among the elements that stay. Collective.
+ * Returns the piece of each element of this rank; below 0, the element is dropped. pieces: of all
+ * elements, on the first rank. Adds to `numbers`, for each element of this rank that stays, its
+ * number among all that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)

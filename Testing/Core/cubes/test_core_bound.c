@@ -315,9 +315,8 @@ static int count_above(
   return above;
 }
 
-/* Checks all nodes of the bricks that are proved to be inside. The proof looks at particles within
- * half their support. At some of these iso values these particles alone decide some nodes of a
- * brick, but not all. */
+/* Checks all nodes of the bricks that are proved to be inside. The proof looks at particles within half their support.
+ * At some iso values that the test uses, these particles suffice for some nodes of a brick, but not for all. */
 static void check_inside(mcor_context* context, const particles* p, const mcor_options* options,
   const cl_int4* bricks, int count, double iso)
 {

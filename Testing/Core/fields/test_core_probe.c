@@ -211,8 +211,8 @@ static void test_bits_do_not_depend_on_other_points(void** state)
   probe_in_another_order(*state, 30, 0.25, 16);
 }
 
-/* Probes points in a cube of edge `size` around (x, 0, 0), once with only the nearby particles on the device, once with
- * all, as for a further call. The bits must be the same. Returns how many points are valid. */
+/* Probes points in a cube of edge `size` around (x, 0, 0), first with only the nearby particles on the device, then
+ * with all particles, which later calls may reuse. The bits must be the same. Returns how many points are valid. */
 static int probe_near(
   mcor_context* context, const particle_set* set, bool volumes, double x, double size)
 {

@@ -9,8 +9,8 @@
 
 #include <stdatomic.h>
 
-/* Merges vertices of the current iso value, after trimming and caps, whose borders stay as they
- * are, and corrects the merged vertices. */
+/* Merges vertices of the current iso value, and corrects the merged vertices. Comes after trimming
+ * and caps, and leaves the borders that they make as they are. */
 mcor_status mcor_compact(mcor_context* context);
 
 /* Vertices in a box depend on this number of cells around it: four decide whether a vertex is

@@ -266,7 +266,7 @@ static mcor_status mcor_gauge_all(mcor_level_job* base)
   return MCOR_OK;
 }
 
-/* This box is a box of points, not of cells. */
+/* The box bounds points at which the field is evaluated, not cells. */
 mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, const mcor_findings* around)
 {

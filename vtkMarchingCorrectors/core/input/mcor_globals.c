@@ -81,7 +81,7 @@ static mcor_status mcor_measure_all(
   return MCOR_OK;
 }
 
-/* Measures for a surface, or for calls without a scalar to contour. */
+/* Measures for a surface if `surface` is set, else for calls without a scalar to contour. */
 static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool surface, mcor_globals* globals)
 {

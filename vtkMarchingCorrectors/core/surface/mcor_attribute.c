@@ -130,7 +130,7 @@ static void mcor_store_means(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Writes the means of the components on the device to the surface. */
+/* Copies the means of all components from the device to the surface. */
 static mcor_status mcor_store_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {

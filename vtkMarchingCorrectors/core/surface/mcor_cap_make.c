@@ -41,8 +41,8 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Caps one square. Its number is above the keys of all cells; squares come in the order of their
- * numbers. */
+/* Caps one square. Its number, greater than the key of any owned cell, is the key of its triangles.
+ * Squares come in the order of their numbers. */
 static mcor_status mcor_visit_cap_square(
   void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {

@@ -152,8 +152,8 @@ static mcor_status mcor_add_cap_fan(
   (void)is_cut;
   if (job->context->space.flat)
   {
-    /* A line along the plane's side, with the inside on its left, is a triangle whose last two
-     * corners are one vertex. Corners above each other are one vertex, too. */
+    /* In two dimensions the cap is a line along the side, with the inside on its left: a triangle
+     * whose last two corners are one vertex. Corners that differ only in z are one vertex, too. */
     int other = 1;
     while (other < count - 1 && corners[other].vertex == corners[0].vertex)
     {

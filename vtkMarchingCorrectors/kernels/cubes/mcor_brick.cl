@@ -26,9 +26,9 @@ __kernel void mcor_brick_fill(
   }
 }
 
-/* One work-item = one brick. Finds its 7 upper neighbours; offset: bits 1 x, 2 y, 4 z. Writes each
- * to its own entry offset - 1, and itself to the neighbour's entry offset + 6. The other entries
- * stay -1. */
+/* One work-item = one brick. Finds its upper neighbours, d = 1 to 7 (bits 1 x, 2 y, 4 z). Writes
+ * the neighbour's slot to entry d - 1 of this brick, and this brick's slot to entry d + 6 of the
+ * neighbour. Entries without a neighbour stay -1. */
 __kernel void mcor_brick_neighbours(
   MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
 {

@@ -73,7 +73,7 @@ public:
   }
 
 private:
-  /** Copies points as GetPoint() gives them; asking for each takes as long as sending it to the device. */
+  /** Copies the points that GetPoint() gives, whose calls would take as long as sending points to the device. */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
     const int* extent = image->GetExtent();
@@ -418,8 +418,8 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   FinishOutput(*run, found, points ? probed : nullptr);
 }
 
-// Makes the best of the arrays that were found active. The particles' values decide, because points
-// that are not valid have another value.
+// Makes one of the found arrays the active scalars: the best by the particles' values. The points'
+// values do not decide, because points that are not valid have another value.
 void vtkSPHProbe::FinishOutput(vtkRun& run, vtkPointData* found, vtkDataSet* output)
 {
   vtkPointData* from = run.Own->GetPointData();

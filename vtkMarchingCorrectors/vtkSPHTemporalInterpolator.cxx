@@ -57,7 +57,7 @@ public:
   std::vector<double> Times;                             // its step's, or the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
   std::map<size_t, vtkSPHTemporalPair> Pairs;            // by block
-  std::set<long> Ratios;                                 // motion / velocities, as warned of
+  std::set<long> Ratios;                                 // motion / velocities, of past warnings
   vtkTimeStamp ToldTime;                                 // when Ratios was last emptied
 };
 

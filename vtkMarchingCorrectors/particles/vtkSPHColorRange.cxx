@@ -66,7 +66,7 @@ vtkSPHColorRange::vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& is
 
 bool vtkSPHColorRange::Find(vtkDataArray* array, double range[2]) const
 {
-  if (array == this->IsoValues) // a small surface counts as the others do
+  if (array == this->IsoValues) // each iso value counts, however small its surface is
   {
     array->GetFiniteRange(range, 0);
     return range[0] <= range[1];
@@ -94,7 +94,7 @@ bool vtkSPHColorRange::Find(vtkDataArray* array, double range[2]) const
     return false;
   }
   std::sort(found.begin(), found.end());
-  const auto findEnd = [total](auto at) // behind the share that is left out
+  const auto findEnd = [total](auto at) // the first value behind the share that is left out
   {
     double below = at->second;
     for (; total > 0.0 && below <= LeftOut * total; below += at->second)

@@ -25,8 +25,8 @@ public:
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**
-   * Finds the range of a point array, or of its vectors' magnitudes; if most values are equal, or
-   * are iso values, the range of all values. Returns false if no value is finite.
+   * Finds the range of most values of a point array, or of its vectors' magnitudes. For iso values,
+   * or if most values are equal, finds the range of all. Returns false if no value is finite.
    */
   bool Find(vtkDataArray* array, double range[2]) const;
 

@@ -103,9 +103,9 @@ vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
   return root;
 }
 
-// Joins the pieces of two points. The piece of `one` moves up by a period along this axis, or by
-// none if it is -1. If two ways to one point give different shifts, the piece goes around the
-// period.
+// Joins the pieces of two points. The piece of `one` moves up by a period along this axis; it does
+// not move if the axis is -1. If two ways to one point give different shifts, the piece goes around
+// the period.
 void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
 {
   const vtkIdType old = this->FindRoot(one), kept = this->FindRoot(other);
@@ -161,8 +161,8 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
 }
 
 // At open edges in a side, the surface goes on beyond the side, unless a cap was trimmed there.
-// Points of such edges on opposite sides are matched by their other two coordinates. `twins` becomes
-// the same for both.
+// Points of such edges on opposite sides are matched by their other two coordinates. Both get the
+// same number in `twins`.
 void vtkSPHPieces::JoinSides(std::vector<vtkIdType>& twins)
 {
   std::vector<std::array<vtkIdType, 2>> open;

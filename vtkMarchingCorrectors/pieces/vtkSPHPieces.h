@@ -83,7 +83,7 @@ private:
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
   std::vector<vtkIdType> Root; // the next point on the way to the one that stands for the piece
-  std::vector<Shift> Shifts;   // how far a point's part moves so that it lies where its root's does
+  std::vector<Shift> Shifts;   // moves a point's part of the piece to its root's part
   std::vector<char> Endless;   // by root: whether the piece goes around a period
 };
 VTK_ABI_NAMESPACE_END

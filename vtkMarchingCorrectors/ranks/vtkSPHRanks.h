@@ -15,13 +15,14 @@
  *     the result is this part of the whole surface, to the last bit.
  *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
  *     callback ends their calls (vtkSPHSharedRun.cxx).
- *  7. Results at points and particles go back to the rank that these came from, by the lists that
- *     sent them (vtkSPHPutTuples).
+ *  7. Results at points and particles go back to the ranks from which the points and particles
+ *     came, by the lists that sent them (vtkSPHReturnTuples).
  *  8. A surface stays where it was made. Its points and triangles get their numbers in the whole
  *     surface by their keys; each rank sorts a range of the keys
  *     (vtkMarchingCorrectorsRanks.cxx).
- *  9. The first rank does what needs all of a surface: for pieces or a file it gets all tuples, and
- *     puts them in the order of these numbers (vtkSPHGatherTuples); for lines, all particles.
+ *  9. The first rank does what needs a whole surface. For pieces or a file it gets all tuples, and
+ *     puts them in the order of these numbers (vtkSPHGatherTuples). For lines it gets all
+ *     particles, and makes all lines.
  * 10. No rank returns while another goes on: all agree first on what one of them has found.
  *
  * All functions except the getters are collective: all ranks call them in the same order. Built

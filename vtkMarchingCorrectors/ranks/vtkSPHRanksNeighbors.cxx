@@ -86,8 +86,8 @@ std::vector<vtkIdType> ListWithin(
 
 /**
  * Gets the particles of other ranks that lie in the spheres around this rank's particles, and
- * appends them to these. order: becomes the new order of this rank's particles: first those whose
- * spheres leave its box. Returns how many these are. Collective.
+ * appends them to `arrays`. order: the new order of this rank's particles: first the particles whose
+ * spheres reach other ranks' boxes. Returns the number of these first ones. Collective.
  */
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)

@@ -313,8 +313,8 @@ bool vtkSPHRanksSpace::Reaches(int rank, const double at[3], double radius) cons
   for (int a = 0; a < 3; ++a)
   {
     const double low = box[Index(2 * a)], high = box[Index(2 * a + 1)];
-    // The cube reaches the box if the place moves up by any way from `first` to `last`, which a
-    // number of periods must be.
+    // The cube reaches the box if the place moves by `first` to `last`. Along a periodic axis it can
+    // move by whole periods, else not at all.
     double first = low - radius - at[a], last = high + radius - at[a];
     first = this->IsPeriodic(a) ? std::ceil(first / this->Length[a]) : first;
     last = this->IsPeriodic(a) ? std::floor(last / this->Length[a]) : last;

@@ -90,7 +90,7 @@ private:
   void Cut(Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box);
   std::vector<double> FindRadii(
     vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
-  /** Whether a cube around a place, or around an image of it, reaches this rank's box. */
+  /** Whether a cube around a place, or around an image of the place, reaches a rank's box. */
   bool Reaches(int rank, const double at[3], double radius) const;
 
   const mcor_options* Options = nullptr;

@@ -321,7 +321,7 @@ void vtkSPHAlgorithm::vtkSharedRun::CallAside(const std::function<bool(const mco
   calls.End(!call(&calls.Core));
 }
 
-// Points were sent to their owners alone.
+// Each point was sent to one rank, its owner; a particle may be on several, and only its owner replies.
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)
 {
   vtkSPHRanksLists to =

@@ -295,7 +295,7 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-// Warns if the particles moved much less or more, along their mean velocities, than these say.
+// Warns if the particles moved along their mean velocities, but much less or more than these say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

@@ -6,14 +6,15 @@
  * Warren], which then moves along the gradient onto the surface. Triangles with two equal corners
  * vanish.
  *
- * The vertices of one merged vertex are a bunch. If it does not reach the surface, or turns a
- * triangle over, its bunch is taken apart again, which is always possible. This may turn over
- * triangles beside it, so this is done in two rounds. Then the vertices of the remaining slivers
- * move (mcor_compact_face.c).
+ * The vertices that become one merged vertex are a bunch. If the merged vertex does not reach the
+ * surface, or turns a triangle over, its bunch is taken apart again, which is always possible. This
+ * may turn over triangles around the bunch, so there are two rounds. Then the vertices of the
+ * remaining slivers move (mcor_compact_face.c).
  *
- * Merged vertices, and vertices that moved, are appended to the mesh. At the end they take the
- * places, and so the keys, of the vertices that they replace; those of a bunch take the first
- * vertex's place. The bunch's other vertices stay in the mesh, but no triangle uses them. */
+ * Merged vertices, and vertices that moved, are appended to the mesh. At the end each of them takes
+ * the place, and so the key, of the vertex that it replaces; a merged vertex replaces the first
+ * vertex of its bunch. The other vertices of the bunch stay in the mesh, but no triangle uses
+ * them. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"

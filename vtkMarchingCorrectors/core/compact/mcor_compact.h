@@ -28,7 +28,7 @@ mcor_status mcor_compact(mcor_context* context);
 enum
 {
   MCOR_BUNCH_APART,  /* its vertices stay */
-  MCOR_BUNCH_UNSURE, /* stays apart, too, unless mcor_choose_slice merges it */
+  MCOR_BUNCH_UNSURE, /* stays apart, too, unless mcor_choose_slice chooses it */
   MCOR_BUNCH_MERGED,
   MCOR_BUNCH_BAD /* is merged, but is to be taken apart */
 };
@@ -65,7 +65,7 @@ typedef struct mcor_start
 {
   int64_t at[3];
   int32_t vertex, last; /* last: its place in the mesh until then */
-  double worst;         /* mcor_worst_around at its last place */
+  double worst;         /* the greatest badness of the triangles around it there */
 } mcor_start;
 
 typedef struct mcor_bunches

@@ -287,8 +287,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged, both if no other bunch is merged, and if all others (`all`) or
- * those that are merged so far are. */
+/* Whether a bunch can be merged. all: both if no other bunch is merged and if all others are; else:
+ * beside the bunches that are merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };
@@ -324,7 +324,8 @@ static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Chooses bunches that clash: of two beside each other, only the first. */
+/* Chooses unsure bunches that can be merged beside the sure ones. Of two unsure bunches beside each
+ * other, only the first may be chosen. */
 static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -114,7 +114,8 @@ static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
   }
 }
 
-/* Only triangles around bunches that are taken apart can be turned over by this. */
+/* Taking bunches apart can only turn over triangles around these bunches, so each round judges only
+ * these triangles again. */
 mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   const mcor_bunch_vertex* of = bunches->of;

@@ -222,8 +222,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   return best;
 }
 
-/* Writes a loop's triangles. After each triangle follow those of the parts on its other sides.
- * Returns the cost of their diagonals. */
+/* Writes a loop's triangles. Each is followed by all triangles beyond its first side, then by those
+ * beyond its second side. Returns the cost of their diagonals. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
@@ -265,7 +265,7 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   return total;
 }
 
-/* Takes the loop through a slot out of the links. It has no vertices if the slot has none. */
+/* Takes the loop through a slot out of the links. The loop is empty if the slot has no link. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_trace(
   MCOR_TYPE(uint) split, int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
 {

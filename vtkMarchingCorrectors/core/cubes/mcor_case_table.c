@@ -1,15 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Derives the cases of Marching Cubes, as those of cells without finer cells around them: see
- * mcor_adaptive_cell.h, which has loops of segments and cuts them into triangles. No diagonal lies
- * within a face, because the neighbour cell might have the same one, and four triangles would then
- * meet there.
+/* Derives the cases of Marching Cubes by mcor_adaptive_cell.h: its functions trace loops of
+ * segments around a cell without finer cells beside it, and cut the loops into triangles. They
+ * avoid diagonals within a face, because the neighbour cell might have the same diagonal, and four
+ * triangles would then meet there. Some rows need such diagonals; see mcor_allow_diagonals.
  *
- * The corners of an ambiguous face are above and below in turn: either those above are cut off, or
- * they are joined, and those below are cut off. Each of the 256 cases has a row for each
- * combination of these decisions. Two loops around the same region may become a tunnel. Some rows
- * need diagonals within a face; see mcor_allow_diagonals. */
+ * The corners of an ambiguous face are above and below in turn. Either the corners above are cut
+ * off, or they are joined and the corners below are cut off. Each of the 256 cases has a row for
+ * each combination of these decisions. Two loops around the same region may become a tunnel. */
 
 #include "mcor_internal.h"
 
@@ -68,7 +67,7 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
   mcor_adaptive_link(0, above, &links);
   for (int face = 0; face < 6; ++face)
   {
-    int ring[4]; /* clockwise: segments cut off runs of nodes below */
+    int ring[4]; /* clockwise, so that segments cut off the corners below */
     for (int i = 0; i < 4; ++i)
     {
       ring[i] = mcor_adaptive_face_node(face, 6 - 2 * i);
@@ -164,7 +163,7 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
 typedef struct mcor_strip
 {
   mcor_adaptive_loop first, second;
-  int start; /* the first side: first vertex of the first loop, vertex `start` of the second */
+  int start; /* the first side leads from vertex 0 of the first loop to this one of the second */
   uint8_t used[12][12];
   int best_cost;
   uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: finds the bricks that are split. A particle splits the bricks that it reaches of
+/* Adaptive cubes: finds the bricks that are split. A particle splits the bricks that it reaches on
  * the level above its own. A split brick splits the bricks of the next higher level that touch it.
  * Leaves around a split brick are therefore at most one level above its parts.
  *
@@ -9,8 +9,8 @@
  * whole number of bricks of every level. A brick in the first period stands for all its periodic
  * images.
  *
- * Sets of bricks consist of clusters of 4^3 bricks, which are masks. The bricks that a particle
- * reaches are added by masks, too. */
+ * A set of bricks has a mask for each cluster of 4^3 bricks. The bricks that a particle reaches are
+ * added as masks. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -118,9 +118,9 @@ static bool mcor_split_reached(
   return made;
 }
 
-/* Splits the bricks that one particle reaches. done: keys of homes (each has one place) whose whole
- * neighbourhood is split already. Most particles are in such homes and reach no farther, so they
- * are skipped. */
+/* Splits the bricks that one particle reaches. The brick in which it lies is its home. done: keys
+ * of homes whose whole neighbourhood is split already; each key has one place. Most particles are
+ * in such homes and reach no farther than the neighbourhood, so they are skipped. */
 static bool mcor_split_by_particle(
   mcor_tree_job* job, int slice, mcor_splitter* p, uint64_t done[MCOR_BLOCK_BRICKS])
 {

@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays in OpenCL buffers of the caller's. The host checks and measures particles, so it maps these
- * buffers, or copies what has other bytes between values, by queues in their own contexts. */
+/* Arrays in OpenCL buffers of the caller's. The host checks and measures particles, so it maps the
+ * buffers by queues in the buffers' own contexts. It copies arrays that have other bytes between
+ * values, or do not begin at a multiple of their numbers' size. */
 
 #include "mcor_cl_memory.h"
 #include "mcor_cl_call.h"
@@ -33,7 +34,7 @@ static size_t mcor_stride_of(const mcor_array* array)
   return array->stride ? array->stride : mcor_width_of(array);
 }
 
-/* Makes a queue in the own context of a buffer that has room for an array. */
+/* Fails unless the array lies within its buffer. Makes a queue in the buffer's own context. */
 static mcor_status mcor_reach_memory(
   mcor_context* context, const mcor_array* array, int64_t count, cl_command_queue* queue)
 {

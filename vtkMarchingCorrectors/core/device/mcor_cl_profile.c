@@ -41,7 +41,7 @@ struct mcor_profile
 static const char mcor_profile_head[] =
   "call,phase,command,kernel,count,bytes,host_seconds,device_seconds\n";
 
-/* Fails unless all that was written since errno was 0 is in the file. */
+/* Fails if a write to the file failed. errno must be 0 before the first write. */
 static mcor_status mcor_flush_profile(mcor_context* context)
 {
   const struct mcor_profile* profile = context->cl.profile;
@@ -67,7 +67,7 @@ mcor_status mcor_open_profile(mcor_context* context)
     !profile->file, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), path, strerror(errno));
   char begin[sizeof mcor_profile_head] = "";
   rewind(profile->file);
-  const bool is_new = !fgets(begin, sizeof begin, profile->file) || !*begin; /* or a device */
+  const bool is_new = !fgets(begin, sizeof begin, profile->file) || !*begin; /* a new file, or a device */
   MCOR_FAIL_IF(!is_new && strcmp(begin, mcor_profile_head) != 0, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(PROFILE_FILE), path, "it holds something else");
   fseek(profile->file, 0, SEEK_END);

@@ -20,7 +20,7 @@
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
 /* A piece's accuracy is relative to its greatest speed and density, but at least to this share of
- * the greatest of all particles, because these set how means are rounded. */
+ * the greatest speed and density of all particles, which decide how means are rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
 /* A sum may become this many times area times the greatest speed and density. Weights below 0, as
  * M'4 has, make sums a little larger than that product. */
@@ -33,8 +33,8 @@
 /* The most halvings of a cell, and of a piece that the level may cross between its samples. */
 #define MCOR_FLUX_DEPTH 24
 #define MCOR_FLUX_UNCLEAR_DEPTH 12
-/* Weights bend by about 4 / h^2, so between samples they may differ by this from the nearest one,
- * times the square of the longest side. */
+/* Weights bend by about 4 / h^2. So a weight between samples may differ from the nearest sample by
+ * this number times (longest side / h)^2. */
 #define MCOR_FLUX_BEND 0.125
 
 /* What differs between triangles and lines. A piece has samples: its corners come first, its middle
@@ -138,8 +138,8 @@ static void mcor_place_sample(
   }
 }
 
-/* Takes pieces from the list until the batch is full: halves those that are longer than a cell,
- * and drops those that are not this call's. */
+/* Takes pieces from the list until the batch is full. Halves pieces that are longer than a cell;
+ * drops pieces that no particle is near, and cells that another rank owns. */
 static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
 {
   mcor_context* context = job->base.context;
@@ -194,12 +194,12 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds the integrals of linear functions over the part in fluid of a triangle or line, whose
- * corners are these samples. value: at all samples. Returns whether the level cuts it. */
+/* Adds the integrals over the part in fluid of a triangle or line. Its corners are samples of a
+ * piece; between them, weights and values are linear. Returns whether the level cuts it. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
-  /* By the corners in fluid: the one that is alone on its side. */
+  /* For each set of corners in fluid, as bits: the corner that is alone on its side. */
   static const int lone_corner[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
   const int corners = job->form->corners;
   const double level = job->base.level;
@@ -210,7 +210,7 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   }
   const int lone = corners == 3 ? lone_corner[inside] : 0, from = corner[lone];
   const bool is_cut = inside != 0 && inside != (1 << corners) - 1;
-  /* Means over all, and over the corner that the level cuts off. */
+  /* Means over the triangle or line, and over the tip that the level cuts off. */
   double tip[MCOR_FLUX_SUMS], mean[MCOR_FLUX_SUMS], share = is_cut ? 1 : 0;
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
@@ -239,7 +239,7 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
 typedef struct mcor_flux_result
 {
   double sum[2][MCOR_FLUX_SUMS]; /* by the simpler and the better way */
-  double scale[MCOR_FLUX_SUMS];  /* of the sums, for a unit of area */
+  double scale[MCOR_FLUX_SUMS];  /* how large a sum may be for a unit of area */
   bool is_unclear;               /* the level may cross the piece between its samples */
   bool is_reached;
 } mcor_flux_result;

@@ -3,8 +3,8 @@
 #ifndef mcor_flux_h
 #define mcor_flux_h
 
-/* Flow through sections. A section is a list of pieces, which are triangles, in two dimensions
- * lines. They are halved until they are short, and further until their integrals are known. */
+/* Flow through sections. A section is a list of pieces: triangles; in two dimensions, lines. Pieces
+ * are halved until they are cells, and cells until two ways to integrate them agree. */
 
 #include "mcor_gauge.h"
 
@@ -14,7 +14,7 @@
 typedef struct mcor_flux_piece
 {
   int64_t section;
-  int depth; /* 0: longer than a cell; how often a cell was halved to make this piece, plus 1 */
+  int depth; /* 0: not yet a cell; else 1 + how often a cell was halved to make this piece */
   double corner[3][3]; /* in the device's coordinates; a line uses the first two */
   double normal[3];    /* one entry for each component of the velocity, unit length */
 } mcor_flux_piece;

@@ -44,7 +44,7 @@ typedef struct mcor_level_job
   double level;
   bool has_box;
   double box[6];       /* the box of what this call owns, in the call's coordinates */
-  double owned[3][2];  /* its cells along x, y, z */
+  double owned[3][2];  /* the box's cells along x, y, z */
   mcor_probe_run* run; /* evaluates the field */
   double* with_solids; /* [MCOR_GAUGE_BATCH], weight sums of fluid and solids; NULL: no solids */
 } mcor_level_job;
@@ -80,8 +80,8 @@ typedef struct mcor_gauge_label
 /* mcor_gauge.c. Shared by gauges and fluxes. Sets the level and the box, and runs the job's body. */
 mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, mcor_statistics* statistics);
-/* Turns the job's box into the plane. Sets the box in which the field is evaluated: the ranges
- * `around`, or, if ranks share the work, the job's box and `margin` around it. */
+/* Turns the job's box into the plane. Sets the box in which the field is evaluated: the job's box
+ * and `margin` around it, or, if the job has no box, the ranges `around`. */
 mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, const mcor_findings* around);
 /* Loads the attributes, prepares the job's run for MCOR_GAUGE_BATCH points at a time, and calls

@@ -117,8 +117,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   return MCOR_OK;
 }
 
-/* Keeps the particles around the middle of a sample of the fluid. half: how far the grid may go from
- * there. */
+/* Leaves out particles beyond a region that reaches `half` from the middle of a sample of the fluid
+ * along each axis. *good: whether they are few enough. */
 static mcor_status mcor_mark_farthest(
   mcor_context* context, mcor_far_job* job, double half, bool* good)
 {

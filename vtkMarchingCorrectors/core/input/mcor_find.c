@@ -214,7 +214,7 @@ int mcor_join_velocity(mcor_finder* f)
   return f->count;
 }
 
-/* Returns "mass array 'M'" or, of values that are given without a name of their own, "mass". */
+/* Returns "mass array 'M'", or "mass" if the values have no name of their own. */
 static const char* mcor_called(mcor_finder* f, const char* words, const char* name)
 {
   char* text = strcmp(words, name) == 0 ? NULL : mcor_text("%s array '%s'", words, name);

@@ -69,7 +69,8 @@ static int mcor_add_kind(mcor_kind* kinds, int count, mcor_kind kind)
   return count + 1;
 }
 
-/* Counts how often each value of an array occurs on all ranks. Returns 0 if there are too many. */
+/* Counts how often each value of an array occurs on all ranks. Returns how many values there are;
+ * 0: too many. */
 static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_kind* kinds)
 {
   mcor_kind own[MCOR_KINDS];
@@ -223,7 +224,7 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
     {
       const double x = mcor_element_at(f->arrays + of[r], i, 0);
       bool holds = false;
-      for (int k = 0; k < ranges && !holds; ++k) /* of the ranges of one array, any may hold */
+      for (int k = 0; k < ranges && !holds; ++k) /* one of the array's ranges must hold */
       {
         holds = of[k] == of[r] && x >= only[k].low && x <= only[k].high;
       }
@@ -317,7 +318,7 @@ int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor
   {
     ends += 2 * mcor_shown_components(arrays + i);
   }
-  /* A component's least value, then minus its greatest; of values that differ, two are enough. */
+  /* Each component's least value, then minus its greatest, up to the first value that differs. */
   double *least = malloc(((size_t)ends + 1) * sizeof *least), *of = least;
   for (int i = 0; least && i < count; ++i)
   {

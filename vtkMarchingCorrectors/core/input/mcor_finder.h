@@ -6,7 +6,7 @@
 #include "mcor_find.h"
 #include "mcor_input.h"
 
-/* An array with more values tells no types of particles. */
+/* An array with more different values than this does not tell types of particles. */
 #define MCOR_PARTICLE_TYPES 8
 
 /* The most names that a quantity has. */

@@ -197,7 +197,7 @@ mcor_status mcor_sample_own(
 /* Joins the samples of all ranks. Samples this rank's particles first, unless this call has done
  * so. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
-/* How many fluid particles' neighbours are watched while particles are measured: bits of a mask. */
+/* The most fluid particles whose neighbours are counted while all are measured: bits of a mask. */
 #define MCOR_WATCHED 32
 /* Returns the usual `most_fluid`. */
 static inline int mcor_most_samples(const mcor_input* input)

@@ -107,7 +107,7 @@ static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* those that may reach the chunk, each particle */
+  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* samples that may reach the chunk, each particle */
   for (int s = 0; s < watch->count && count > 0; ++s)
   {
     const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;

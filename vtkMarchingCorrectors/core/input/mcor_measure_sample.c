@@ -2,10 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Chooses a few particles that stand for all: the particles whose positions have the least hashes.
- * So it does not matter in which order they come, or how ranks share them. From such a sample one
- * smoothing length is estimated for particles that have none. The pass that samples also looks for
- * positions that are not finite, so that it is the first of three passes: the particles are then
- * measured, and staged. */
+ * So it does not matter in which order particles come, or how ranks share them. From such a sample
+ * one smoothing length is estimated for particles that have none. The pass that samples also looks
+ * for positions that are not finite. Two more passes then measure and stage the particles. */
 
 #include "mcor_input.h"
 

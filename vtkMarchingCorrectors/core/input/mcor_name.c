@@ -143,7 +143,8 @@ static bool mcor_are_periods(const double bounds[6])
   return some;
 }
 
-/* The arrays that give a period, the first of them first, and how many values they have. */
+/* The first four arrays may give a period, and are tried in this order; the last belongs to `box`.
+ * values: how many values an array has. */
 static const struct
 {
   const char* name;

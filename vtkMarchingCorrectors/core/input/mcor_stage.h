@@ -12,7 +12,7 @@ typedef struct mcor_stage_slice
   int64_t used, to; /* number of images that are staged; where they begin */
   int64_t heavy;    /* the first particle whose weight is too large, or -1 */
   bool changed;     /* values differ from the measured ones: another thread writes to the arrays */
-  double largest_weight; /* or the heavy particle's */
+  double largest_weight; /* if there is a heavy particle, its weight */
   double inv_h, size;       /* values of the first image */
   bool one_inv_h, one_size; /* whether all images have these */
   double farthest;          /* the largest reach, in cubes, of the particles that reach the box */

@@ -113,8 +113,8 @@ static double mcor_single_step(double largest)
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-/* Whether steps at the largest coordinate are too long, and all of the fluid's coordinates are numbers
- * of single precision. axis: of the largest coordinate. */
+/* Whether steps of single precision are too long at the largest coordinate, and all of the fluid's
+ * coordinates are numbers of single precision. axis: the largest coordinate's axis. */
 static bool mcor_is_coarse(const mcor_suspicion* s, int* axis, double* step)
 {
   const mcor_statistics* n = &s->surface->statistics;

@@ -232,7 +232,7 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   }
 }
 
-/* One work-item = one vertex that another one replaces, pairs[i].x and .y. Copies `width` numbers. */
+/* One work-item = one vertex, pairs[i].x, which pairs[i].y replaces. Copies `width` numbers. */
 __kernel void mcor_march_replace(
   const int count, __global const int2* pairs, const int width, __global real* numbers)
 {

@@ -52,7 +52,7 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
                                      : i < j;
 }
 
-/* Compares two particles by their values, then by number; or as above if `value` is 0. */
+/* Compares two particles by their values, then by number; if `value` is 0, by mcor_grid_before. */
 bool mcor_grid_value_before(MCOR_PARTICLES, __global const real* value, int i, int j)
 {
   return !value            ? mcor_grid_before(x, y, z, inv_h, size, i, j)
@@ -161,7 +161,8 @@ void mcor_grid_insert(MCOR_PARTICLES, __global int* order, __global fix* px, int
 
 /* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order.
  * Sorts the particles within these cells, so that their order no longer depends on the input;
- * writes `order`, and px in this order. Raises `most` to the largest number of particles in a cell. */
+ * writes `order`, and px in this order. Raises `most` to the largest number of particles in a cell,
+ * if this is above MCOR_USUAL_IN_CELL. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_PARTICLES,
   __global int* order, __global fix* px, __global int* most)
 {

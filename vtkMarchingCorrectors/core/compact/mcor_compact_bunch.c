@@ -221,34 +221,29 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
 }
 
 /* Whether the edges of a fan form one closed ring through different vertices; for lines, whether
- * the two ends differ. Sorts the edges along the ring. */
-static bool mcor_is_ring(mcor_fan* fan, int corners)
+ * the two ends differ. */
+static bool mcor_is_ring(const mcor_fan* fan, int corners)
 {
-  const int count = fan->count;
-  if (corners == 2)
+  if (corners == 2 || fan->count < 3)
   {
-    return count == 1 && fan->from[0] != fan->to[0];
+    return corners == 2 && fan->count == 1 && fan->from[0] != fan->to[0];
   }
-  for (int i = 0; i + 1 < count; ++i)
+  int seen = 1;
+  for (int32_t at = fan->to[0]; at != fan->from[0]; ++seen)
   {
-    const int32_t at = fan->to[i];
     int next = 0, choices = 0;
-    for (int k = i + 1; k < count; ++k)
+    for (int k = 1; k < fan->count; ++k)
     {
       next = fan->from[k] == at ? k : next;
       choices += fan->from[k] == at;
     }
-    if (choices != 1 || at == fan->from[0])
+    if (choices != 1 || seen == fan->count)
     {
       return false;
     }
-    const int32_t to = fan->to[next];
-    fan->from[next] = fan->from[i + 1];
-    fan->to[next] = fan->to[i + 1];
-    fan->from[i + 1] = at;
-    fan->to[i + 1] = to;
+    at = fan->to[next];
   }
-  return count >= 3 && fan->to[count - 1] == fan->from[0];
+  return seen == fan->count;
 }
 
 /* Whether a closed piece would keep enough vertices: counts the bunches in triangles around a bunch

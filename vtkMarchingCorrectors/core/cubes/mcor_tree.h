@@ -98,7 +98,7 @@ mcor_status mcor_fail_leaves(mcor_context* context);
 /* mcor_tree_split.c. Finds all bricks that the particles of all ranks split. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);
 
-/* mcor_tree_key.c. Lists the keys of all split bricks, ascending. Free them with free(). */
+/* mcor_tree_brick.c. Lists the keys of all split bricks, ascending. Free them with free(). */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
 /* Finds the position of the brick with a key. */

@@ -101,35 +101,38 @@ void mcor_grid_heap_sort(
 /* Sorts a cell's particles by x. Returns false if two of them have the same x. A particle's place
  * is the number of particles before it, counted for MCOR_LANES particles at once. */
 bool mcor_grid_rank(
-  const fix* own, const int* item, int count, __global int* order, __global fix* px)
+  const fix* own, const int* item, int cell, int end, __global int* order, __global fix* px)
 {
   fixv most = 1;
-  for (int begin = 0; begin < count; begin += MCOR_LANES)
+  for (int begin = cell; begin < end; begin += MCOR_LANES)
   {
     const fixv at = MCOR_LOAD_OWN(0, own + begin);
     fixv before = 0, same = 0;
-    for (int k = 0; k < count; ++k)
+    for (int k = cell; k < end; ++k)
     {
       before -= (fixv)own[k] < at;
       same -= (fixv)own[k] == at;
     }
-    for (int lane = 0; lane < MCOR_LANES && begin + lane < count; ++lane)
+    for (int lane = 0; lane < MCOR_LANES && begin + lane < end; ++lane)
     {
-      const int to = (int)MCOR_GET_FIX(before, lane);
+      const int to = cell + (int)MCOR_GET_FIX(before, lane);
       px[to] = own[begin + lane];
       order[to] = item[begin + lane];
     }
-    most = max(most, mcor_lane_index() < (fixv)(count - begin) ? same : (fixv)1);
+    most = max(most, mcor_lane_index() < (fixv)(end - begin) ? same : (fixv)1);
   }
   return !MCOR_ANY(most > (fixv)1);
 }
 #endif
 
-/* Sorts the particles of a cell. order and px point to its first particle. */
-void mcor_grid_insert(MCOR_PARTICLES, __global int* order, __global fix* px, int count)
+/* Sorts the particles within each of several whole cells, which takes less time than cell by cell.
+ * keys, order and px point to the first particle of the first cell. Returns the largest number of
+ * particles in a cell. */
+int mcor_grid_insert(
+  __global const ulong* keys, MCOR_PARTICLES, __global int* order, __global fix* px, int count)
 {
   fix own[MCOR_INSERTION_LIMIT + MCOR_LANES];
-  int item[MCOR_INSERTION_LIMIT];
+  int item[MCOR_INSERTION_LIMIT], most = 0;
   for (int i = 0; i < count; ++i)
   {
     item[i] = order[i];
@@ -137,26 +140,57 @@ void mcor_grid_insert(MCOR_PARTICLES, __global int* order, __global fix* px, int
   }
 #if MCOR_LANES > 1
   MCOR_STORE_OWN((fixv)0, 0, own + count); /* fills the last vector; nobody uses these lanes */
-  if (mcor_grid_rank(own, item, count, order, px))
-  {
-    return;
-  }
 #endif
-  for (int i = 0; i < count; ++i)
+  for (int cell = 0, end; cell < count; cell = end)
   {
-    int to = i;
-    for (; to > 0 &&
-         (own[i] < px[to - 1] ||
-           (own[i] == px[to - 1] &&
-             mcor_grid_before(x, y, z, inv_h, size, item[i], order[to - 1])));
-         --to)
+    for (end = cell + 1; end < count && keys[end] == keys[cell];)
     {
-      px[to] = px[to - 1];
-      order[to] = order[to - 1];
+      ++end;
     }
-    px[to] = own[i];
-    order[to] = item[i];
+    most = max(most, end - cell);
+#if MCOR_LANES > 1
+    if (mcor_grid_rank(own, item, cell, end, order, px))
+    {
+      continue;
+    }
+#endif
+    for (int i = cell; i < end; ++i)
+    {
+      int to = i;
+      for (; to > cell &&
+           (own[i] < px[to - 1] ||
+             (own[i] == px[to - 1] &&
+               mcor_grid_before(x, y, z, inv_h, size, item[i], order[to - 1])));
+           --to)
+      {
+        px[to] = px[to - 1];
+        order[to] = order[to - 1];
+      }
+      px[to] = own[i];
+      order[to] = item[i];
+    }
   }
+  return most;
+}
+
+/* Returns the end of the whole cells from `first` on that begin before `end` and together fit into
+ * an insertion sort; `first` if the first cell is too large. */
+int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int count)
+{
+  const int limit = min(first + MCOR_INSERTION_LIMIT, count);
+  int last = min(end, limit);
+  while (last < limit && keys[last] == keys[last - 1])
+  {
+    ++last;
+  }
+  if (last < count && keys[last] == keys[last - 1])
+  {
+    while (last > first && keys[last - 1] == keys[limit])
+    {
+      --last;
+    }
+  }
+  return last;
 }
 
 /* One work-item = the cells that begin in a batch of sorted keys. Reads particles in input order.
@@ -174,26 +208,22 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
   while (first < end)
   {
-    int last = first + 1;
-    while (last < count && keys[last] == keys[first])
+    int last = mcor_grid_cells_end(keys, first, end, count);
+    int in_cell =
+      mcor_grid_insert(keys + first, x, y, z, inv_h, size, order + first, px + first, last - first);
+    if (last == first)
     {
-      ++last;
-    }
-    if (last - first > MCOR_USUAL_IN_CELL)
-    {
-      atomic_max(most, last - first);
-    }
-    if (last - first <= MCOR_INSERTION_LIMIT)
-    {
-      mcor_grid_insert(x, y, z, inv_h, size, order + first, px + first, last - first);
-    }
-    else
-    {
-      mcor_grid_heap_sort(x, y, z, inv_h, size, 0, order + first, last - first);
+      last = mcor_find_key(keys, first, count, keys[first] + 1);
+      in_cell = last - first;
+      mcor_grid_heap_sort(x, y, z, inv_h, size, 0, order + first, in_cell);
       for (int i = first; i < last; ++i)
       {
         px[i] = x[order[i]];
       }
+    }
+    if (in_cell > MCOR_USUAL_IN_CELL)
+    {
+      atomic_max(most, in_cell);
     }
     first = last;
   }

@@ -208,14 +208,6 @@ class Arguments:
         return place_period(lengths, extent)
 
 
-def neighbour_ratio(word):
-    """Returns ETA of "neighbours=ETA", or 1.3 for "neighbours" alone."""
-    name, equals, ratio = word.partition("=")
-    if name not in ("neighbours", "neighbors"):
-        raise InvalidArgument(f"estimate_smoothing_length is '{word}'; it must be True, \"neighbours\" or \"neighbours=ETA\".")
-    return convert(float, "ETA of neighbours", ratio) if equals else 1.3
-
-
 def place_period(lengths, extent):
     bounds = (ctypes.c_double * 6)()
     lib.mcor_place_period((ctypes.c_double * 3)(*lengths), (ctypes.c_double * 6)(*extent), bounds)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Unio
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, neighbour_ratio, number, take)
+from ._arrays import (QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, number, take)
 from ._context import Context, default_context
 from ._find import ELEMENTS, Found, name_priority
 from ._library import InvalidArgument, InvalidData, fill_slots, lib, say, warn, warn_of_particles
@@ -116,17 +116,16 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
     options.update((name, True) for name in given.pop("outputs") or ())
     _warn_of_unused(options, given["context"])
-    arguments = Arguments(units.positions)
+    arguments = Finder(units.positions, source, attributes if named is None else named)
     arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
     given.update(units.quantities(given), within=units.lengths(given["within"], "within"))
-    finder = Finder(arguments, source, attributes if named is None else named)
-    finder.add_sizes({**{role: given[role] for role in QUANTITIES}, **roles}, options.pop("estimate_smoothing_length", False))
-    finder.add_fluid(given["solid"], given["fluid"])
-    finder.add_choice(given["within"], given["only"])
-    finder.request["scalar_component"] = -1  # This means the magnitude.
-    finder.request.update((name, number(name, kind_of(name), options.pop(name))) for name in (
+    arguments.add_sizes({**{role: given[role] for role in QUANTITIES}, **roles}, options.pop("estimate_smoothing_length", False))
+    arguments.add_fluid(given["solid"], given["fluid"])
+    arguments.add_choice(given["within"], given["only"])
+    arguments.request["scalar_component"] = -1  # This means the magnitude.
+    arguments.request.update((name, number(name, kind_of(name), options.pop(name))) for name in (
         "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options)
-    finder.find(wants, units.options(options), nothing)
+    arguments.find(wants, units.options(options), nothing)
     if "flow" not in wants:
         arguments.set_attributes(attributes)
     return arguments
@@ -136,15 +135,16 @@ class Ranges(list):
     """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. Several may have one name: one of them must hold."""
 
 
-class Finder:
-    """Lets the core find volumes, fluid, particles to leave out, and the scalar among the given arrays and the arrays of a file
-    (source: its particles, or None). Without a file, `fluid` and `only` name attributes."""
+class Finder(Arguments):
+    """Arguments that are arrays of NumPy. Lets the core find volumes, fluid, particles to leave out, and the scalar among the given
+    arrays and the arrays of a file (source: its particles, or None). Without a file, `fluid` and `only` name attributes."""
 
-    def __init__(self, arguments, source, attributes):
-        self.arguments, self.source = arguments, source
+    def __init__(self, positions, source, attributes):
+        super().__init__(positions)
+        self.source = source
         self.others = source.arrays if source else attributes
         self.array_of = source.array if source else functools.partial(_attribute, attributes)
-        self.named, self.names, self.values, self.ranges, self.marks, self.looks = {}, {}, {}, [], [], False
+        self.named, self.names, self.values, self.ranges, self.texts, self.looks = {}, {}, {}, [], [], False
         self.request = {"find": source is not None}
 
     def add(self, name, array):
@@ -156,14 +156,19 @@ class Finder:
 
     def take(self, keyword, name, kinds="fiub"):
         array = as_array(without_unit(self.array_of(name)), f"array '{name}' of {keyword}")
-        if array.shape != (self.arguments.count,) or array.dtype.kind not in kinds:
+        if array.shape != (self.count,) or array.dtype.kind not in kinds:
             raise InvalidArgument(f"{keyword} names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
                                   "have one number for each particle.")
         return array if array.dtype in ELEMENTS or array.dtype.kind not in "fiu" else contiguous(array, name)
 
     def add_sizes(self, given, estimate):
         """Adds quantities. given: {role: array, value or None}; the scalar may also be a name. estimate: estimate_smoothing_length."""
-        self.ratio = neighbour_ratio(estimate) if isinstance(estimate, str) else None
+        self.ratio = None
+        if isinstance(estimate, str):
+            name, equals, ratio = estimate.partition("=")
+            if name not in ("neighbours", "neighbors"):
+                raise InvalidArgument(f"estimate_smoothing_length is '{estimate}'; it must be True, \"neighbours\" or \"neighbours=ETA\".")
+            self.ratio = convert(float, "ETA of neighbours", ratio) if equals else 1.3
         self.request.update(lengths_by_neighbours=self.ratio is not None, estimate_smoothing_length=self.ratio is not None or number(
             "estimate_smoothing_length", "int", estimate), compute_volumes=isinstance(given["volume"], str) and given["volume"] == "computed")
         for role, array in given.items():
@@ -179,14 +184,14 @@ class Finder:
                 if not self.values[role] > 0:
                     raise InvalidArgument(f"The {words} is {self.values[role]:g}; it must be greater than 0.")
             else:
-                self.names[role] = self.add(words, self.arguments.shaped(array, words))
+                self.names[role] = self.add(words, self.shaped(array, words))
         for role in ("volume", "mass", "density") if self.source else ():
             array = None if role in self.names or role in self.values else self.source.quantity(role)
             if array is not None:
-                name, array = getattr(self.source, role), array if np.ndim(array) else np.full(self.arguments.count, array)
+                name, array = getattr(self.source, role), array if np.ndim(array) else np.full(self.count, array)
                 is_usual = isinstance(name, str) and name_priority(name, role) == 0
-                self.add(name if is_usual else role, self.arguments.shaped(array, role))
-        if not self.arguments.count and "smoothing_length" not in self.names:
+                self.add(name if is_usual else role, self.shaped(array, role))
+        if not self.count and "smoothing_length" not in self.names:
             self.values["smoothing_length"] = 1.0  # No particle needs it.
 
     def add_fluid(self, solid, fluid):
@@ -194,11 +199,11 @@ class Finder:
         if solid is not None and fluid is not None:
             raise InvalidArgument("solid and fluid both tell which particles are fluid. Leave one of them out.")
         if solid is not None:
-            self.names["fluid"], self.request["fluid_value"] = self.add("solid", self.arguments.marks(solid)), 0
+            self.names["fluid"], self.request["fluid_value"] = self.add("solid", self.marks(solid)), 0
         elif fluid is not None and not is_auto:
             name, self.request["fluid_value"] = parse_fluid(fluid)
             self.names["fluid"] = self.add(name, self.take("fluid", name)) if isinstance(name, str) else self.add(
-                "fluid", self.arguments.marks(name, "fluid"))
+                "fluid", self.marks(name, "fluid"))
         self.request["find_fluid"] = 2 * is_auto
         self.looks = "fluid" not in self.names and (self.source is not None or is_auto)
         for name in self.others if self.looks else ():
@@ -221,40 +226,39 @@ class Finder:
                     self.ranges.append((self.add(name, array), *parse_range(name, wanted)))
         elif only is not None:
             only = as_array(only, "array of only")
-            if only.dtype != bool or only.shape != (self.arguments.count,):
-                raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.arguments.count} particles, not an "
+            if only.dtype != bool or only.shape != (self.count,):
+                raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.count} particles, not an "
                                       f"array of {only.dtype} of the shape {only.shape}.")
             self.add_marks("only", only)
 
     def add_marks(self, name, marks):
-        self.marks.append(self.add(name, marks))
-        self.ranges.append((self.marks[-1], 1, 1))
+        self.texts.append(self.add(name, marks))
+        self.ranges.append((self.texts[-1], 1, 1))
 
     def find(self, wants, options, nothing):
         """Sets the input and the options. nothing: the warning's words for no fluid; None: no fluid is an error."""
-        arguments = self.arguments
-        found = Found(arguments.positions, self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges,
+        found = Found(self.positions, self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges,
                       **self.request)
-        arguments.kept += [found, self.named]
+        self.kept += [found, self.named]
         if found.error:
             raise InvalidArgument(say("LENGTH_MISSING") if found.error.code == "NO_SMOOTHING_LENGTH" else found.error)
         for sentence in filter(None, (found.unused, found.unused_type)):
             warn(sentence)
-        arguments.input, why = found.found.input, found.text("no_fluid")
-        for name in self.marks:  # The core's sentence has name=value.
+        self.input, why = found.found.input, found.text("no_fluid")
+        for name in self.texts:  # The core's sentence has name=value.
             why = why.replace(f"{name}=1", name)
-        arguments.set_options(options)
-        if why and arguments.count:
+        self.set_options(options)
+        if why and self.count:
             if nothing is None:
                 raise InvalidData(say("NOTHING_WITHOUT_FLUID", why, "nothing to compute"))
             warn(say("NOTHING_WITHOUT_FLUID", why, nothing))
-            arguments.input.count = 0
+            self.input.count = 0
         for is_needed, function, more, take_it in (
                 (found.found.needs_lengths, lib.mcor_find_smoothing_lengths, [self.ratio], lib.mcor_take_lengths),
                 (found.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
-            if is_needed and arguments.input.count:
-                arguments.kept.append(arguments.per_neighbours(found, function, *more))
-                take_it(ctypes.byref(found.found), arguments.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+            if is_needed and self.input.count:
+                self.kept.append(self.per_neighbours(found, function, *more))
+                take_it(ctypes.byref(found.found), self.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 
 
 def parse_fluid(fluid):

@@ -16,7 +16,7 @@ from pxr import Usd, UsdGeom, UsdValidation
 
 import marchingcorrectors as mc
 from marchingcorrectors import io
-from marchingcorrectors._between import between
+from marchingcorrectors._film import between
 from marchingcorrectors._usd import Film, Spray
 from solver_files import write_bgeo
 

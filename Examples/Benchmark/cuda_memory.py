@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether CUDA's memory can become an OpenCL buffer of the same card without a copy: CUDA exports memory as a file descriptor,
 cl_khr_external_memory_opaque_fd imports it. Decides whether arrays of CuPy or PyTorch could reach the kernels by one copy on the card. Its second
-half has not run on a card yet. Of several cards it takes CUDA's first. Needs both drivers, and Python alone.
+half has not run on a card yet. It takes CUDA's first card. Needs both drivers, and Python alone.
 
 Status 0: yes; 1: no, the last line says why.
 """

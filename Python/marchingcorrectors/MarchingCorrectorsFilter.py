@@ -74,13 +74,14 @@ def read_properties():
 
 PROPERTIES = read_properties()
 SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) * 6}
-# The words of properties, in the order of their numbers. They are methods, SetSeedModeToPairs(), and constants.
+# The words for the numbers of properties, in order. A word is in a method's name, such as SetSeedModeToPairs(), and in a constant's.
 WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
          "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
 # These are findings of a run, which the panel shows.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-# What a run's data on the device depend on: marks of the particles and of the scalar, options; and its factors of smoothing lengths.
+# A run's data on the device depend on marks of the particles, marks of the scalar, and options. The last entry holds the run's factors of
+# smoothing lengths.
 NO_RUN = None, None, None, None
 
 
@@ -373,7 +374,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         data = copy_of(given)  # An observer of the progress may remove blocks from the input, or change them.
         output.CopyStructure(data)
         names = ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, index, _ in leaves_of(data)]
-        blocks = [copy_of(block) if i else block for i, (block, *_) in enumerate(leaves_of(data))]  # Kept data belong to the first one.
+        blocks = [copy_of(block) if i else block for i, (block, *_) in enumerate(leaves_of(data))]  # Data kept on the device are the first block's.
         walls = [name for name in names if tells_of_walls(name)]
         if walls and len(walls) < len(names):
             self._warn_once("walls", say("WALLS_IN_BLOCK", walls[0], len(names)))

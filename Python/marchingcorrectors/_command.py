@@ -81,7 +81,7 @@ COMMANDS = {
     "gauge": (GAUGE, "water levels along lines", ".csv"),
     "slice": (PROBE, "the field on a plane", ".vti or .npz"),
     "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
-# Options that are not keywords of the functions: of all commands, and of each.
+# The options that are not keywords of the functions: OWN has those of all commands, OF has each command's.
 OWN = {"--dp", "--coefh", "--walls", "--solids", "--threads", "--quiet"}
 OF = {"surface": {"--scalar", "--iso", "--free-surface", "--curvature", "--cubes", "--times", "--attributes", "--no-attributes"},
       "gauge": {"--iso", "--free-surface", "--gauge"}, "slice": {"--slice", "--resolution", "--attributes", "--no-attributes"},
@@ -109,7 +109,7 @@ class Once(argparse.Action):
 
 
 def reader_of(option, argument):
-    """Returns the function that reads the option's value, and says what it must be. argument: its name in the program's help."""
+    """Returns the function that reads the option's value, and says what it must be. argument: the value's name in the program's help."""
     letters = len(re.sub("[^A-Z]", "", argument))
     read = READERS.get(option, int if argument in ("N", "MIB") else numbers if "," in argument else float if letters < 3 else str)
     wanted = {int: "a whole number", float: "a number"}.get(read, argument)

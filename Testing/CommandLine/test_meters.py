@@ -259,7 +259,7 @@ class Flux(Meter):
         self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
 
     def test_volume_that_has_passed(self):
-        """Between two steps as much has passed as their mean flux makes."""
+        """What has passed between two steps is the mean of their fluxes times the time between them."""
         self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],

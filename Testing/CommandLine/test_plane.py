@@ -131,7 +131,7 @@ class Plane(CommandLineTest):
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
 
     def test_obj(self):
-        """The lines of an .obj file lead through the points that the table has in their order."""
+        """The lines of an .obj file lead through the points of the .csv table, in the table's order."""
         files_of = {ending: self.directory / f"lines{ending}" for ending in (".csv", ".obj")}
         for file in files_of.values():
             self.run_good(self.input, file, "--free-surface", "--no-attributes", "--quiet")

@@ -137,7 +137,7 @@ mesh_report core_check_mesh(const mcor_surface* surface);
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
 /* Does what core_check_mesh does, and fails unless exactly the points of the mesh's boundary are flagged. */
 void core_check_flags(const mcor_surface* surface);
-/* core_hash_start: the hash of no bytes. core_hash_bytes: the hash with more bytes, if data is not NULL. */
+/* CORE_HASH_OF_NOTHING: the hash of no bytes. core_hash_bytes adds bytes to a hash, unless data is NULL. */
 #define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
 /* Hashes the number of points, points, triangles and every optional array. */

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the library with the oracle on particles and options without any plan.
+/* Compares the library with the oracle on random particles and options.
  *
  *   test_oracle_random FIRST_SEED COUNT [--adaptive]
  */

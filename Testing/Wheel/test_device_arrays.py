@@ -38,7 +38,7 @@ class OnCuda:
 
 
 class OnlyDlpack:
-    """Has DLPack's methods alone, of a CUDA device. The tensor in NumPy's own capsule tells that it is on the host, which the package need not ask."""
+    """Has only DLPack's methods, and says that it is on a CUDA device. The tensor in its capsule, which NumPy makes, is on the host all the same."""
 
     def __init__(self, array):
         self.array, self.streams = array, []

@@ -501,10 +501,10 @@ extern "C"
   } mcor_statistics;
 
   /* The key of a point: the number of the iso value and the kind of the point, then its place. The
-   * place of a cut is the two points between which it lies; of a cap's point, the square; of any other
-   * point, its lattice edge, for a merged point that of the first of its points. The points of a
-   * surface have different keys, in ascending lexicographic order. In the surface of a box, points
-   * have the same keys as in the whole surface. */
+   * place of a cut is the two points between which it lies; of a cap's point, the square; of any
+   * other point, its lattice edge. A merged point has the key of the first of the points that it
+   * replaces. The points of a surface have different keys, in ascending lexicographic order. In the
+   * surface of a box, points have the same keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
   /* The key of a triangle: the number of the iso value, then its cell or the square of a cap.

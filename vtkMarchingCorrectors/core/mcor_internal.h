@@ -61,8 +61,8 @@ mcor_status mcor_fail(
 #endif
   ;
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
-/* Writes a text, and appends to one that it frees. The caller frees the result; NULL: memory ran
- * out, also in the call before. */
+/* mcor_text writes a new text; mcor_append returns a text with more behind it, and frees the given
+ * one. The caller frees the result. NULL: memory ran out, now or before (`text` is NULL). */
 char* mcor_text(const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 1, 2)))

@@ -41,10 +41,10 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
 /**
- * Sends each element's tuple back to the rank from which the element came. Returns arrays of `count`
- * tuples; those that nobody sent are 0. from: how many elements came from each rank; owned: marks
- * elements whose tuples are sent, null: all; to: where, on this rank, each rank's tuples belong.
- * Collective.
+ * Sends each element's tuple back to the rank from which the element came. Returns arrays of
+ * `count` tuples; those that nobody sent are 0. from: how many elements came from each rank; owned:
+ * marks elements whose tuples are sent, null: all; to: where, on this rank, each rank's tuples
+ * belong. Collective.
  */
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const std::vector<vtkIdType>& from, const std::uint8_t* owned, const vtkSPHRanksLists& to,

@@ -250,7 +250,7 @@ private:
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.45, 0.72, 0.95);
     actor->GetProperty()->SetLighting(!isFlat);
-    actor->GetProperty()->SetAmbient(isColored && !isFlat ? 0.3 : 0.0); // colours in shade differ
+    actor->GetProperty()->SetAmbient(isColored && !isFlat ? 0.3 : 0.0); // shade changes colours
     actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.4);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);

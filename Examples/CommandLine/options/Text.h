@@ -34,7 +34,7 @@ void Say(const std::string& sentence);
 /// Throws std::runtime_error, "FILE cannot be read: WHY".
 [[noreturn]] void FailToRead(const std::string& file, const std::string& why);
 
-/// Throws std::runtime_error unless `isGood`: the sentence, or that the file cannot be read or written.
+/// These throw std::runtime_error unless `isGood`, with the sentence, or with why the file cannot be read or written.
 ///@{
 void Require(bool isGood, const std::string& sentence);
 void RequireToRead(bool isGood, const std::string& file, const std::string& why);
@@ -52,7 +52,7 @@ std::string DigitsOf(T number)
   return { digits, std::to_chars(digits, digits + sizeof(digits), number).ptr };
 }
 
-/// Returns the number with this many digits, or fewer, in every locale.
+/// Returns the number with at most this many digits. The locale does not matter.
 std::string DigitsOf(double number, int digits);
 
 /// Rounds to 15 digits: 3 x 0.05 is 0.15, not 0.15000000000000002.
@@ -74,7 +74,7 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws a UsageError unless `isGood`: the sentence, or "OPTION needs WORDS, not 'TEXT'".
+/// Throws a UsageError unless `isGood`, with the sentence, or with "OPTION needs WORDS, not 'TEXT'".
 void Need(bool isGood, const std::string& sentence);
 void Need(
   bool isGood, const std::string& option, const std::string& words, const std::string& text);

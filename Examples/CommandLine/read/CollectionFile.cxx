@@ -71,7 +71,7 @@ std::vector<std::string> Tokens(const std::string& text)
       }
       const auto code = std::strtoul(text.substr(at + 1, 4).c_str(), nullptr, 16);
       at += std::min<std::size_t>(4, text.size() - 1 - at);
-      const int bits = code < 0x80 ? 0 : code < 0x800 ? 6 : 12; // in bytes behind the first one
+      const int bits = code < 0x80 ? 0 : code < 0x800 ? 6 : 12; // bits in the bytes behind the first one
       token += static_cast<char>((bits == 0 ? 0 : bits == 6 ? 0xC0 : 0xE0) | code >> bits);
       for (int shift = bits - 6; shift >= 0; shift -= 6)
       {

@@ -297,8 +297,8 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
     return ArrayWith<vtkStringArray>(first.Words);
   }
   const bool areLarge = std::any_of(first.Numbers.begin(), first.Numbers.end(),
-    [](double number) { return std::abs(number) >= 9007199254740992.0; }); // doubles are 2 apart
-  const bool isIdentifier = vtkSPHTellsApart(first.Name.c_str()); // of particles, or of their kinds
+    [](double number) { return std::abs(number) >= 9007199254740992.0; }); // from here on, doubles are 2 apart
+  const bool isIdentifier = vtkSPHTellsApart(first.Name.c_str()); // it numbers particles or their kinds
   if ((isIdentifier || areLarge) && !first.Whole.empty())
   {
     return ArrayWith<vtkTypeInt64Array>(first.Whole);

@@ -405,7 +405,7 @@ std::vector<double> ListTimesOfVtk(const std::string& file)
 
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names)
 {
-  const std::string head(BytesOf(file)->substr(0, 1 << 16)); // field data behind it are ignored
+  const std::string head(BytesOf(file)->substr(0, 1 << 16)); // field data farther behind are ignored
   const bool isLegacy = head.compare(0, 5, "# vtk") == 0;
   const std::string text = isLegacy ? FieldOfLegacy(head) : FieldOfXml(head);
   std::vector<double> number;

@@ -59,7 +59,7 @@ char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran ou
 char StackOfHandler[1 << 16]; // after an endless recursion, the usual stack is full
 volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError =
-  STDERR_FILENO; ///< the true one, also while an Activity is silent
+  STDERR_FILENO; ///< leads to the user even while an Activity is silent
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;

@@ -30,13 +30,13 @@ public:
   void operator=(const Activity&) = delete;
 
 private:
-  const std::pair<std::string, std::string> Outer; ///< the sentence around this object's life
+  const std::pair<std::string, std::string> Outer; ///< the sentence before and after this object's life
   const bool IsSilent;
 };
 
-/// Makes a new file, whose name is `name` and six more characters, and becomes `name`; or "" if this
-/// fails. Returns its descriptor; below 0: it failed, and errno tells why. The file is removed when
-/// the program ends, unless EndTemporary() was called.
+/// Makes a new file, and appends six characters to `name`, which then names the file. Returns the
+/// file's descriptor; below 0, `name` is "", and errno tells why. The file is removed when the program
+/// ends, unless EndTemporary() was called.
 int MakeTemporary(std::string& name);
 
 /// Lets the file take the place of `target`, or, without one, removes the file. Returns false, and

@@ -375,7 +375,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
     }
   }
   Messages().AddWarningsTo(run.Warnings); // they are in the statistics, too
-  // Triangles are those of all processes.
+  // "Triangles" counts the triangles of all processes.
   if (run.Surface->GetNumberOfCells() == 0 && NumberOf(run.Statistics, "Triangles") == 0.0)
   {
     const std::string reason =

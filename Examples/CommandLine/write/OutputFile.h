@@ -48,8 +48,8 @@ public:
   {
   }
 
-  /// Is called with all of its text when the file may have grown. Does nothing without a name.
-  /// Throws std::runtime_error with one sentence.
+  /// To be called with the whole text whenever it may have grown. Does nothing without a name. Throws
+  /// std::runtime_error with one sentence.
   void Write(const std::string& text, bool isLast);
 
 private:

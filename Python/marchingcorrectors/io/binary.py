@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads solvers' binary files: GADGET's formats 1 and 2, DualSPHysics' .bi4, Houdini's .bgeo, as of SPlisHSPlasH, and Phantom's dumps."""
+"""Reads solvers' binary files: GADGET's formats 1 and 2, DualSPHysics' .bi4, Houdini's .bgeo, as SPlisHSPlasH writes it, and Phantom's dumps."""
 import itertools
 import os
 import re
@@ -12,9 +12,9 @@ from .._library import say
 from ._bytes import RawArray, read_bytes, state_of
 from ._particles import FileError, Particles, by_name
 
-# GADGET: records of Fortran, each between two copies of its number of bytes, in one file or several. First a header of 256 bytes; then a
-# record for each array: of all types of particles in order, of the types without a mass in the header, or of gas. In format 2, a record
-# with the array's name comes before each; in format 1, the order tells the names.
+# GADGET: records of Fortran, each between two copies of its number of bytes, in one file or several. The first record is a header of 256
+# bytes. Each other record is an array: of all types of particles in order, of the types that have no mass in the header, or of gas. In
+# format 2, a record with the array's name comes before each record; in format 1, the order of the arrays tells their names.
 HEADER = "6i6d2d2i6I2i4d"
 LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS": "Masses", "U": "InternalEnergy",
           "RHO": "Density", "NE": "ElectronAbundance",
@@ -110,7 +110,7 @@ class BinaryFile:
             begin += size + 8
 
     def read_arrays(self, blocks, with_masses):
-        """Yields (label, RawArray) of each array that is known, or has a fitting size."""
+        """Yields (label, RawArray) of each array of a fitting size. Of others, an array that all types have is an error; the rest is skipped."""
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), sum(self.counts)), "MASS": with_masses}
         for label, (begin, size) in blocks:
             count, columns = counts.get(label, self.counts[0]), 3 if label in VECTORS else 1

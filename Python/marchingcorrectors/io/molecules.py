@@ -22,7 +22,7 @@ def rows_of(file, lines, begin, count):
 
 
 def take_step(file, step, steps):
-    """Returns what the chosen step holds, and the words of Body for its time. steps: pairs (time, or None for its number; what it holds)."""
+    """Returns the content of the chosen step, and its times as words of Body. steps: pairs (time, content); the time None means the step's number."""
     times = [float(i) if time is None else time for i, (time, _) in enumerate(steps)]
     i = choose_step(file, step, times)
     return steps[i][1], {"time": times[i], "times": times}

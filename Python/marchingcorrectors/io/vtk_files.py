@@ -46,10 +46,11 @@ def find_vertices(types, offsets, points, count):
 
 
 def take_vertices(file, body, lists, cell_arrays):
-    """Takes only the vertices' points if there are other cells, too: other points are a mesh's. Arrays of cells become
-    arrays of these points, unless points have one of that name; also where each point has a vertex.
+    """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
+    of the points, unless points have an array of that name. They also do if all cells are vertices, and each point has one.
 
-    lists: pairs of cells' types, and a function that returns where the points of each cell end, and these points; cell_arrays: {name: function}
+    lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
+    cell_arrays: {name: function that returns the array}.
     """
     types, count = np.concatenate([np.zeros(0, int), *(types for types, _ in lists)]), len(body.points)
     is_vertex = np.isin(types, VERTICES)
@@ -79,7 +80,7 @@ def take_vertices(file, body, lists, cell_arrays):
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
-CELLS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6, "Cells": None}  # These are in the order of VTK's cells, with types of such cells.
+CELLS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6, "Cells": None}  # VTK orders its cells like this. The numbers are types of cells.
 BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 
 
@@ -116,7 +117,7 @@ def refuse(*_):
 
 
 def parse(data):
-    """Returns the tree of elements. Takes text in large pieces, as XMLParser does not."""
+    """Returns the tree of elements. Takes text in large pieces, which XMLParser does not do."""
     tree, parser = TreeBuilder(), expat.ParserCreate()
     parser.buffer_text, parser.buffer_size, parser.StartDoctypeDeclHandler = True, 1 << 20, refuse
     parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = tree.start, tree.end, tree.data
@@ -141,7 +142,7 @@ class Array:
 
 
 def arrays_in(element, part, count):
-    """Lists the arrays of numbers in the parts of this name. count: the number of their values; None: they tell it."""
+    """Lists the arrays of numbers in elements that are called `part`. count: how many values each array has; None: the array tells it."""
     return [Array(each, 0 if each.get("Name") == "connectivity" and part in CELLS else count) for inside in element.iter(part)
             for each in inside.findall("DataArray") if each.get("type") in KINDS]
 
@@ -179,7 +180,7 @@ class XmlFile:
         return values.reshape(array.count, array.columns) if array.columns > 1 else values
 
     def cells(self, arrays):
-        """Returns where the points of each cell end, and these points."""
+        """Returns where each cell's points end in a list of points, and this list."""
         ends, connectivity = self.values(arrays["offsets"]), arrays["connectivity"]
         connectivity.count = int(ends[-1])
         self.check([connectivity])
@@ -347,7 +348,7 @@ class Legacy:
             end = self.data.find(b"\n", self.at, self.at + 1000)
             end = min(len(self.data), self.at + 1000) if end < 0 else end
             words, self.at = self.data[self.at:end].split(), end + 1
-            if words == [b"METADATA"]:  # They end with an empty line.
+            if words == [b"METADATA"]:  # These data end with an empty line.
                 found = re.compile(rb"\n\r?\n").search(self.data, self.at)
                 self.at = found.end() if found else len(self.data)
             elif words:

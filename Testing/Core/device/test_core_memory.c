@@ -86,8 +86,8 @@ static void move_array(
   free(bytes);
 }
 
-/* Arrays in buffers give the same surfaces as the same arrays in the host's memory. On a CPU nothing is copied that has no other
- * bytes between its values. */
+/* Arrays in buffers give the same surfaces as the same arrays in the host's memory. On a CPU, arrays that have nothing
+ * between their values are not copied. */
 static void test_input(void** state)
 {
   mcor_context* context = *state;

@@ -188,7 +188,7 @@ static void test_fluid(void** state)
   assert_true(core_tells(&found.unused_type, "TYPE_UNUSED|'Type'|seems to be 3."));
   find(&request, arrays + 3, 1, &found);
   assert_int_equal(found.unused_type.code, MCOR_SAYS_WALL_BLOCKS_UNUSED);
-  for (request.find_fluid = 2; request.find_fluid > 0; --request.find_fluid) /* only 2 tells it */
+  for (request.find_fluid = 2; request.find_fluid > 0; --request.find_fluid) /* 1: nothing is said */
   {
     const mcor_named no_type = real("Mass", mass);
     find(&request, &no_type, 1, &found);
@@ -199,7 +199,7 @@ static void test_fluid(void** state)
   double nine[9] = { 8, 7, 6, 5, 4, 3, 2, 1, NAN };
   const mcor_named place = { NULL, MCOR_ELEMENT_FLOAT64, 3, 9, (double[27]){ 0 }, { 0, 0 } },
                    type = { "Type", MCOR_ELEMENT_FLOAT64, 1, 9, nine, { 0, 0 } };
-  for (int one = 0; one < 2; ++one) /* an array of very many values, or of one, tells no types */
+  for (int one = 0; one < 2; ++one) /* neither many different values nor one value tell types */
   {
     assert_int_equal(mcor_find_input(&request, &place, &type, 1, NULL, &found), MCOR_OK);
     CORE_CHECK(!found.unused_type.text, one, found.unused_type.text);

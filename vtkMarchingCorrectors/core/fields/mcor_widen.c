@@ -194,7 +194,7 @@ static mcor_status mcor_widen_particles(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_widen_run* run)
 {
   MCOR_TRY(mcor_check_input(context, input, options));
-  if (input->count == 0) /* no device code is chosen that could count for the statistics */
+  if (input->count == 0) /* no kernels are chosen, so there are no statistics */
   {
     return MCOR_OK;
   }

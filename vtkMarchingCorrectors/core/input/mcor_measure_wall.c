@@ -23,7 +23,7 @@
 
 typedef struct mcor_wall_sample
 {
-  double x[3], fluid, share; /* fluid: its whole weight */
+  double x[3], fluid, share; /* fluid: the fluid's weight; share: the solids' share */
 } mcor_wall_sample;
 
 typedef struct mcor_wall_measure

@@ -67,7 +67,7 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
   return status;
 }
 
-/* Maps the buffers of the vertices: all of each that the caller wants. */
+/* Maps whole buffers of vertices; optional buffers only if the caller wants them. */
 static mcor_status mcor_map_vertices(mcor_download* d)
 {
   mcor_context* context = d->context;

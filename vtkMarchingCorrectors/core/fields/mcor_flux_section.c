@@ -9,10 +9,12 @@
 
 #include <string.h>
 
-/* A disc is a polygon of 4 x 2^5 = 128 corners with the area of the disc: its corners are this many
- * radii away from the centre. */
-#define MCOR_DISC_HALVINGS 5
+/* A disc is a polygon that has the area of the disc: its corners are this many radii away from the
+ * centre. From one corner to the next it turns by an angle with this cosine and sine. */
+#define MCOR_DISC_CORNERS 128
 #define MCOR_DISC_RADIUS 1.0002008339103527
+#define MCOR_DISC_COSINE 0.9987954562051724
+#define MCOR_DISC_SINE 0.049067674327418015
 
 /* Returns -1 if the triangles form a closed surface with normals inwards, else 1. */
 static double mcor_orientation(const double* points, int64_t count)
@@ -133,50 +135,28 @@ static bool mcor_find_edges(const double x[9], double sign, double edges[2][3], 
   return mcor_normalise(normal) > 0;
 }
 
-/* Appends what lies between an arc and its chord. from, to: the arc's ends, from the centre. */
-static mcor_status mcor_add_arc(mcor_flux_job* job, int64_t number, const double centre[3],
-  const double from[3], const double to[3], const double normal[3], int halvings)
-{
-  double middle[3], ends[3][3];
-  mcor_point_between(from, to, 0.5, middle);
-  const double stretch = sqrt(mcor_dot(from, from) / mcor_dot(middle, middle));
-  for (int a = 0; a < 3; ++a)
-  {
-    middle[a] *= stretch;
-    ends[0][a] = centre[a] + from[a];
-    ends[1][a] = centre[a] + middle[a];
-    ends[2][a] = centre[a] + to[a];
-  }
-  MCOR_TRY(mcor_add_triangle(job, number, ends[0], ends[1], ends[2], normal));
-  if (halvings > 1)
-  {
-    MCOR_TRY(mcor_add_arc(job, number, centre, from, middle, normal, halvings - 1));
-    MCOR_TRY(mcor_add_arc(job, number, centre, middle, to, normal, halvings - 1));
-  }
-  return MCOR_OK;
-}
-
 /* Appends a disc; in two dimensions, the line along which it crosses the plane. */
 static mcor_status mcor_add_disc(
   mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
 {
-  double spokes[5][3], ends[4][3], axis[3] = { 0 };
+  double corner[MCOR_DISC_CORNERS][3], axes[2][3], axis[3] = { 0 };
+  double cosine = MCOR_DISC_RADIUS * radius, sine = 0;
   int least = 0;
   if (job->is_plane)
   {
     const int w = job->across;
     const double off = job->plane->at - centre[w],
                  half = sqrt(fmax(radius * radius - off * off, 0));
-    double corner[3], along[3];
+    double begin[3], along[3];
     axis[w] = 1;
     mcor_cross(axis, normal, along);
     for (int a = 0; a < 3; ++a)
     {
-      corner[a] = a == w ? job->plane->at : centre[a] - half * along[a];
+      begin[a] = a == w ? job->plane->at : centre[a] - half * along[a];
       along[a] *= 2 * half;
     }
     return normal[w] != 0 ? mcor_leaves_plane(job, number)
-      : half > 0          ? mcor_add_line(job, number, corner, along, normal)
+      : half > 0          ? mcor_add_line(job, number, begin, along, normal)
                           : MCOR_OK;
   }
   for (int a = 1; a < 3; ++a)
@@ -184,29 +164,34 @@ static mcor_status mcor_add_disc(
     least = fabs(normal[a]) < fabs(normal[least]) ? a : least;
   }
   axis[least] = 1;
-  mcor_cross(normal, axis, spokes[0]);
-  mcor_normalise(spokes[0]);
-  mcor_cross(normal, spokes[0], spokes[1]);
-  for (int i = 0; i < 4; ++i)
+  mcor_cross(normal, axis, axes[0]);
+  mcor_normalise(axes[0]);
+  mcor_cross(normal, axes[0], axes[1]);
+  for (int i = 0; i < MCOR_DISC_CORNERS; ++i)
   {
     for (int a = 0; a < 3; ++a)
     {
-      spokes[i][a] = i < 2 ? MCOR_DISC_RADIUS * radius * spokes[i][a] : -spokes[i - 2][a];
-      ends[i][a] = centre[a] + spokes[i][a];
+      corner[i][a] = centre[a] + cosine * axes[0][a] + sine * axes[1][a];
     }
+    const double last = cosine;
+    cosine = MCOR_DISC_COSINE * last - MCOR_DISC_SINE * sine;
+    sine = MCOR_DISC_SINE * last + MCOR_DISC_COSINE * sine;
   }
-  memcpy(spokes[4], spokes[0], sizeof spokes[4]);
-  MCOR_TRY(mcor_add_triangle(job, number, ends[0], ends[1], ends[2], normal));
-  MCOR_TRY(mcor_add_triangle(job, number, ends[2], ends[3], ends[0], normal));
-  for (int i = 0; i < 4; ++i)
+  /* The largest triangles come first: two, which are a square, then one on each side of it. */
+  for (int step = MCOR_DISC_CORNERS / 4; step > 0; step /= 2)
   {
-    MCOR_TRY(
-      mcor_add_arc(job, number, centre, spokes[i], spokes[i + 1], normal, MCOR_DISC_HALVINGS));
+    for (int i = 0; i < MCOR_DISC_CORNERS; i += 2 * step)
+    {
+      MCOR_TRY(mcor_add_triangle(job, number, corner[i], corner[i + step],
+        corner[(i + 2 * step) % MCOR_DISC_CORNERS], normal));
+    }
   }
   return MCOR_OK;
 }
 
-static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
+/* Appends the pieces of a section whose points are known to be as many as its shape has. Tells
+ * whether it has an area or, in two dimensions, may have one outside of the plane. */
+static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];
   const double *x = section->points, *end = x + 3 * section->point_count;
@@ -215,19 +200,20 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
   switch (section->shape)
   {
     case MCOR_SECTION_RECTANGLE:
-      return mcor_find_edges(x, 1, edges, normal)
-        ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
-        : MCOR_OK;
+      *has_size = mcor_find_edges(x, 1, edges, normal);
+      return *has_size ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
+                       : MCOR_OK;
     case MCOR_SECTION_DISC:
       memcpy(normal, x + 3, sizeof normal);
-      return mcor_normalise(normal) > 0 && section->radius > 0
-        ? mcor_add_disc(job, number, x, normal, section->radius)
-        : MCOR_OK;
+      *has_size = mcor_normalise(normal) > 0 && section->radius > 0;
+      return *has_size ? mcor_add_disc(job, number, x, normal, section->radius) : MCOR_OK;
     case MCOR_SECTION_BOX:
       for (int side = 0; side < 6; ++side)
       {
         const int a = side / 2, is_high = side % 2;
+        const bool is_across = job->is_plane && a == w;
         double corner[3] = { x[0], x[1], x[2] }, outwards[3] = { 0 };
+        *has_size = *has_size && (x[a] < x[3 + a] || (is_across && x[a] == x[3 + a]));
         corner[a] = x[3 * is_high + a];
         outwards[a] = is_high ? 1 : -1;
         memset(edges, 0, sizeof edges);
@@ -236,7 +222,7 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
           const int along = (a + e) % 3;
           edges[is_high ? e - 1 : 2 - e][along] = x[3 + along] - x[along];
         }
-        MCOR_TRY(job->is_plane && a == w
+        MCOR_TRY(is_across || !*has_size
             ? MCOR_OK
             : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, outwards));
       }
@@ -250,6 +236,7 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
             ? mcor_add_triangle(job, number, x, x + 3, x + 6, normal)
             : MCOR_OK);
       }
+      *has_size = job->found[number].area > 0;
       return MCOR_OK;
     default:
       MCOR_FAIL_IF(!job->is_plane, job->base.context, MCOR_INVALID_ARGUMENT,
@@ -277,29 +264,18 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
   const mcor_section* section = &job->sections[number];
   const mcor_gauge_label label = mcor_label_section(job, number);
   const int64_t n = section->point_count;
-  const bool is_known = (unsigned)section->shape < MCOR_SECTION_SHAPE_COUNT;
-  const bool is_list =
-    section->shape == MCOR_SECTION_TRIANGLES || section->shape == MCOR_SECTION_LINES;
-  MCOR_FAIL_IF(!is_known || !section->points || n <= 0 ||
-      (is_list ? n % points[section->shape] != 0 : n != points[section->shape]),
+  const unsigned shape = (unsigned)section->shape;
+  const bool is_list = shape == MCOR_SECTION_TRIANGLES || shape == MCOR_SECTION_LINES;
+  bool has_size = true;
+  MCOR_FAIL_IF(shape >= MCOR_SECTION_SHAPE_COUNT || !section->points || n <= 0 ||
+      (is_list ? n % points[shape] != 0 : n != points[shape]),
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_POINTS), label.text, (long long)n);
-  for (int64_t i = 0; i < n; ++i)
+  for (const double* p = section->points; p < section->points + 3 * n; p += 3)
   {
-    const double* p = section->points + 3 * i;
     MCOR_FAIL_IF(!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]), context,
       MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_NOT_FINITE), label.text, p[0], p[1], p[2]);
   }
-  MCOR_TRY(mcor_add_shape(job, number));
-  /* Whether the section has an area or, in two dimensions, may have one outside of the plane. */
-  const double* x = section->points;
-  bool has_size = section->shape == MCOR_SECTION_DISC
-    ? section->radius > 0 && mcor_dot(x + 3, x + 3) > 0
-    : section->shape == MCOR_SECTION_BOX || job->found[number].area > 0 || job->is_plane;
-  for (int a = 0; a < 3 && section->shape == MCOR_SECTION_BOX; ++a)
-  {
-    const bool flat = job->is_plane && a == job->across;
-    has_size = has_size && (x[a] < x[3 + a] || (flat && x[a] == x[3 + a]));
-  }
+  MCOR_TRY(mcor_add_shape(job, number, &has_size));
   MCOR_FAIL_IF(
     !has_size, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(SECTION_WITHOUT_AREA), label.text);
   MCOR_FAIL_IF(!isfinite(job->found[number].area), context, MCOR_INVALID_ARGUMENT,

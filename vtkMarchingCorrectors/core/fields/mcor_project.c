@@ -93,17 +93,22 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_project_chunk chunk;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    mcor_read_project_chunk(job, begin, mcor_chunk_of(last - begin), false, &chunk);
-    for (int i = 0; i < chunk.count; ++i)
+    const int count = mcor_chunk_of(last - begin);
+    mcor_read_project_chunk(job, begin, count, false, &chunk);
+    for (int i = 0; i < count; ++i)
     {
+      if (!chunk.counts[i])
+      {
+        continue;
+      }
       const double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
       for (int k = 0; k < 6; ++k)
       {
         const double at = k < 3 ? mcor_dot(job->axes[k], x) : x[k - 3];
         mcor_add_range(&found, k, at - reach[k] * chunk.h[i], at + reach[k] * chunk.h[i]);
       }
+      mcor_add_range(&found, 6, chunk.h[i], chunk.h[i]);
     }
-    mcor_widen_range(chunk.h, chunk.count, &found.least[6], &found.most[6]);
   }
   job->slices[slice] = found;
 }

@@ -96,12 +96,11 @@ typedef struct mcor_project_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;
 
-/* The particles of a chunk that add to the image. */
+/* The particles of a chunk. */
 typedef struct mcor_project_chunk
 {
-  int count;
+  bool counts[MCOR_CHUNK]; /* whether a particle adds to the image */
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], amount[2][MCOR_CHUNK];
-  int64_t source[MCOR_CHUNK];
 } mcor_project_chunk;
 
 /* Whether the image shows the density, from masses or from V times density. */

@@ -62,6 +62,7 @@ void mcor_read_project_chunk(
   const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk)
 {
   const mcor_input* input = job->input;
+  const uint8_t *solid = input->solid, *counted = job->view->counted;
   double h[MCOR_CHUNK];
   mcor_read_positions(input, first, count, chunk->x);
   mcor_read_smoothing_length(job->context, input, first, count, h);
@@ -70,23 +71,10 @@ void mcor_read_project_chunk(
   {
     mcor_read_amounts(job, first, count, chunk->amount);
   }
-  chunk->count = 0;
   for (int i = 0; i < count; ++i)
   {
-    const int to = chunk->count;
-    const int64_t source = first + i;
-    for (int a = 0; a < 3; ++a)
-    {
-      chunk->x[a][to] = chunk->x[a][i];
-    }
-    chunk->h[to] = chunk->h[i] * job->h_scale;
-    for (int c = 0; c < job->channels && amounts; ++c)
-    {
-      chunk->amount[c][to] = chunk->amount[c][i];
-    }
-    chunk->source[to] = source;
-    chunk->count += !(input->solid && input->solid[source]) &&
-      (!job->view->counted || job->view->counted[source]);
+    chunk->h[i] *= job->h_scale;
+    chunk->counts[i] = !(solid && solid[first + i]) && (!counted || counted[first + i]);
   }
 }
 
@@ -162,39 +150,42 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
     const int64_t stop = end < input->count ? end : input->count;
     for (int64_t begin = block * MCOR_BLOCK_PARTICLES; begin < stop; begin += MCOR_CHUNK)
     {
-      mcor_read_project_chunk(job, begin, mcor_chunk_of(stop - begin), true, &chunk);
-      for (int i = 0; i < chunk.count; ++i)
+      const int read = mcor_chunk_of(stop - begin);
+      mcor_read_project_chunk(job, begin, read, true, &chunk);
+      for (int i = 0; i < read; ++i)
       {
+        if (!chunk.counts[i])
+        {
+          continue;
+        }
         double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
-        int from[3], until[3], k[3];
+        int from[3], until[3];
         bool reaches = false;
         for (int c = 0; c < job->channels; ++c)
         {
           splat.amount[c] = chunk.amount[c][i] / area;
-          if (!isfinite(splat.amount[c]) && chunk.source[i] < found.first)
+          if (!isfinite(splat.amount[c]) && begin + i < found.first)
           {
-            found.first = chunk.source[i];
+            found.first = begin + i;
           }
         }
         const bool any = mcor_find_splats(job, x, chunk.h[i], from, until);
-        for (k[2] = from[2]; any && k[2] <= until[2]; ++k[2])
+        const int along = until[0] - from[0] + 1, across = until[1] - from[1] + 1;
+        const int images = any ? along * across * (until[2] - from[2] + 1) : 0;
+        for (int image = 0; image < images; ++image)
         {
-          for (k[1] = from[1]; k[1] <= until[1]; ++k[1])
+          const int k[3] = { from[0] + image % along, from[1] + image / along % across,
+            from[2] + image / along / across };
+          const double place[3] = { x[0] + k[0] * job->period[0], x[1] + k[1] * job->period[1],
+            x[2] + k[2] * job->period[2] };
+          if (mcor_make_splat(job, place, chunk.h[i], &splat))
           {
-            for (k[0] = from[0]; k[0] <= until[0]; ++k[0])
+            reaches = true;
+            if (!counts)
             {
-              const double place[3] = { x[0] + k[0] * job->period[0], x[1] + k[1] * job->period[1],
-                x[2] + k[2] * job->period[2] };
-              if (mcor_make_splat(job, place, chunk.h[i], &splat))
-              {
-                reaches = true;
-                if (!counts)
-                {
-                  to[count] = splat;
-                }
-                ++count;
-              }
+              to[count] = splat;
             }
+            ++count;
           }
         }
         /* No pixel has more than twice a whole kernel: M'4 is partly negative. */

@@ -253,10 +253,11 @@ static mcor_status mcor_run_project(
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   free(job->column.nodes);
   free(job->sums);
-  free(job->splats_before);
-  free(job->splats);
-  free(job->band_of_row);
-  free(job->listed);
+  for (int i = 0; i < job->bands; ++i)
+  {
+    pthread_mutex_destroy(&job->locks[i]);
+  }
+  free(job->locks);
   free(job->volumes);
   for (int i = 0; i < MCOR_SLICES; ++i)
   {

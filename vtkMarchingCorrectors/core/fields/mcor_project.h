@@ -86,12 +86,9 @@ typedef struct mcor_project_job
   /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine. */
   double unit[2][2];
   double* sums;           /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
-  int64_t* splats_before; /* [blocks + 1] */
-  int64_t first_block;    /* first of the blocks that are spread together */
-  mcor_splat* splats;
-  int bands, first_row[MCOR_SLICES + 1], *band_of_row;
-  int64_t* listed; /* for each band: indices of the splats that reach it */
-  int64_t first_listed[MCOR_SLICES + 1];
+  int64_t first;          /* first of the particles of this step */
+  int bands;              /* of rows of the image */
+  pthread_mutex_t* locks; /* [bands]; NULL in the first pass */
   mcor_brush brushes[MCOR_SLICES];
   mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Spreads particles over an image, on the host, in double precision, band by band of the image.
- * The contribution of a particle to a pixel is rounded to a multiple of a number that is the
- * same for all, and the rest to a multiple of a second one. Sums are therefore exact: they have
- * the same bits in any order, for any number of threads and ranks. */
+/* Spreads particles over an image, on the host, in double precision. The contribution of a particle
+ * to a pixel is rounded to a multiple of a number that is the same for all, and the rest to a
+ * multiple of a second one. Sums are therefore exact: they have the same bits in any order, for any
+ * number of threads and ranks. Threads share the image, of which each holds a band at a time. */
 
 #include "mcor_plane.h"
 #include "mcor_project.h"
@@ -13,9 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Particles that one thread reads at a time, and images of particles that are spread together. */
-#define MCOR_BLOCK_PARTICLES (4 * MCOR_CHUNK)
-#define MCOR_SPLATS_TOGETHER (1 << 18)
+/* Particles that are spread between two reports of progress, and by a thread at a time, at least. */
+#define MCOR_SPREAD_TOGETHER (1 << 18)
+#define MCOR_SPREAD_GRAIN 2048
+#define MCOR_BAND_ROWS 16
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
@@ -127,118 +128,6 @@ static bool mcor_make_splat(
   return reaches;
 }
 
-/* Lists the images of the particles of blocks [first, last). If there is no list yet, only counts
- * the images, and finds the most that one adds to a pixel. */
-static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_project_job* job = data;
-  const mcor_input* input = job->input;
-  const bool counts = !job->splats;
-  const double area = job->out->pixel[0] * job->out->pixel[1];
-  mcor_project_chunk chunk;
-  mcor_splat splat = { 0 };
-  mcor_findings found = mcor_no_findings();
-  mcor_add_range(&found, 0, 0, 0);
-  mcor_add_range(&found, 1, 0, 0);
-  for (int64_t block = job->first_block + first; block < job->first_block + last; ++block)
-  {
-    int64_t count = 0;
-    mcor_splat* to = counts
-      ? NULL
-      : job->splats + (job->splats_before[block] - job->splats_before[job->first_block]);
-    const int64_t end = block * MCOR_BLOCK_PARTICLES + MCOR_BLOCK_PARTICLES;
-    const int64_t stop = end < input->count ? end : input->count;
-    for (int64_t begin = block * MCOR_BLOCK_PARTICLES; begin < stop; begin += MCOR_CHUNK)
-    {
-      const int read = mcor_chunk_of(stop - begin);
-      mcor_read_project_chunk(job, begin, read, true, &chunk);
-      for (int i = 0; i < read; ++i)
-      {
-        if (!chunk.counts[i])
-        {
-          continue;
-        }
-        double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
-        int from[3], until[3];
-        bool reaches = false;
-        for (int c = 0; c < job->channels; ++c)
-        {
-          splat.amount[c] = chunk.amount[c][i] / area;
-          if (!isfinite(splat.amount[c]) && begin + i < found.first)
-          {
-            found.first = begin + i;
-          }
-        }
-        const bool any = mcor_find_splats(job, x, chunk.h[i], from, until);
-        const int along = until[0] - from[0] + 1, across = until[1] - from[1] + 1;
-        const int images = any ? along * across * (until[2] - from[2] + 1) : 0;
-        for (int image = 0; image < images; ++image)
-        {
-          const int k[3] = { from[0] + image % along, from[1] + image / along % across,
-            from[2] + image / along / across };
-          const double place[3] = { x[0] + k[0] * job->period[0], x[1] + k[1] * job->period[1],
-            x[2] + k[2] * job->period[2] };
-          if (mcor_make_splat(job, place, chunk.h[i], &splat))
-          {
-            reaches = true;
-            if (!counts)
-            {
-              to[count] = splat;
-            }
-            ++count;
-          }
-        }
-        /* No pixel has more than twice a whole kernel: M'4 is partly negative. */
-        const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
-        for (int c = 0; c < job->channels && reaches; ++c)
-        {
-          mcor_add_range(&found, c, 0, fabs(splat.amount[c]) * share);
-        }
-      }
-    }
-    if (counts)
-    {
-      job->splats_before[block + 1] = count;
-    }
-  }
-  job->slices[slice] = found;
-}
-
-/* Returns 3/2 of a power of 2 that is at least four times the number. */
-static double mcor_rounding_unit(double number)
-{
-  int exponent;
-  frexp(number, &exponent);
-  return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
-}
-
-/* Counts images, and chooses units: a sum of this many multiples of a unit is exact. */
-static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
-{
-  mcor_context* context = job->context;
-  int slices;
-  job->splats_before[0] = 0;
-  MCOR_TRY(mcor_parallel_run(context, blocks, 1, mcor_splat_slice, job, &slices));
-  mcor_findings found = mcor_merge_findings(job->slices, slices);
-  MCOR_FAIL_IF(found.first < INT64_MAX, context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_NOT_FINITE),
-    (long long)found.first);
-  for (int64_t b = 0; b < blocks; ++b)
-  {
-    job->splats_before[b + 1] += job->splats_before[b];
-  }
-  found.sums[0] = job->splats_before[blocks];
-  MCOR_TRY(mcor_reduce_findings(context, &found));
-  const double count = (double)found.sums[0];
-  for (int c = 0; c < job->channels; ++c)
-  {
-    job->unit[c][0] = mcor_rounding_unit(found.most[c] * count);
-    job->unit[c][1] = mcor_rounding_unit(ldexp(job->unit[c][0], -53) * count);
-    MCOR_FAIL_IF(
-      !isfinite(job->unit[c][0]), context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_TOO_LARGE));
-  }
-  return MCOR_OK;
-}
-
 /* ---- spreading ---- */
 
 /* Adds a row of pixels. */
@@ -257,8 +146,7 @@ static void mcor_add_pixels(int count, double amount, double lowest, const doubl
   }
 }
 
-static void mcor_spread_splat(
-  const mcor_project_job* job, const mcor_splat* s, int first_row, int last_row, mcor_brush* brush)
+static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, mcor_brush* brush)
 {
   const int* size = job->out->size;
   const int64_t pixels = (int64_t)size[0] * size[1];
@@ -270,108 +158,132 @@ static void mcor_spread_splat(
   {
     brush->sides[i] = mcor_side_of(&job->column, 0, (first + i - s->at[0]) * s->pixel[0]);
   }
-  for (int row = first_row; row <= last_row + 1; ++row)
+  for (int row = s->first[1]; row <= s->last[1] + 1; ++row)
   {
     double *before = brush->corners[~row & 1], *now = brush->corners[row & 1];
     const mcor_column_side side = mcor_side_of(&job->column, 1, (row - s->at[1]) * s->pixel[1]);
     mcor_sum_corners(&job->column, brush->sides, count + 1, &side, now);
-    for (int c = 0; c < job->channels && row > first_row; ++c)
+    if (row == s->first[1])
     {
-      double* coarse = job->sums + 2 * c * pixels + (int64_t)(row - 1) * size[0] + first;
+      continue;
+    }
+    const int done = row - 1; /* the row of pixels between the two rows of corners */
+    if (done == s->first[1] || done % MCOR_BAND_ROWS == 0)
+    {
+      pthread_mutex_lock(&job->locks[done / MCOR_BAND_ROWS]);
+    }
+    for (int c = 0; c < job->channels; ++c)
+    {
+      double* coarse = job->sums + 2 * c * pixels + (int64_t)done * size[0] + first;
       mcor_add_pixels(
         count, s->amount[c], lowest, before, now, job->unit[c], coarse, coarse + pixels);
     }
+    if (done == s->last[1] || row % MCOR_BAND_ROWS == 0)
+    {
+      pthread_mutex_unlock(&job->locks[done / MCOR_BAND_ROWS]);
+    }
   }
 }
 
-static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
+/* ---- the passes ---- */
+
+/* Spreads the images of particles; in the first pass over them only counts the images, and finds
+ * the most that one adds to a pixel. */
+static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
-  for (int64_t band = first; band < last; ++band)
+  const double area = job->out->pixel[0] * job->out->pixel[1];
+  mcor_project_chunk chunk;
+  mcor_splat splat = { 0 };
+  mcor_findings found = mcor_no_findings();
+  mcor_add_range(&found, 0, 0, 0);
+  mcor_add_range(&found, 1, 0, 0);
+  for (int64_t begin = job->first + first; begin < job->first + last; begin += MCOR_CHUNK)
   {
-    const int from = job->first_row[band], to = job->first_row[band + 1] - 1;
-    for (int64_t i = job->first_listed[band]; i < job->first_listed[band + 1]; ++i)
+    const int read = mcor_chunk_of(job->first + last - begin);
+    mcor_read_project_chunk(job, begin, read, true, &chunk);
+    for (int i = 0; i < read; ++i)
     {
-      const mcor_splat* s = &job->splats[job->listed[i]];
-      mcor_spread_splat(job, s, s->first[1] > from ? s->first[1] : from,
-        s->last[1] < to ? s->last[1] : to, &job->brushes[slice]);
+      if (!chunk.counts[i])
+      {
+        continue;
+      }
+      double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
+      int from[3], until[3];
+      const int64_t before = found.sums[0];
+      for (int c = 0; c < job->channels; ++c)
+      {
+        splat.amount[c] = chunk.amount[c][i] / area;
+        if (!isfinite(splat.amount[c]) && begin + i < found.first)
+        {
+          found.first = begin + i;
+        }
+      }
+      const bool any = mcor_find_splats(job, x, chunk.h[i], from, until);
+      const int along = until[0] - from[0] + 1, across = until[1] - from[1] + 1;
+      const int images = any ? along * across * (until[2] - from[2] + 1) : 0;
+      for (int image = 0; image < images; ++image)
+      {
+        const int k[3] = { from[0] + image % along, from[1] + image / along % across,
+          from[2] + image / along / across };
+        const double place[3] = { x[0] + k[0] * job->period[0], x[1] + k[1] * job->period[1],
+          x[2] + k[2] * job->period[2] };
+        if (mcor_make_splat(job, place, chunk.h[i], &splat))
+        {
+          ++found.sums[0];
+          if (job->locks)
+          {
+            mcor_spread_splat(job, &splat, &job->brushes[slice]);
+          }
+        }
+      }
+      /* No pixel has more than twice a whole kernel: M'4 is partly negative. */
+      const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
+      for (int c = 0; c < job->channels && found.sums[0] > before; ++c)
+      {
+        mcor_add_range(&found, c, 0, fabs(splat.amount[c]) * share);
+      }
     }
   }
+  job->slices[slice] = found;
 }
 
-/* Divides the image into bands of rows with about the same work, and lists the images that reach
- * each band. */
-static mcor_status mcor_make_bands(mcor_project_job* job, int64_t count)
+/* Returns 3/2 of a power of 2 that is at least four times the number. */
+static double mcor_rounding_unit(double number)
 {
-  const int rows = job->out->size[1];
-  int64_t* work = calloc((size_t)rows + 1, sizeof *work);
-  MCOR_TRY(mcor_allocated(job->context, work));
-  for (int64_t i = 0; i < count; ++i)
+  int exponent;
+  frexp(number, &exponent);
+  return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
+}
+
+/* Counts images, and chooses units: a sum of this many multiples of a unit is exact. */
+static mcor_status mcor_count_splats(mcor_project_job* job)
+{
+  mcor_context* context = job->context;
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, job->input->count, MCOR_SPREAD_GRAIN, mcor_splat_slice, job, &slices));
+  mcor_findings found = mcor_merge_findings(job->slices, slices);
+  MCOR_FAIL_IF(found.first < INT64_MAX, context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_NOT_FINITE),
+    (long long)found.first);
+  MCOR_TRY(mcor_reduce_findings(context, &found));
+  const double count = (double)found.sums[0];
+  for (int c = 0; c < job->channels; ++c)
   {
-    const mcor_splat* s = &job->splats[i];
-    work[s->first[1]] += s->last[0] - s->first[0] + 4;
-    work[s->last[1] + 1] -= s->last[0] - s->first[0] + 4;
-  }
-  int64_t total = 0, done = 0;
-  for (int row = 0; row < rows; ++row)
-  {
-    work[row] += row > 0 ? work[row - 1] : 0;
-    total += work[row];
-  }
-  job->bands = 0;
-  for (int row = 0; row < rows; ++row)
-  {
-    if (row == 0 || (job->bands < MCOR_SLICES && done * MCOR_SLICES >= total * job->bands))
-    {
-      job->first_row[job->bands++] = row;
-    }
-    job->band_of_row[row] = job->bands - 1;
-    done += work[row];
-  }
-  job->first_row[job->bands] = rows;
-  free(work);
-  int64_t next[MCOR_SLICES + 1] = { 0 };
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const mcor_splat* s = &job->splats[i];
-    for (int b = job->band_of_row[s->first[1]]; b <= job->band_of_row[s->last[1]]; ++b)
-    {
-      ++next[b + 1];
-    }
-  }
-  for (int b = 0; b < job->bands; ++b)
-  {
-    next[b + 1] += next[b];
-  }
-  memcpy(job->first_listed, next, sizeof next);
-  free(job->listed);
-  job->listed = malloc((size_t)next[job->bands] * sizeof *job->listed + 1);
-  MCOR_TRY(mcor_allocated(job->context, job->listed));
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const mcor_splat* s = &job->splats[i];
-    for (int b = job->band_of_row[s->first[1]]; b <= job->band_of_row[s->last[1]]; ++b)
-    {
-      job->listed[next[b]++] = i;
-    }
+    job->unit[c][0] = mcor_rounding_unit(found.most[c] * count);
+    job->unit[c][1] = mcor_rounding_unit(ldexp(job->unit[c][0], -53) * count);
+    MCOR_FAIL_IF(
+      !isfinite(job->unit[c][0]), context, MCOR_INVALID_DATA, MCOR_SAY(PROJECTION_TOO_LARGE));
   }
   return MCOR_OK;
 }
 
-/* Spreads as many blocks together as there is room for. */
-static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
+/* Makes the work space of the second pass. */
+static mcor_status mcor_make_brushes(mcor_project_job* job)
 {
-  mcor_context* context = job->context;
-  const int64_t* before = job->splats_before;
-  int64_t most = MCOR_SPLATS_TOGETHER;
-  for (int64_t b = 0; b < blocks; ++b)
-  {
-    most = before[b + 1] - before[b] > most ? before[b + 1] - before[b] : most;
-  }
-  job->splats = malloc((size_t)most * sizeof *job->splats);
-  job->band_of_row = malloc((size_t)job->out->size[1] * sizeof(int));
-  bool complete = job->splats && job->band_of_row;
   const size_t corners = (size_t)job->out->size[0] + 1;
+  const int bands = job->out->size[1] / MCOR_BAND_ROWS + 1;
+  bool complete = true;
   for (int i = 0; i < MCOR_SLICES; ++i)
   {
     mcor_brush* brush = &job->brushes[i];
@@ -380,38 +292,38 @@ static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
     brush->corners[0] = brush->sides ? (double*)(brush->sides + corners) : NULL;
     brush->corners[1] = brush->sides ? brush->corners[0] + corners : NULL;
   }
-  MCOR_TRY(mcor_allocated(context, complete));
-  for (int64_t end; job->first_block < blocks; job->first_block = end)
+  job->locks = malloc((size_t)bands * sizeof *job->locks);
+  for (job->bands = 0; job->bands < bands && job->locks; ++job->bands)
   {
-    const int64_t first = job->first_block;
-    for (end = first + 1; end < blocks && before[end + 1] - before[first] <= most; ++end)
-    {
-    }
-    const double share = 0.7 / (double)blocks;
-    MCOR_TRY(
-      mcor_report(context, "projection", 0.3 + share * (double)first, 0.3 + share * (double)end));
-    MCOR_TRY(mcor_parallel_run(context, end - first, 1, mcor_splat_slice, job, NULL));
-    MCOR_TRY(mcor_make_bands(job, before[end] - before[first]));
-    MCOR_TRY(mcor_parallel_run(context, job->bands, 1, mcor_spread_slice, job, NULL));
+    pthread_mutex_init(&job->locks[job->bands], NULL);
   }
-  return MCOR_OK;
+  return mcor_allocated(job->context, complete && job->locks);
 }
 
 mcor_status mcor_spread_particles(mcor_project_job* job)
 {
   mcor_projection* out = job->out;
   const size_t pixels = (size_t)out->size[0] * (size_t)out->size[1];
-  const int64_t blocks = (job->input->count + MCOR_BLOCK_PARTICLES - 1) / MCOR_BLOCK_PARTICLES;
+  const int64_t particles = job->input->count;
   const double least_pixel =
     fmin(out->pixel[0], out->pixel[1]) / (out->statistics.smoothing_length_max * job->h_scale);
   out->values = malloc(pixels * sizeof(double));
   job->sums = calloc(pixels, 2 * (size_t)job->channels * sizeof(double));
-  job->splats_before = malloc(((size_t)blocks + 1) * sizeof(int64_t));
-  MCOR_TRY(mcor_allocated(job->context, out->values && job->sums && job->splats_before));
+  MCOR_TRY(mcor_allocated(job->context, out->values && job->sums));
   MCOR_TRY(mcor_make_column(job->context, job->context->run.options->sph_kernel,
     mcor_is_plane(job->context), job->axes, least_pixel, &job->column));
-  MCOR_TRY(mcor_count_splats(job, blocks));
-  MCOR_TRY(mcor_spread_all(job, blocks));
+  MCOR_TRY(mcor_count_splats(job));
+  MCOR_TRY(mcor_make_brushes(job));
+  for (int64_t end; job->first < particles; job->first = end)
+  {
+    const double share = 0.7 / (double)particles;
+    end =
+      particles - job->first < MCOR_SPREAD_TOGETHER ? particles : job->first + MCOR_SPREAD_TOGETHER;
+    MCOR_TRY(mcor_report(
+      job->context, "projection", 0.3 + share * (double)job->first, 0.3 + share * (double)end));
+    MCOR_TRY(mcor_parallel_run(
+      job->context, end - job->first, MCOR_SPREAD_GRAIN, mcor_splat_slice, job, NULL));
+  }
   /* Adds the sums of all ranks, and computes the values from them. */
   const int64_t count = 2 * job->channels * (int64_t)pixels;
   const double* sums = job->sums;

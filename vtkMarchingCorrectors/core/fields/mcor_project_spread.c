@@ -16,7 +16,7 @@
 /* Particles that are spread between two reports of progress, and by a thread at a time, at least. */
 #define MCOR_SPREAD_TOGETHER (1 << 18)
 #define MCOR_SPREAD_GRAIN 2048
-#define MCOR_BAND_ROWS 16
+#define MCOR_BAND_ROWS 8
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 

@@ -463,7 +463,7 @@ static void test_profile(void** state)
   assert_int_equal(mcor_create_context(NULL, &refused), MCOR_INVALID_ARGUMENT);
   assert_true(core_told(refused, "PROFILE_FILE|core_context_profile.csv|it holds something else"));
   remove(path);
-  /* A call whose costs do not fit on the disk fails. */
+  /* A call fails if its row of the profile does not fit on the disk. */
   CORE_CONTEXT full = NULL;
   CORE_OK(full, mcor_create_context(NULL, &full));
   struct rlimit limit, small = { .rlim_cur = 200 };

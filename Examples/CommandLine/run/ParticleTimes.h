@@ -53,7 +53,7 @@ public:
   void Reset();
 
 private:
-  /// Lists the steps of files given one by one, and notes who tells their times.
+  /// Lists the steps of files given one by one, and notes whether their times are told.
   std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
 
   const Sharing& Shared;

@@ -321,7 +321,7 @@ void AddFilmNumbers(
   const bool areMany = run.Levels.size() > 1;
   if (!areMany)
   {
-    const double none = run.Statistics->HasArray("Triangles") ? NoNumber : 0.0; // 0: no fluid
+    const double none = run.Statistics->HasArray("Triangles") ? NoNumber : 0.0; // without fluid they are 0
     run.Levels.front().Area = NumberOf(run.Statistics, "Area", none);
     run.Levels.front().Volume = NumberOf(run.Statistics, "Volume", none);
   }

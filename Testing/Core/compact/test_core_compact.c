@@ -222,7 +222,7 @@ static mcor_input input_of(
   return input;
 }
 
-/* Compares each case with the plain contour, and with its boxes. */
+/* Compares each case with the plain contour, and with the surface that boxes make together. */
 static void surfaces(void** state)
 {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)

@@ -301,7 +301,7 @@ static void test_half_out_of_the_water(void** state)
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
-/* A disc that is only a little in the water has the flux of many triangles from its centre to its rim. */
+/* A disc that dips a little into the water has the same flux as many triangles from its centre to its rim. */
 static void test_disc_at_the_surface(void** state)
 {
   enum

@@ -17,7 +17,7 @@ const char* mesh_fault_name(mesh_fault fault)
   return fault < MESH_FAULT_COUNT ? names[fault] : "unknown";
 }
 
-/* Counts a fault, and names the first one of its kind by numbers of points or triangles. */
+/* Counts a fault. Keeps the numbers of points or triangles where the first one of its kind is. */
 static void mesh_add_fault(mesh_report* report, mesh_fault fault, int64_t one, int64_t other)
 {
   if (report->faults[fault]++ == 0)
@@ -62,7 +62,7 @@ static void mesh_measure_triangle(
   report->area += area;
   for (int axis = 0; axis < 3; ++axis)
   {
-    /* Relative to one point of the mesh, a large offset does not cost digits. */
+    /* Coordinates are relative to one point of the mesh, so that a large offset costs no digits. */
     report->volume += (a[axis] - points[axis]) * n[axis] / 6.0;
   }
   report->slimmest = t == 0 ? share : fmin(report->slimmest, share);

@@ -156,8 +156,8 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Keeps the triangles that are left, and copies the vertices that were appended to the places of the
- * vertices that they replace. */
+/* Keeps the triangles that are left. Copies each appended vertex to the place of the vertex that it
+ * replaces. */
 static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
 {
   mcor_context* context = bunches->context;

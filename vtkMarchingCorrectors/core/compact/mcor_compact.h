@@ -48,8 +48,8 @@ typedef struct mcor_bunch_vertex
   bool leans;       /* of a bunch: it is merged only as long as all sure bunches beside it are */
 } mcor_bunch_vertex;
 
-/* A vertex of the mesh. Its position is a whole number of units of 2^-MCOR_POINT_FIX cubes, so that
- * sums of positions have no order, and differences are the same a period apart. */
+/* A vertex of the mesh. Its position is a whole number of units, 2^-MCOR_POINT_FIX of the lattice's
+ * edges, so that sums of positions have no order, and differences are the same a period apart. */
 #define MCOR_POINT_FIX 30
 typedef struct mcor_point
 {
@@ -72,7 +72,7 @@ typedef struct mcor_bunches
 {
   mcor_context* context;
   int corners;    /* 3: of a triangle; 2: of a line */
-  double edge[3]; /* of the lattice, in units of positions of points */
+  double edge[3]; /* of the lattice, in cubes */
   /* The mesh before merging. */
   int march_count, vertex_count, triangle_count;
   cl_int* triangles;      /* [triangle_count][3] */

@@ -54,8 +54,8 @@ typedef struct mcor_loops
   mcor_adaptive_loop of[4];
 } mcor_loops;
 
-/* Finds the loops of a case. joined: bits axis * 2 + side of the ambiguous faces whose corners above
- * are joined. */
+/* Finds the loops of a case. joined: bit axis * 2 + side is set for an ambiguous face whose corners
+ * above are joined. */
 static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 {
   cl_uint above = 0;
@@ -88,7 +88,7 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 
 /* Allows diagonals between two opposite edges of each ambiguous face. There are two such pairs; the
  * cell below the face may use one, and the cell above the other. The face's lowest corner decides
- * which one. This makes the three faces around a corner alike; otherwise few tunnels could be made. */
+ * which one. So the three faces around a corner are alike; otherwise few tunnels could be made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
@@ -99,7 +99,7 @@ static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
       const int first = side ^ mcor_corner_above(cube_case, side << normal);
       const bool is_end = axis == (normal + (first ? 1 : 2)) % 3;
       if (is_end &&
-        (loop->facets[i] >> (24 + face) & 1)) /* the two edges lie in different facets */
+        (loop->facets[i] >> (24 + face) & 1)) /* puts the two edges into different facets */
       {
         const cl_uint facet = loop->place[i][3 - normal - axis] > 0 ? 2 : 1;
         loop->facets[i] &= ~((cl_uint)15 << 4 * face) | facet << 4 * face;

@@ -61,7 +61,7 @@ static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 typedef struct mcor_gauge_row
 {
   int64_t line, count;
-  const mcor_gauge_samples* samples; /* whose row this is; NULL: a part's */
+  const mcor_gauge_samples* samples; /* of a line; NULL: the row is of a part */
   double first, step, last;          /* the first place; the step; the last place */
   const double* weight;              /* [count] */
 } mcor_gauge_row;

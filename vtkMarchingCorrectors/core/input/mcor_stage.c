@@ -339,7 +339,7 @@ static void mcor_stage_chunk_at(
   mcor_invert_lengths(context, chunk, inv_h);
   for (int i = 0; i < weighed; ++i)
   {
-    weight[i] = chunk->size[i] * inv_h[i] * inv_h[i] * inv_h[i]; /* large if the volume is huge */
+    weight[i] = chunk->size[i] * inv_h[i] * inv_h[i] * inv_h[i]; /* too large if the volume is huge */
   }
   const bool heavy = !mcor_is_all_within(weight, weighed, 0, limit);
   double unused = DBL_MAX;

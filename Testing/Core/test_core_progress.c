@@ -105,7 +105,7 @@ static void test_all_phases_ask(void** state)
   CORE_SET set = core_make_block(12, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
   const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
-    [MCOR_PHASE_SEARCH_GRID] = 25,
+    [MCOR_PHASE_SEARCH_GRID] = 23,
     [MCOR_PHASE_SEEDS] = built_in ? 40 : 36,
     [MCOR_PHASE_EXTRACTION] = 14,
     [MCOR_PHASE_CORRECTION] = 5,

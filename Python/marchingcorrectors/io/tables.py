@@ -76,6 +76,11 @@ def columns_of(file, lines, names, separator=None):
 
 
 def numbers_or_words(file, cells, separator):
+    try:
+        if not any("_" in cell for cell in cells):
+            return np.array(cells, float)
+    except ValueError:  # A cell is a word, is empty, or has a comma.
+        pass
     numbers = [to_number(cell) for cell in cells]
     odd = next((cell for cell in cells if "," in cell and re.fullmatch(r"[-+.,0-9eEdD ]+", cell)), None)
     if separator == "," and odd is not None and (numbers[0] is not None or cells[0] == odd):

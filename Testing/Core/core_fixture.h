@@ -97,8 +97,8 @@ void* core_copy(const void* data, size_t bytes);
  * 1 and scalar value(x). */
 particle_set core_make_block(
   int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
-/* Makes a block of n^3 particles with spacing 1, a sheet above it, a thread and four lone drops. Particles are displaced
- * by up to half of `jitter`; they have volume 1 and a rough scalar. */
+/* Makes a block of n^3 particles with spacing 1, a sheet above it, a thread and four lone drops. Particles are
+ * displaced by up to half of `jitter`; they have volume 1 and a rough scalar. */
 particle_set core_make_splash(int n, double jitter, uint64_t seed);
 /* Makes a shell of particles around a hole. The particles' size grows with the distance from the hole's middle, from 1
  * to `ratio`; a wedge is left out. The scalar is the height. */

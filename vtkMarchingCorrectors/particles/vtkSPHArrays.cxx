@@ -181,7 +181,7 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 
 namespace
 {
-/// Adds up the counts of several runs.
+/// Adds a value to the sum over several runs, keeps the greatest, or, if all are the same, the last.
 template <typename T>
 void AddToRun(vtkFieldData* run, vtkSPHHow how, const char* name, const T& value)
 {

@@ -218,7 +218,7 @@ const Option* FindOption(const std::string& name)
   return found == all.end() ? nullptr : &*found;
 }
 
-/// Refuses an option that does not act in the job's mode, or lacks another one.
+/// Refuses an option that does not act in the job's mode, or needs another one that is not given.
 void CheckOption(const Job& job, const Option& option)
 {
   const std::string name = option.Name;

@@ -79,8 +79,8 @@ static int on_progress(void* user, double fraction, const char* phase)
   return is_building && b->cancels;
 }
 
-/* Extracts in a new context, which then must have exactly the programs that would have been built ahead. Only the program
- * for trimming may be missing, because the surface may have no border. */
+/* Extracts in a new context, which then must have exactly the programs that would have been built ahead. Only the
+ * program for trimming may be missing, because the surface may have no border. */
 static void check_programs(const mcor_input* input, const mcor_options* options, bool has_solids)
 {
   CORE_CONTEXT context = NULL;

@@ -285,7 +285,7 @@ static void test_levels_and_reuse(void** state)
   }
 }
 
-/* Nothing is known of the device's code if the first call of a context has no particle. */
+/* The first call of a context has no particle, so no kernels are chosen. */
 static void test_no_particle(void** state)
 {
   (void)state;

@@ -493,8 +493,8 @@ static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
   found->attributes[at] = index;
 }
 
-/* Finds the scalar to contour, the one attribute of derivatives, or the scalar of a projection if it
- * has one. */
+/* Finds the scalar to contour, the one attribute of derivatives, or the scalar of a projection, if
+ * it has one. */
 static void mcor_find_scalar(mcor_finder* f, bool contours)
 {
   mcor_found* found = f->found;

@@ -525,7 +525,7 @@ void pqSPHInUse::plotOverTime()
   END_UNDO_SET();
 }
 
-// Returns whether another array colours the picture than when this last looked.
+// Returns whether the picture has been coloured by another array since the last call.
 bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
 {
   vtkSMProperty* property = shown->getProxy()->GetProperty("ColorArrayName");

@@ -25,7 +25,7 @@ struct vtkSPHTemporalChoice
   double Period[3] = { 0.0, 0.0, 0.0 }; // 0: not periodic
 };
 
-/** Copies only the points and point arrays, with a vertex for each point if the set has cells. */
+/** Copies points, point arrays and field data. If the set has cells, each point gets a vertex. */
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output);
 
 class vtkSPHTemporalPair

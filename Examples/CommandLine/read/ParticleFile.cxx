@@ -197,8 +197,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns the points and their arrays, without cells (one per particle, for nothing) and without
-/// anything else, which is unused and unchecked.
+/// Returns only the points and their arrays. Cells would cost memory for each particle; nobody uses or
+/// checks them, or anything else in the data.
 vtkSmartPointer<vtkPointSet> TakeParticles(
   const std::string& file, vtkPointSet* all, bool haveVertices)
 {

@@ -79,8 +79,8 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Adds the walls of a file to all steps. For a name with %d, each step gets the file of its number;
-/// of a .pvd file, each gets the walls of its time, or, if steps have no times, the next ones.
+/// Adds the walls of a file to all steps. If the name has %d, each step gets the file of its number.
+/// From a .pvd file, each step gets the walls of its time, or, if steps have no times, the next walls.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {

@@ -25,8 +25,8 @@ namespace
 
 #if MCOR_HAS_RANKS
 /// MPI, from begin to end, and the processes of mpirun that share a job. There is one object per
-/// process. All processes read pieces of a file; the first reads a file without pieces. Of a surface,
-/// each writes its piece for a .pvtp file; for others, the first writes the whole.
+/// process. All processes read pieces of a file; the first reads a file without pieces. Each writes
+/// its piece of a surface to a .pvtp file; the first writes the whole surface to any other file.
 class RankSession : public Sharing
 {
 public:

@@ -29,8 +29,8 @@ const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.
   { 0.510, 0.790, 0.690 }, { 0.670, 0.860, 0.630 }, { 0.830, 0.920, 0.600 },
   { 0.980, 0.970, 0.660 } };
 
-/// Whether an array has no other values than these iso values. A small surface is to have a colour
-/// of its own.
+/// Whether all values of an array are among these iso values. Each surface, even a small one, then
+/// gets a colour of its own.
 bool AreAmong(vtkDataArray* array, vtkDataArray* isoValues)
 {
   const auto values = vtk::DataArrayValueRange(array), known = vtk::DataArrayValueRange(isoValues);

@@ -139,8 +139,8 @@ static mcor_status mcor_scan_row(
 }
 
 /* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
- * extremum. A suspect with a crossing keeps the crossing alone, among the changed parts. one:
- * each part keeps its first crossing alone. */
+ * extremum. If a suspect part has crossings, they become changed parts, and its suspect extrema are
+ * dropped. one: each part keeps only its first crossing. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {

@@ -87,7 +87,7 @@ typedef struct mcor_project_job
   double unit[2][2];
   double* sums;           /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
   int64_t first;          /* first of the particles of this step */
-  int bands;              /* of rows of the image */
+  int bands;              /* number of bands of rows of the image */
   pthread_mutex_t* locks; /* [bands]; NULL in the first pass */
   mcor_brush brushes[MCOR_SLICES];
   mcor_findings slices[MCOR_SLICES];

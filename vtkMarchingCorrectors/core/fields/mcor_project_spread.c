@@ -4,7 +4,7 @@
 /* Spreads particles over an image, on the host, in double precision. The contribution of a particle
  * to a pixel is rounded to a multiple of a number that is the same for all, and the rest to a
  * multiple of a second one. Sums are therefore exact: they have the same bits in any order, for any
- * number of threads and ranks. Threads share the image, of which each holds a band at a time. */
+ * number of threads and ranks. Threads share the image; each locks a band of rows at a time. */
 
 #include "mcor_plane.h"
 #include "mcor_project.h"
@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Particles that are spread between two reports of progress, and by a thread at a time, at least. */
+/* TOGETHER: particles between two reports of progress. GRAIN: the least number of particles that a
+ * thread takes. ROWS: rows of pixels that a lock protects. */
 #define MCOR_SPREAD_TOGETHER (1 << 18)
 #define MCOR_SPREAD_GRAIN 2048
 #define MCOR_BAND_ROWS 8
@@ -187,8 +188,8 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 
 /* ---- the passes ---- */
 
-/* Spreads the images of particles; in the first pass over them only counts the images, and finds
- * the most that one adds to a pixel. */
+/* Spreads the images of particles. The first pass only counts the images, and finds the most that
+ * an image adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;

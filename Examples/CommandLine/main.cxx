@@ -4,10 +4,9 @@
 // The command line program: reads particles from a file, writes a surface to a file. See --help.
 #include "ColorScale.h"
 #include "DataFile.h"
-#include "Ending.h"
 #include "Extra.h"
+#include "Failures.h"
 #include "Job.h"
-#include "Messages.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Runs.h"

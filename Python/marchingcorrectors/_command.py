@@ -15,7 +15,7 @@ from . import _film, _structs as c, io
 from ._call import Keywords, Ranges, own_keywords
 from ._find import Found
 from ._functions import free_surface, isosurface, probe
-from ._library import InvalidArgument, lib
+from ._library import InvalidArgument, lib, say
 from ._meters import gauge
 from .io._outputs import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
@@ -182,7 +182,7 @@ def find_words(given, names, particles, command):
     if given.coefh is not None and given.dp is None:
         raise InvalidArgument("--coefh needs --dp; add it, or leave out --coefh.")
     if given.solids in ("weight", "ignore") and "wall_share" in words:
-        raise InvalidArgument("--wall-share is for surfaces that end at walls; add --solids wall, or leave out --wall-share.")
+        raise InvalidArgument(say("WALL_SHARE_IN_VAIN", "add --solids wall"))
     if given.dp is not None:
         if length is not None:
             raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
@@ -263,7 +263,7 @@ def write_table(output, head, rows):
 
 
 def run_probe(given, particles, points, make, command):
-    """Probes points (points, 3) and writes the result. make(pyvista): returns a data set of these points."""
+    """Probes points (points, 3) and writes the result. make(pyvista): returns the points as a data set."""
     found = probe(particles, points, attributes=attributes_of(given, particles), **find_words(given, PROBE, particles, command))
     arrays = found._point_arrays()
     ending = os.path.splitext(given.output)[1].lower()

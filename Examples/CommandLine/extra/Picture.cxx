@@ -3,9 +3,8 @@
 #include "Extra.h"
 
 #include "ColorScale.h"
-#include "Ending.h"
+#include "Failures.h"
 #include "Job.h"
-#include "Messages.h"
 #include "Text.h"
 
 #include "vtkActor.h"

@@ -7,6 +7,8 @@
 #include "Sharing.h"
 #include "Text.h"
 
+#include "vtkSPHSay.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <set>
@@ -186,8 +188,7 @@ const std::vector<Rule> Rules = {
   { CONTOUR,
     IF(j.Has("--wall-share") && j.Surface->GetSolids() != vtkMarchingCorrectors::SOLIDS_WALL &&
       (j.Surface->GetSolids() != vtkMarchingCorrectors::SOLIDS_AUTO || j.Has("--free-surface"))),
-    "--wall-share is for surfaces that end at walls; add --solids wall, or leave out "
-    "--wall-share" },
+    "{WALL_SHARE_IN_VAIN}" },
   { CONTOUR, IF(j.Has("--max-level") && j.Surface->GetCubeSizeMode() == j.Surface->UNIFORM),
     "--max-level is for adaptive cubes; leave out --max-level, or --cubes uniform" },
 };
@@ -200,7 +201,10 @@ std::string Filled(std::string sentence, const Job& job)
   {
     const std::size_t end = sentence.find('}', at);
     const std::string name = sentence.substr(at + 1, end - at - 1);
+    std::string said = vtkSPHSay(MCOR_SAY(WALL_SHARE_IN_VAIN), "add --solids wall");
+    said.pop_back(); // "(see --help)" follows, not a full stop
     const std::string text = name == "output" ? job.Output
+      : name == "WALL_SHARE_IN_VAIN"          ? said
       : name == "endings"                     ? SurfaceFileEndings()
                                               : job.Given.at(name);
     sentence.replace(at, end + 1 - at, text);

@@ -162,12 +162,10 @@ double Rounded(double number)
 
 std::string EscapedForXml(const std::string& text)
 {
-  std::string escaped;
-  for (const char c : text)
-  {
-    escaped += c == '"' ? "&quot;" : c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
-  }
-  return escaped;
+  const auto written = [](const Character& c) -> std::string {
+    return c.Code == '"' ? "&quot;" : c.Code == '&' ? "&amp;" : c.Code == '<' ? "&lt;" : "";
+  };
+  return Rewritten(text, written);
 }
 
 std::string Joined(const std::vector<std::string>& texts, const std::string& sign, const char* last)

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
-#include "Ending.h"
 #include "Extra.h"
+#include "Failures.h"
 #include "Formats.h"
-#include "Messages.h"
 #include "Text.h"
 
 #include "vtkAbstractArray.h"
@@ -248,10 +247,8 @@ void ReadSet(const std::string& name, ParticleSets& sets)
   const auto [file, step] = StepOf(name);
   const vtkSmartPointer<vtkDataObject> data = Read(file, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
-  Require(points,
-    file + " holds " +
-      (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
-      ", not particles (poly data or an unstructured grid)");
+  const std::string what = data ? std::string("a ") + data->GetClassName() : "no VTK data";
+  Require(points, vtkSPHSay(MCOR_SAY(NO_PARTICLES_IN), file.c_str(), what.c_str()));
   if (points->GetNumberOfPoints() > 0)
   {
     const bool haveVertices = vtkSPHHaveVertices(points);

@@ -68,6 +68,7 @@ std::vector<View> Split(View line, char separator)
 {
   const bool isBlank = separator == ' ';
   std::vector<View> cells;
+  cells.reserve(16); // one allocation for most lines
   std::size_t begin = 0;
   bool isQuoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i)

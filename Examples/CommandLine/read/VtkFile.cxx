@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
-#include "Messages.h"
+#include "Failures.h"
 #include "Text.h"
 
 #include "vtkDataArray.h"

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleTimes.h"
 
-#include "Ending.h"
+#include "Failures.h"
 #include "Formats.h"
 #include "Job.h"
-#include "Messages.h"
 #include "ParticleFile.h"
 #include "Text.h"
 

@@ -3,8 +3,8 @@
 
 // Makes the tables of gauges and sections, of pieces of surfaces, and of numbers of films.
 #include "DataFile.h"
+#include "Failures.h"
 #include "Job.h"
-#include "Messages.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "ParticleTimes.h"

@@ -4,10 +4,9 @@
 
 #include "ColorScale.h"
 #include "DataFile.h"
-#include "Ending.h"
 #include "Extra.h"
+#include "Failures.h"
 #include "Job.h"
-#include "Messages.h"
 #include "ParticleFile.h"
 #include "Sharing.h"
 #include "Text.h"
@@ -28,7 +27,6 @@
 #include <future>
 #include <iostream>
 #include <iterator>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -315,11 +313,8 @@ vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
 {
   auto widened = vtkSmartPointer<vtkPolyData>::New();
   Messages() = {};
-  if (!job.Surface->Widen(particles, widened))
-  {
-    Messages().Check();
-    throw std::runtime_error("the factors of --widen could not be found");
-  }
+  const bool isFound = job.Surface->Widen(particles, widened);
+  Require(isFound, Messages().FirstError());
   return widened;
 }
 

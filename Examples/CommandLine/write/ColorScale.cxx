@@ -8,7 +8,6 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkDataArrayRange.h"
 #include "vtkDataSet.h"
 #include "vtkPointData.h"
 #include "vtkSPHColorRange.h"
@@ -16,7 +15,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <set>
 
 namespace
 {
@@ -28,17 +26,6 @@ const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.
   { 0.210, 0.530, 0.740 }, { 0.270, 0.620, 0.760 }, { 0.370, 0.710, 0.740 },
   { 0.510, 0.790, 0.690 }, { 0.670, 0.860, 0.630 }, { 0.830, 0.920, 0.600 },
   { 0.980, 0.970, 0.660 } };
-
-/// Whether all values of an array are among these iso values. Each surface, even a small one, then
-/// gets a colour of its own.
-bool AreAmong(vtkDataArray* array, vtkDataArray* isoValues)
-{
-  const auto values = vtk::DataArrayValueRange(array), known = vtk::DataArrayValueRange(isoValues);
-  const std::set<float> knownFloats(known.begin(), known.end());
-  return array->GetNumberOfComponents() == 1 &&
-    std::all_of(values.begin(), values.end(),
-      [&knownFloats](double value) { return knownFloats.count(static_cast<float>(value)) > 0; });
-}
 }
 
 ColorScale::ColorScale(const PictureOptions& options)
@@ -102,7 +89,7 @@ void ColorScale::Include(vtkDataSet* data)
   {
     return;
   }
-  if (array == this->ArrayOf(data) && !(begins && AreAmong(array, begins)))
+  if (array == this->ArrayOf(data))
   {
     vtkSPHColorRange(data).Find(array, range);
   }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DataFile.h"
 
-#include "Ending.h"
-#include "Messages.h"
+#include "Failures.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Text.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputFile.h"
 
-#include "Ending.h"
+#include "Failures.h"
 #include "ParticleFile.h"
 #include "Text.h"
 

@@ -3,7 +3,7 @@
 #include "DataFile.h"
 
 #include "ColorScale.h"
-#include "Ending.h"
+#include "Failures.h"
 #include "Formats.h"
 #include "ParticleFile.h"
 #include "Text.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the user is told when a library fails, crashes or is ended by a signal, and which files then go.
+/// What the user is told if a library fails or crashes, or a signal ends the program; and which files are then removed.
 #ifndef Failures_h
 #define Failures_h
 

@@ -222,9 +222,15 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
     }
     for (int r = 0; r < ranges; ++r)
     {
+      int k = 0;
+      while (of[k] != of[r])
+      {
+        ++k;
+      }
+      /* One of the array's ranges must hold; they are looked at where its first one is. */
       const double x = mcor_element_at(f->arrays + of[r], i, 0);
-      bool holds = false;
-      for (int k = 0; k < ranges && !holds; ++k) /* one of the array's ranges must hold */
+      bool holds = k < r;
+      for (; k < ranges && !holds; ++k)
       {
         holds = of[k] == of[r] && x >= only[k].low && x <= only[k].high;
       }

@@ -89,6 +89,18 @@ static double mcor_longest_side(const mcor_flux_job* job, const mcor_flux_piece*
   return sqrt(longest);
 }
 
+/* Whether the halves of a side are shorter. They are not where it is so far away that doubles do not
+ * tell its middle from its ends. */
+static bool mcor_can_halve(const mcor_flux_piece* piece, int side, double length)
+{
+  const double *from = piece->corner[side], *to = piece->corner[(side + 1) % 3];
+  double middle[3], ways[2][3];
+  mcor_point_between(from, to, 0.5, middle);
+  mcor_subtract(middle, from, ways[0]);
+  mcor_subtract(to, middle, ways[1]);
+  return sqrt(fmax(mcor_dot(ways[0], ways[0]), mcor_dot(ways[1], ways[1]))) < 0.75 * length;
+}
+
 /* Replaces a piece by its halves. */
 static mcor_status mcor_halve_piece(mcor_flux_job* job, const mcor_flux_piece* piece)
 {
@@ -154,11 +166,11 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       int side = 0;
       mcor_place_sample(job->form, &piece, job->form->points - 1, middle);
       const bool is_near = mcor_is_near(job, &piece);
-      const double cells = mcor_longest_side(job, &piece, &side) / cell;
+      const double length = mcor_longest_side(job, &piece, &side), cells = length / cell;
       MCOR_FAIL_IF(is_near && cells > MCOR_FLUX_MOST_ALONG, context, MCOR_INVALID_ARGUMENT,
         MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece.section).text, cells,
         context->measure.h_min, MCOR_FLUX_MOST_ALONG);
-      if (is_near && cells > 1)
+      if (is_near && cells > 1 && mcor_can_halve(&piece, side, length))
       {
         MCOR_TRY(mcor_halve_piece(job, &piece));
         continue;
@@ -175,6 +187,31 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
     job->batch[(*count)++] = piece;
   }
   return MCOR_OK;
+}
+
+/* Fails if there are too many cells, before time is spent on any of them. */
+static mcor_status mcor_count_cells(mcor_flux_job* job)
+{
+  const int64_t count = job->pieces.count;
+  mcor_flux_piece* all = malloc((size_t)count * sizeof *all + 1);
+  mcor_status status = mcor_allocated(job->base.context, all);
+  if (status == MCOR_OK && count > 0)
+  {
+    memcpy(all, job->pieces.of, (size_t)count * sizeof *all);
+  }
+  for (int taken = 1; status == MCOR_OK && taken > 0;)
+  {
+    status = mcor_report_launch(job->base.context);
+    MCOR_THEN(status, mcor_take_pieces(job, &taken));
+  }
+  if (status == MCOR_OK && count > 0)
+  {
+    memcpy(job->pieces.of, all, (size_t)count * sizeof *all);
+  }
+  free(all);
+  job->pieces.count = count;
+  job->cells = job->area_done = 0;
+  return status;
 }
 
 /* ---- integrals ---- */
@@ -344,6 +381,7 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
   MCOR_TRY(mcor_allocated(base->context, job->batch && job->weight));
   job->velocity = job->weight + n;
   job->density = job->velocity + 3 * n;
+  MCOR_TRY(mcor_count_cells(job));
   for (int count = 1; count > 0;)
   {
     MCOR_TRY(mcor_report(base->context, "flux", 0.2 + 0.8 * job->area_done / whole, 1));

@@ -227,7 +227,7 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
       {
         ++k;
       }
-      /* One of the array's ranges must hold; they are looked at where its first one is. */
+      /* A value must lie in one of its array's ranges. The first range tests all; k < r skips others. */
       const double x = mcor_element_at(f->arrays + of[r], i, 0);
       bool holds = k < r;
       for (; k < ranges && !holds; ++k)

@@ -6,14 +6,12 @@
 // neighbours: the rank asks the other ranks for the particles in the spheres.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHSharedRun.h"
-#include "vtkStaticPointLocator.h"
 
 #include <algorithm>
 #include <array>
@@ -47,12 +45,76 @@ mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const
 /** A sphere around a particle: its centre and its radius. */
 using Sphere = std::array<double, 4>;
 
-/** Lists the points of the locator that lie in one of the spheres, or in an image of one. */
-std::vector<vtkIdType> ListWithin(
-  const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres, vtkStaticPointLocator* locator)
+/** A point, and its number. */
+using Point = std::pair<std::array<double, 3>, vtkIdType>;
+
+/**
+ * Finds points within spheres. Points are sorted as a tree: the middle point of a range divides the
+ * others along one axis, and both halves are divided along the next axis. Points far away do not
+ * slow this down, as they would a locator with buckets of one size.
+ */
+class PointTree
 {
-  vtkNew<vtkIdList> near;
-  std::vector<bool> areWithin(static_cast<std::size_t>(locator->GetDataSet()->GetNumberOfPoints()));
+public:
+  explicit PointTree(std::vector<Point> points)
+    : Points(std::move(points))
+  {
+    Sort(this->Points.begin(), this->Points.end(), 0);
+  }
+
+  /** Sets within[number] for each point that lies in the sphere. */
+  void Mark(const double at[3], double radius, std::vector<bool>& within) const
+  {
+    Mark(this->Points.begin(), this->Points.end(), 0, at, radius, within);
+  }
+
+private:
+  using Place = std::vector<Point>::iterator;
+  using ConstPlace = std::vector<Point>::const_iterator;
+
+  static void Sort(Place first, Place last, std::size_t axis)
+  {
+    if (last - first > 1)
+    {
+      const Place middle = first + (last - first) / 2;
+      std::nth_element(first, middle, last,
+        [axis](const Point& p, const Point& q) { return p.first[axis] < q.first[axis]; });
+      Sort(first, middle, (axis + 1) % 3);
+      Sort(middle + 1, last, (axis + 1) % 3);
+    }
+  }
+
+  static void Mark(ConstPlace first, ConstPlace last, std::size_t axis, const double at[3],
+    double radius, std::vector<bool>& within)
+  {
+    if (first == last)
+    {
+      return;
+    }
+    const ConstPlace middle = first + (last - first) / 2;
+    const double way = at[axis] - middle->first[axis];
+    if (vtkMath::Distance2BetweenPoints(at, middle->first.data()) <= radius * radius)
+    {
+      within[static_cast<std::size_t>(middle->second)] = true;
+    }
+    if (way <= radius)
+    {
+      Mark(first, middle, (axis + 1) % 3, at, radius, within);
+    }
+    if (-way <= radius)
+    {
+      Mark(middle + 1, last, (axis + 1) % 3, at, radius, within);
+    }
+  }
+
+  std::vector<Point> Points;
+};
+
+/** Lists the points of the tree, of `count` points, that lie in a sphere, or in an image of one. */
+std::vector<vtkIdType> ListWithin(const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres,
+  const PointTree& tree, vtkIdType count)
+{
+  std::vector<bool> areWithin(static_cast<std::size_t>(count));
   for (const Sphere& sphere : spheres)
   {
     for (int image = 0; image < 27; ++image)
@@ -67,9 +129,7 @@ std::vector<vtkIdType> ListWithin(
       }
       if (isThere)
       {
-        locator->FindPointsWithinRadius(sphere[3], at, near);
-        std::for_each(near->begin(), near->end(),
-          [&areWithin](vtkIdType i) { areWithin[static_cast<std::size_t>(i)] = true; });
+        tree.Mark(at, sphere[3], areWithin);
       }
     }
   }
@@ -95,8 +155,7 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   auto* positions = vtkDataArray::SafeDownCast(arrays[0]);
   const vtkIdType own = positions->GetNumberOfTuples();
   std::vector<std::vector<Sphere>> asked(static_cast<std::size_t>(ranks.GetCount()));
-  vtkNew<vtkPoints> places;
-  places->SetDataTypeToDouble();
+  std::vector<Point> places;
   std::vector<int> reached;
   std::vector<vtkIdType> asking, others;
   for (vtkIdType i = 0; i < own; ++i)
@@ -104,7 +163,10 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
     double at[3];
     positions->GetTuple(i, at);
     space.Enter(at);
-    places->InsertNextPoint(at);
+    if (std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]))
+    {
+      places.push_back({ { at[0], at[1], at[2] }, i });
+    }
     const double radius = Rounding * radii[static_cast<std::size_t>(i)];
     reached.clear();
     if (radius > 0.0 && std::isfinite(radius)) // the core reports any other radius
@@ -126,18 +188,11 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   {
     std::for_each(list.begin(), list.end(), [order](vtkIdType i) { order->InsertNextId(i); });
   }
-  vtkNew<vtkPolyData> data;
-  vtkNew<vtkStaticPointLocator> locator;
-  data->SetPoints(places);
-  locator->SetDataSet(data);
-  if (own > 0)
-  {
-    locator->BuildLocator();
-  }
+  const PointTree tree(std::move(places));
   vtkSPHRanksLists to;
   for (const std::vector<Sphere>& spheres : ranks.Exchange(std::move(asked)))
   {
-    to.push_back(own > 0 ? ListWithin(space, spheres, locator) : std::vector<vtkIdType>());
+    to.push_back(ListWithin(space, spheres, tree, own));
   }
   const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, arrays, to);
   const vtkIdType count = own + came[0]->GetNumberOfTuples();

@@ -79,29 +79,37 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 
 /**
  * Returns the piece of each element of this rank; below 0, the element is dropped. pieces: of all
- * elements, on the first rank. Adds to `numbers`, for each element of this rank that stays, its
- * number among all that stay. Collective.
+ * elements, on the first rank, which the others ask, since only one rank must hold them all. Adds to
+ * `numbers`, for each element of this rank that stays, its number among all that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)
 {
-  const Ids all = ranks.Gather(pieces).front();
-  Ids places, own; // the places of all elements among the elements that stay
-  vtkIdType next = 0;
-  for (const vtkIdType piece : all)
-  {
-    places.push_back(next);
-    next += piece >= 0 ? 1 : 0;
-  }
   vtkDataArray* given = data->GetGlobalIds();
-  numbers->SetName(given ? given->GetName() : "");
+  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // first rank only
   for (vtkIdType i = 0; given && i < given->GetNumberOfTuples(); ++i)
   {
-    const auto element = static_cast<std::size_t>(given->GetComponent(i, 0));
-    own.push_back(all[element]);
+    wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));
+  }
+  vtkNew<vtkIdTypeArray> whole;
+  whole->SetNumberOfComponents(2);
+  vtkIdType next = 0;
+  for (const vtkIdType piece : pieces)
+  {
+    whole->InsertNextValue(piece);
+    whole->InsertNextValue(piece >= 0 ? next++ : -1);
+  }
+  const vtkSPHRanksArrays came =
+    vtkSPHSendTuples(ranks, { whole.Get() }, ranks.Exchange(std::move(wanted)));
+  auto* answers = vtkIdTypeArray::SafeDownCast(came[0]);
+  numbers->SetName(given ? given->GetName() : "");
+  Ids own;
+  for (vtkIdType i = 0; i < answers->GetNumberOfTuples(); ++i)
+  {
+    own.push_back(answers->GetValue(2 * i));
     if (own.back() >= 0)
     {
-      numbers->InsertNextValue(places[element]);
+      numbers->InsertNextValue(answers->GetValue(2 * i + 1));
     }
   }
   return own;

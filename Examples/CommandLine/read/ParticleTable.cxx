@@ -475,6 +475,7 @@ std::vector<double> ListTimesInText(const std::string& file)
     // The steps before this one are good; its error is reported when the step is read.
     times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
-  KnownSteps[file] = known;
+  // A file of one step does not stay mapped into memory: a film may have more files than a process may map.
+  KnownSteps[file] = times.size() > 1 ? known : Steps();
   return times;
 }

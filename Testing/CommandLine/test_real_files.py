@@ -258,8 +258,9 @@ class RealFiles(CommandLineTest):
         self.assertIn('Name="Vel" NumberOfComponents="3"', surface)
         self.assertRegex(surface, 'type="Int64"[^>]*Name="Point ID"')
         self.extract_good("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
-        file.write_text("x,y,z\nnan,0,0\n")
-        self.refuse(self.extract(*FREE, *H, source=file), 1, "not a number")
+        for text, sentence in ("x,y,z\nnan,0,0\n", "not a number"), ("x,y,z\r1,2,3\r", "carriage returns alone; save it with line feeds"):
+            file.write_bytes(text.encode())
+            self.refuse(self.extract(*FREE, *H, source=file), 1, sentence)
 
     def test_xyz(self):
         points = block((6, 6, 6))

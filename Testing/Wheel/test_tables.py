@@ -363,6 +363,7 @@ CASES = {
     "numbered names": ("a.dat", "# [01  x] [02  y] [03  z] [04 rho] [05 id]\n1 2 3 4 5\n", None),
     "quoted text": ("a.csv", 'x,y,z,who\n1,2,3,"a, b"\n', None),
     "decimal commas": ("a.csv", "x;y;z;a\n1,5;2,25;3;1,234\n", None),
+    "a byte order mark": ("a.csv", "\ufeffPos.x [m];Pos.y [m];Pos.z [m]\n,5;2,25;3\n", None),
     "large identifiers": ("a.csv", "x,y,z,id\n1,2,3,9007199254740993\n1,2,4,9007199254740992\n", None),
     "large numbers of any name": ("a.csv", "x,y,z,n\n1,2,3,9007199254740993\n1,2,4,5\n", None),
     "identifiers beyond 2^63": ("a.csv", "x,y,z,id\n1,2,3,18446744073709551615\n", "different ones would become equal"),

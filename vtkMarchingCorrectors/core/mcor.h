@@ -133,10 +133,11 @@ extern "C"
    * diagonally) and inside a cell. Either way gives the same vertices, and a manifold. */
   typedef enum mcor_topology
   {
-    MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
-    MCOR_TOPOLOGY_FIELD = 1  /* by the field at the saddles of the face's bilinear and the cell's
-                              * trilinear interpolant: bridges and tunnels as wide as a cube are as
-                              * in the field */
+    MCOR_TOPOLOGY_TABLE = 0, /* nodes above the iso value are kept apart on such faces, and no cell
+                              * has a tunnel */
+    MCOR_TOPOLOGY_FIELD = 1  /* the field decides, at the saddles of the face's bilinear and the
+                              * cell's trilinear interpolant: bridges and tunnels as wide as a cube
+                              * are those of the field */
   } mcor_topology;
 
 /* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks
@@ -334,9 +335,10 @@ extern "C"
     /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices
      * that belong to one node of the virtual grid, and that edges of triangles join, are merged.
      * The merged vertex moves onto the surface along the gradient, not along a lattice edge. A
-     * merge is undone if it would change the pieces or turn a triangle over. The widest corner of a
-     * sliver that is left starts anew from the middle of its neighbours. Points on the sides of
-     * periods, at caps and on borders do not change. Cannot be combined with `filled`. */
+     * merge is undone if it would join or split pieces of the surface, or turn a triangle over. The
+     * widest corner of a sliver that is left starts anew from the middle of its neighbours. Points
+     * on the sides of periods, at caps and on borders do not change. Cannot be combined with
+     * `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; mcor_spell_out sets what this stands for */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
@@ -367,18 +369,18 @@ extern "C"
      * whole_box). These caps share the points of the surface's border; their other points are
      * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
      * Trimming also cuts caps. The trimmed border stays open, and so does the border at solids (see
-     * wall_share). With caps, all cubes have the smallest size.
-     * With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
-     * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be
-     * combined with MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the
-     * lines; lines that end at walls stay open. Cannot be combined with `filled` either. */
+     * wall_share). With caps, all cubes have the smallest size. With a box, MCOR_CAP_PERIOD closes
+     * the sides of its cells that lie on a periodic side. A box that no particle reaches gets no
+     * caps, even where the iso value of a sum is 0. Cannot be combined with MCOR_PAIRS. In two
+     * dimensions, straight lines along these sides, cut exactly, close the contour; lines that end
+     * at walls stay open. Cannot be combined with `filled` either. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
      * particles. The input then needs only the particles whose supports miss the box by no more
      * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
-     * supports of these. The surface has the same bits as with all particles. Borrowed until
-     * return. For mcor_probe and mcor_derive: the result of mcor_measure_probe_globals. Their
+     * supports of those particles. The surface has the same bits as with all particles. Borrowed
+     * until return. For mcor_probe and mcor_derive: the result of mcor_measure_probe_globals. Their
      * results are valid in the box and on its sides; elsewhere they are meaningless, or 0 for
      * particles two cubes or more away from the box. */
     const mcor_globals* globals;
@@ -386,10 +388,10 @@ extern "C"
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
      * measure over the inputs of all ranks; each particle must be in exactly one of them. (A rank
      * without particles has count 0, and data that are not NULL where the other ranks have data.)
-     * The result has the same bits as for all particles in one input, except for not_finite, the
-     * lowest number that such a particle has on its rank. mcor_extract needs these globals; each
-     * cell must be in the box of exactly one rank. Functions that do not mention ranks do not read
-     * them. Borrowed until return. */
+     * The result has the same bits as for all particles in one input, except for
+     * attribute_not_finite, which is the least index that such a particle has on its own rank.
+     * mcor_extract needs these globals; each cell must be in the box of exactly one rank. Functions
+     * that do not mention ranks do not read them. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
@@ -583,7 +585,8 @@ extern "C"
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
-  /* Find a kernel by its short name ("cubic", "wendland", ...), or its name; -1 or NULL: none. */
+  /* Return the kernel with a short name ("cubic", "wendland", ...), and the short name of a kernel;
+   * -1 or NULL: none. */
   int mcor_find_sph_kernel(const char* name);
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
@@ -668,24 +671,24 @@ extern "C"
 
   /* Finds the range of the finite values of the scalar at fluid particles, and suggests an iso
    * value: the median (one of the values). If the median is at an end of the middle 90 % of the
-   * values, the suggestion is the middle of these 90 %, or of the range if these are one value.
-   * If all values are positive, and all but the lowest and highest 2 % span three decades (no
-   * more than six if the median is at an end), it is the logarithmic middle of these. Reads only
-   * the scalar and the solids of the input; over all ranks unless `ranks` is NULL. Returns 0 and
-   * changes nothing if there is no such value, if mcor_extract would refuse the form of the
-   * scalar, or if another rank failed. */
+   * values, the suggestion is the middle of these 90 %, or of the range if these are one value. If
+   * all values are positive, and all but the lowest and highest 2 % span at least three decades
+   * (but no more than six if the median is at an end), the suggestion is the logarithmic middle of
+   * these 96 %. Reads only the scalar and the solids of the input; over all ranks unless `ranks` is
+   * NULL. Returns 0 and changes nothing if there is no such value, if mcor_extract would refuse the
+   * form of the scalar, or if another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* Returns 2 or 3, the dimension of a call with this input, over all ranks unless `ranks` is
-   * NULL, and this mcor_options.dimension. Reads only the positions and the solids. */
+  /* Returns 2 or 3, the dimension of a call with this input and this mcor_options.dimension; over
+   * all ranks unless `ranks` is NULL. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* Returns whether the free surface is what users want to see first, over all ranks unless `ranks`
-   * is NULL: 0 for a gas that fills its bounds, as its particles reach 98 % of them by their
-   * smoothing lengths; 1 if there are solids, if the fluid leaves room within its bounds, or if
-   * it is a liquid: it has one smoothing length, and densities that differ by no more than a
-   * factor of 2. Reads positions, solids, smoothing lengths and densities, of valid form. */
+   * is NULL: 0 for a gas that fills its bounds: the smoothing lengths of its particles reach 98 %
+   * of them; 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
+   * liquid: it has one smoothing length, and densities that differ by no more than a factor of 2.
+   * Reads positions, solids, smoothing lengths and densities, of valid form. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);
 
   /* The usual `eta` of mcor_find_smoothing_lengths, which sets the number of neighbours. */
@@ -938,9 +941,9 @@ extern "C"
    * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
    * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
    * progress apply; if volumes are computed, all options of mcor_probe do. The result has the same
-   * bits for any order of the particles. Each rank gets the whole image; ranks need boxes, globals
-   * (of mcor_measure_probe_globals), and `counted`, so that each particle counts once, only if
-   * volumes are computed or h is estimated. *projection is overwritten. */
+   * bits for any order of the particles. Each rank gets the whole image. Only if volumes are
+   * computed or h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and
+   * `counted`, so that each particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   /* Finds the image without its values. */
@@ -968,9 +971,9 @@ extern "C"
    * rule). The surface of an input with these factors and volumes has the cubes of the original
    * lengths; with uniform cubes it is, to the last bit, that of the products of smoothing lengths
    * and factors in cubes of the same size. Reads the options of mcor_extract; a box only with
-   * globals, which are those of mcor_measure_globals with level_limit 0: results are then valid for
-   * particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 /
-   * h_scale) around, or 1 + widen where volumes are known. *widening is overwritten. */
+   * globals, which are those of mcor_measure_globals with level_limit 0. Results are then valid for
+   * particles in the box; the input must have all particles up to 1 + widen support radii away from
+   * the box, or (1 + widen) (1 + 1 / h_scale) if volumes are computed. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);

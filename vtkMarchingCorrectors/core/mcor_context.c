@@ -28,7 +28,7 @@ void mcor_spell_out(mcor_options* options)
 {
   if (options && options->smooth)
   {
-    options->compact |= !options->filled; /* a region needs the points on all edges */
+    options->compact |= !options->filled; /* a filled region needs the points on all edges */
     options->widen = options->widen == 1 ? 2 : options->widen;
   }
 }
@@ -141,7 +141,7 @@ mcor_status mcor_prepare(
   if (!context->kept.grid)
   {
     mcor_release_adaptive(context);
-    mcor_release_grid(context); /* frees the last call's grid for this one's particles */
+    mcor_release_grid(context); /* makes room for this call's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }
   if (!context->kept.value)
@@ -216,7 +216,8 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   free(far.solid);
   context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
-  context->box.of_points = context->box.has_points = false; /* the points were those of a probe */
+  context->box.of_points = context->box.has_points = false; /* later calls have other points, or
+                                                             * none */
   if (status != MCOR_OK || !is_all)
   {
     context->kept.grid = context->kept.value = context->kept.nodes = false;

@@ -190,7 +190,7 @@ static mcor_status mcor_extract_all(mcor_context* context, const mcor_input* inp
   return mcor_finish_statistics(context);
 }
 
-/* Makes the surface, and ends what phases keep on the host until then. */
+/* Makes the surface, then frees what the phases keep on the host. */
 static mcor_status mcor_extract_body(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
 {

@@ -3,9 +3,9 @@
 #ifndef mcor_find_h
 #define mcor_find_h
 
-/* Makes an mcor_input of particles as files and programs have them, a list of named arrays, and of
- * what a user says about these. Also tells which array serves for what, and in sentences, what is
- * missing or not used.
+/* Makes an mcor_input from particles as files and programs have them, a list of named arrays, and
+ * from what a user says about the arrays. Also finds which array serves for what, and says in
+ * sentences what is missing or not used.
  *
  *   mcor_found found;
  *   if (mcor_find_input(&request, &positions, arrays, count, NULL, &found) == MCOR_OK)
@@ -103,8 +103,8 @@ extern "C"
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
     /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
-     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: take
-     * what MCOR_WANT_FLUID finds; 2: and say so, in unused_type, if it finds nothing. */
+     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: use the array
+     * that MCOR_WANT_FLUID finds; 2: also say, in unused_type, if it finds none. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
@@ -113,7 +113,7 @@ extern "C"
     int active;            /* the array to contour if it is fit and none is given; -1: none */
     int not_on_points;     /* bit 1 << role: the array that is given is not an array of particles */
     double within[6];      /* bounds of the particles that count, unless all are 0 */
-    const mcor_only* only; /* [only_count]; of several ranges of one array, any may hold */
+    const mcor_only* only; /* [only_count]; a value must be in one of its array's ranges */
     int only_count;
     /* Names, one a line, or NULL. taken: arrays that are computed; excluded: others that must not
      * be attributes. The array of iso values has the name of what is contoured, unless a computed
@@ -128,7 +128,7 @@ extern "C"
    * -1: none. Indices behind the last array mean made[0], made[1]. */
   typedef struct mcor_found
   {
-    mcor_input input; /* ready to use, until this is freed */
+    mcor_input input; /* valid until mcor_free_found */
     /* The array of each role; for quantities, only if the input has them. */
     int which[MCOR_ROLE_COUNT];
     mcor_array views[MCOR_ROLE_COUNT]; /* each role's array as the core reads it, or its value; all
@@ -139,17 +139,18 @@ extern "C"
     int* nearest; /* [nearest_count], arrays that cannot be interpolated: whole numbers, text */
     int nearest_count;
     mcor_named made[2]; /* "Velocity" of vx, vy and vz; "Density" of mass and volume; or no name */
-    /* What is still to be summed over neighbours: mcor_take_lengths, mcor_take_densities. */
+    /* Nonzero: the caller must sum these over neighbours, and hand them in: see
+     * mcor_take_lengths. */
     int needs_lengths, needs_densities;
     mcor_message error;       /* what is missing or not usable */
-    mcor_message unused_type; /* which array seems to tell fluid from solids, but is not used; or, see
-                               * find_fluid, that no array tells it */
+    mcor_message unused_type; /* names an array that seems to tell fluid from solids, but is not
+                               * used; or, with find_fluid 2, says that there is none */
     mcor_message unused;      /* what is given by hand and has no effect */
     char* no_fluid;           /* why no particle is fluid, without a full stop; NULL: some are */
     char*
       scalar_name; /* "Pressure", "Velocity_Magnitude", "Velocity_X", "A_Dot_B"; "": no scalar */
     const char* iso_value_name; /* the scalar's name or, if it is taken, "IsoValue" */
-    void** own;                 /* [own_count], memory that belongs to this */
+    void** own;                 /* [own_count], memory that mcor_free_found frees */
     int own_count;
   } mcor_found;
 
@@ -161,14 +162,14 @@ extern "C"
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
   void mcor_free_found(mcor_found* found);
 
-  /* Take the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities, borrowed, for
-   * an input that needs them. Densities become the scalar; volumes follow from them, too, if there
-   * are masses, but no densities or volumes. */
+  /* Put the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities into an input
+   * that needs them; borrowed until mcor_free_found. Densities become the scalar. If there are
+   * masses, but no other densities and no volumes, they also give the volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 
-  /* The array to show if the user has chosen none, see mcor_view_priority: the active one if it is
-   * fit; -1: none is fit. */
+  /* Returns the array to show if the user has chosen none, see mcor_view_priority: the active one
+   * if it is fit; -1: none is fit. */
   int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
 
   /* Returns the array that has the most usual name of the quantity, among arrays with `components`

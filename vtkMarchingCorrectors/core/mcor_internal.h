@@ -126,18 +126,18 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 /* The most elements that kernels count: rounded up to any work-group or batch, their number is
  * still an int. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
-/* The most lattice nodes along an axis, for which single-precision fixed point resolves 2^-9
+/* The most lattice nodes along an axis. Fixed point of single precision then resolves 2^-9
  * cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
-/* The most cubes along an axis for a lattice that is cut to a box or to points; particles of long
- * supports may lie far from these. Fixed point then resolves 2^-7 cubes. */
+/* The most cubes along an axis for a lattice that is cut to a box or to points; particles with long
+ * supports may lie far outside of it. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
 /* Keys have bits for this many nodes along an axis, and for this many cells in all; see
  * MCOR_RING_CELL. */
 #define MCOR_NODE_LIMIT (1 << 21)
 #define MCOR_KEY_LIMIT 4.6e18
 
-/* Whether a triangle uses vertex v, which then is point scanned[v] of its mesh. */
+/* Whether vertex v is in the output, as point scanned[v] of its mesh. */
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)
 {
   return scanned[v] != scanned[v + 1];
@@ -201,7 +201,8 @@ static inline mcor_build mcor_build_of(const mcor_options* options, bool solids)
   return (mcor_build){ options->sph_kernel, options->field, options->precision, solids };
 }
 
-/* Whether seeds are the paper's pairs. A free surface has no values for pairs to straddle. */
+/* Whether seeds are the paper's pairs. At a free surface, particles have no values that could
+ * straddle the iso value. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
   return options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
@@ -342,7 +343,7 @@ bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
-/* Finds the edge between two vertices in `cuts`, the edges that are cut, mesh.cut_edges; -1: this
+/* Finds the edge between vertices p and q in `cuts`, the host's copy of mesh.cut_edges; -1: the
  * edge is not cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* the least weight of the fluid itself at a vertex; 0: none is needed */
@@ -413,9 +414,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 #define MCOR_CASE_ROWS 1200
 typedef struct mcor_case_table
 {
-  /* First row << 6 | ambiguous faces, bit axis * 2 + side. If bit i of the number of a row after
-   * the first row is set, the corners above are joined on the i-th ambiguous face; the first row
-   * joins none. Rows with tunnels come last. */
+  /* First row << 6 | ambiguous faces, bit axis * 2 + side. The rows of a case count from 0. If bit
+   * i of a row's number is set, the corners above the iso value are joined on the i-th ambiguous
+   * face. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_CASE_ROWS];

@@ -3,8 +3,9 @@
 #ifndef mcor_parts_h
 #define mcor_parts_h
 
-/* A surface in parts: boxes of it, each made from the particles near it alone, by one process
- * after the other or by several that work together. See mcor_options.box, .globals and .ranks. */
+/* A surface in parts, each of which lies in a box and is made from the particles near the box
+ * alone. One process makes the parts in turn, or several processes work together. See
+ * mcor_options.box, .globals and .ranks. */
 
 #include "mcor.h"
 
@@ -104,16 +105,16 @@ extern "C"
     double whole_box[6];
   };
 
-  /* mcor_create_context for one of `count` processes or threads that run side by side on a
-   * machine; place: its number, from 0. Unless a number names the device, the processes take turns
-   * among the devices of its platform and kind; processes on one CPU device take a share of its
-   * processors each. The result does not depend on this. */
+  /* mcor_create_context for one of `count` processes or threads that run side by side on a machine;
+   * place: its number, from 0. Unless a number names the device, the processes take turns among all
+   * devices of the same platform and kind. Processes on one CPU device get a share of its
+   * processors each. Results do not depend on which device, or which share, a process gets. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
   /* Moves each period that does not hold the box (with ranks, whole_box), so that the box lies in
    * the middle. A period shorter than the box stays. mcor_extract does this by itself unless
-   * globals are given; these must be measured with the moved period. */
+   * globals are given; globals must be measured with the moved period. */
   void mcor_move_period(mcor_options* options);
 
   /* Measures an input for options.globals of later calls, in this or another context, with
@@ -128,7 +129,7 @@ extern "C"
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
   /* Returns how far from a box all particles are needed, however short their supports are, because
    * what reaches the box depends on them; 0: none. All lengths have one unit. computes_volumes:
-   * whether the call computes volumes; widest: options.widen of mcor_widen, 0 of other calls;
+   * whether the call computes volumes; widest: options.widen for mcor_widen, 0 for other calls;
    * reach: how far a particle that reaches the box may be away from the box, 0 if no particle
    * reaches it; margin: at least two cubes, because particles and the box are rounded. */
   double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,

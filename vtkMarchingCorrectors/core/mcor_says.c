@@ -20,7 +20,8 @@ static const struct
 #include "mcor_says.def"
 };
 
-/* label: the words in panels; "": the words are made of property, the name in VTK's filters. */
+/* label: the words in panels; if it is "", they are made from property, the name in VTK's
+ * filters. */
 static const struct
 {
   const char *slot, *label, *property;
@@ -86,8 +87,8 @@ int mcor_label_word(void* user, const char* name, const char* value, char* word,
   return *words != 0;
 }
 
-/* Divides what is between the braces at text[0] and *end into a name and a value; false if there
- * is no name of a slot. */
+/* Divides the slot from the brace at text[0] to the one at *end into a name and a value. Returns
+ * false if the text does not begin with a slot. */
 static bool mcor_read_slot(const char* text, const char** end, char* name, const char** value)
 {
   size_t length = strspn(text + 1, "abcdefghijklmnopqrstuvwxyz_");
@@ -147,8 +148,8 @@ char* mcor_fill_slots(const char* text, mcor_word word, void* user)
   return out;
 }
 
-/* Returns how many characters the text has outside of formats and slots, if the sentence has all
- * these pieces in this order; else 0. */
+/* Returns how many characters of the text lie outside of formats and slots, if the sentence has all
+ * of them in the same order; else 0. */
 static size_t mcor_match(const char* text, const char* sentence)
 {
   size_t all = 0;

@@ -84,15 +84,15 @@ typedef struct mcor_level
 #define MCOR_OPEN_SIDES 4
 
 /* Numbers of a brick's masks. EDGE: its lattice edges with a vertex, see mcor_march_count.
- * DECISION: masks 0 to 2 are the ambiguous faces whose lowest node is in the brick and whose nodes
- * above are joined, by axis of the normal; masks 3 and 4 are the cells whose samples are all below,
- * all above. */
+ * DECISION: masks 0 to 2, by axis of the normal: the ambiguous faces whose lowest node is in the
+ * brick and whose nodes above the iso value are joined; masks 3 and 4: the cells whose samples are
+ * all below, all above. */
 #define MCOR_EDGE_MASKS 9
 #define MCOR_DECISION_MASKS 5
 
 /* A way to triangulate a cell. An edge is axis << 3 | its lower corner; a corner has the bits 1 x,
- * 2 y, 4 z. tunnel: the row in which a tunnel joins two regions below, above; counted from the
- * first row of the case; 0: none. */
+ * 2 y, 4 z. tunnel[0], tunnel[1]: the row in which a tunnel joins two regions below, above the iso
+ * value; counted from the first row of the case; 0: none. */
 typedef struct mcor_cell_row
 {
   MCOR_TYPE(uchar) edges[36]; /* 3 per triangle */
@@ -111,7 +111,7 @@ typedef struct mcor_rung
   MCOR_TYPE(int) unused;
 } mcor_rung;
 
-/* Bits of an edge's last number below the vertex's level. */
+/* The last number of a vertex's edge has its level above this many bits. */
 #define MCOR_LEVEL_SHIFT 8
 
 /* Slots that hold the nodes of a leaf: 2^3 of its level, 3^3 of the next finer level. */
@@ -126,9 +126,10 @@ typedef struct mcor_rung
 /* Greatest distance between nodes of a group of points along an axis, in cubes. */
 #define MCOR_GROUP_EDGE 7
 
-/* Positions of a group's points and of particles count from one node. This is the points' greatest
- * distance from it: half a group, an offset from the node, and 1. A position has fewer digits the
- * larger the support (mcor_stage.c), so that as a real it is exact this far beyond the support. */
+/* The positions of a group's points, and of particles, are measured from one node. The points are
+ * at most this far from that node: half a group, an offset, and 1. A particle's position is rounded
+ * more coarsely the larger its support (mcor_stage.c), so that it is an exact real up to this
+ * distance beyond the support. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
 /* Groups of points close to each other that one work-item evaluates together. */

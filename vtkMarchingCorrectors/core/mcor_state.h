@@ -47,8 +47,8 @@ typedef struct mcor_space
   const char* evaluate; /* the kernel for nodes */
 } mcor_space;
 
-/* A particle of the sample that stands for all: the particles whose positions have the least
- * hashes. Solids have no h and volume here; volume is 0 if volumes are computed. */
+/* A particle of the sample, which consists of the particles whose positions have the least hashes.
+ * Solids have no h and volume here; volume is 0 if volumes are computed. */
 typedef struct mcor_sample
 {
   uint64_t hash;
@@ -80,10 +80,10 @@ typedef struct mcor_grid
   mcor_buffer level_buffer, buckets, cell_keys, cell_begins, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: only with solids */
   mcor_buffer value;
-  int view;               /* kernels count in cells of this level of adaptive cubes */
+  int view;               /* kernels measure in cubes of this level of adaptive cubes */
   int most_in_cell;       /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
-  mcor_buffer side_flags; /* uchar for each run of particles, for this iso value: the sides of their
-                           * values, see mcor_seed.cl */
+  mcor_buffer side_flags; /* uchar for each MCOR_SIDE_PARTICLES particles: on which sides of this
+                           * iso value they are */
   bool has_solids;
 } mcor_grid;
 
@@ -266,7 +266,7 @@ enum
 /* The cells that a call owns, see mcor_box.c. */
 typedef struct mcor_box
 {
-  /* is_part: there are cells that this call does not own, or a period; is_empty: it owns none */
+  /* is_part: there is a period, or this call does not own all cells; is_empty: it owns no cell */
   bool is_part, is_empty;
   int ring;               /* width of the ring of cells that are examined around the owned ones */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
@@ -282,7 +282,7 @@ typedef struct mcor_box
   uint8_t* kept;       /* per triangle of the surface: 1: its cell is owned; NULL: all are */
 } mcor_box;
 
-/* The iso value under way. Filling has none: its points are evaluated for 0. */
+/* The iso value under way. Points that filling adds are evaluated for the value 0. */
 typedef struct mcor_iso
 {
   int number; /* index in options.iso_values; iso_count while filling adds points */
@@ -297,7 +297,7 @@ typedef struct mcor_run
   bool is_sampled;  /* context->samples are of this rank's particles, see mcor_choose_samples */
   double widest; /* greatest factor of lengths in sums at particles, see mcor_widen.c; 0: no sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
-  struct mcor_far* far; /* particles that are left out so that it fits; NULL: none */
+  struct mcor_far* far; /* particles that are left out so that the lattice fits; NULL: none */
   struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; or NULL */
   mcor_statistics* statistics;
   mcor_iso iso;

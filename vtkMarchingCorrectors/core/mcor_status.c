@@ -102,7 +102,7 @@ const char* mcor_last_error(const mcor_context* context)
   {
     return mcor_says_text(MCOR_SAYS_HOST_MEMORY);
   }
-  char* told = (char*)context->told; /* the text is only a copy of the failure */
+  char* told = (char*)context->told; /* may change: it only repeats the failure */
   mcor_fill_text(context->error, NULL, NULL, told, sizeof context->told);
   return told;
 }

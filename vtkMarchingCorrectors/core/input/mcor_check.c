@@ -110,7 +110,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
       MCOR_SAY(ISO_OF_FREE_SURFACE), options->iso_values[i]);
   }
-  /* Pair seeds may miss what a cap needs, and in a box the pairs may lie elsewhere. */
+  /* Pair seeds may miss cells that a cap needs; with a box, the pairs may lie outside of it. */
   const char* other = options->capping ? "{capping}"
     : mcor_has_box(options)            ? "{box}"
     : options->ranks                   ? "Several processes"
@@ -209,7 +209,7 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     { has_mass && mcor_is_given(&input->density) ? &input->density : NULL, "density" } };
   MCOR_TRY(mcor_check_form(context, &input->positions, "position", 3));
   bool all_finite = false;
-  if (!context->run.options->globals) /* else there is nothing to measure, and no sample is taken */
+  if (!context->run.options->globals) /* globals are measured already, so they need no sample */
   {
     MCOR_TRY(mcor_sample_own(context, input, mcor_most_samples(input), &all_finite));
   }

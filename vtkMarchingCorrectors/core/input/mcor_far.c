@@ -38,8 +38,8 @@ typedef struct mcor_far_job
   const mcor_input* input;
   mcor_far* far;
   bool open[3];        /* axes without a period */
-  double reach, slack; /* per smoothing length: the support radius, and how much farther a particle
-                        * is needed */
+  double reach, slack; /* per smoothing length: the support radius, and how much farther away a
+                        * particle is still needed */
   double margin;       /* of mcor_reach_around */
   double radius;       /* all particles within this distance of the region stay */
   mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
@@ -104,7 +104,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
       options, mcor_needs_density(job->input), context->run.widest, job->all.most[0], job->margin);
     return mcor_mark_far(context, job);
   }
-  /* No fluid reaches the region. A run needs some, so the first sample's place keeps its fluid. */
+  /* No fluid reaches the region. A run needs some, so the fluid at the first sample's place
+   * stays. */
   for (int64_t i = 0; i < job->input->count; ++i)
   {
     bool same = !(job->input->solid && job->input->solid[i]);

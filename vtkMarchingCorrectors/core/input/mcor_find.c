@@ -713,7 +713,7 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
     found->which[MCOR_ROLE_ID] =
       mcor_find_named(arrays, count, MCOR_PARTICLE_ID, 1, positions->tuples);
   }
-  /* From here on, nothing is said to other ranks. */
+  /* From here on, ranks do not exchange anything. */
   if (contours || (wants & (MCOR_WANT_ARRAY | MCOR_WANT_COLUMN)))
   {
     mcor_find_scalar(&f, contours);

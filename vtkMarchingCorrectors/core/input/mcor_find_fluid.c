@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Words of names of blocks and bodies with walls. SPlisHSPlasH calls rigid bodies rb_particle_data. */
+/* Words that stand in the names of blocks and bodies with walls. SPlisHSPlasH calls rigid bodies
+ * rb_particle_data. */
 static const char* const mcor_wall_words[] = { "wall", "bound", "solid", "obstacle", "rigid",
   "rb_particle", "container", "tank" };
 
@@ -42,7 +43,7 @@ typedef struct mcor_kind
   int64_t count;
 } mcor_kind;
 
-/* The room for kinds: one more than there may be. */
+/* Room for one kind more than allowed, which tells that there are too many. */
 #define MCOR_KINDS (MCOR_PARTICLE_TYPES + 1)
 
 /* NaN is above all numbers. */
@@ -227,7 +228,8 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
       {
         ++k;
       }
-      /* A value must lie in one of its array's ranges. The first range tests all; k < r skips others. */
+      /* A value must lie in one of its array's ranges. k: the first range of the array, where all
+       * of the array's ranges are tested; its later ranges (r > k) are skipped. */
       const double x = mcor_element_at(f->arrays + of[r], i, 0);
       bool holds = k < r;
       for (; k < ranges && !holds; ++k)
@@ -316,7 +318,7 @@ static int mcor_shown_components(const mcor_named* array)
   return array->type < MCOR_ELEMENT_OTHER && array->name ? array->components : 0;
 }
 
-/* The ranks first agree which components of which arrays vary. */
+/* Ranks first find together which components of which arrays vary. */
 int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks)
 {
   int ends = 0, best = -1, best_rank = -1;

@@ -19,7 +19,8 @@ typedef struct mcor_spread_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_spread_job;
 
-/* Stops along an axis once the fluid is not flat there: how far it goes then does not matter. */
+/* Measures an axis only until the fluid is not flat along it: its exact extent does not matter
+ * then. */
 static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;
@@ -53,7 +54,7 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
   job->slices[slice] = spread;
 }
 
-/* If this is false, mcor_check_input says later what is wrong. */
+/* Whether positions can be read; if not, mcor_check_input says later what is wrong. */
 bool mcor_has_positions(const mcor_input* input)
 {
   return input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && input->positions.data &&
@@ -132,7 +133,7 @@ static mcor_status mcor_refuse_plane(
 /* How many particles are tested for a twin, a particle with the same place in the plane. */
 #define MCOR_TWIN_SAMPLES 32
 /* Rounding may have flattened the particles if a step of single precision is longer than this share
- * of the spacing that they have if they are spread evenly over the plane. */
+ * of their spacing, as if they were spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
 /* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
@@ -229,7 +230,7 @@ mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat)
 {
   *flat = (mcor_flat){ .input = *input, .options = *options };
-  flat->input.positions.components = 3; /* a plane is found, whatever dimension the caller asked for */
+  flat->input.positions.components = 3; /* 3 is right, whatever number the caller has set */
   MCOR_TRY(mcor_look_for_plane(context, &flat->input, options));
   flat->options.dimension = context->space.axes;
   return MCOR_OK;

@@ -257,9 +257,10 @@ public:
 
   /**
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
-   * fluid, with triangles that share the points of the lines. The other values divide the region into
-   * bands. The cell array "BandValue" has the iso value of a line, and the one at which a triangle's band begins; so
-   * has the point array "IsoValue". The scalar is interpolated as other arrays are. Off by default. An error in 3-D.
+   * fluid, with triangles that share the points of the lines. The other values divide the region
+   * into bands. The cell array "BandValue" has the iso value of a line; for a triangle, the iso
+   * value at which its band begins. The point array "IsoValue" has the same values. The scalar is
+   * interpolated as other arrays are. Off by default. An error in 3-D.
    */
   vtkSPHFlagMacro(Filled, 0);
 
@@ -369,11 +370,11 @@ public:
   ///@{
   /**
    * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_AUTO, the
-   * default: as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: it
-   * continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in
-   * front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends
-   * where the solids' share of the weight sum exceeds WallShare; a free surface is then open along
-   * walls.
+   * default: as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: the
+   * surface continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it
+   * ends in front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL:
+   * it ends where the solids' share of the weight sum exceeds WallShare; a free surface is then
+   * open along walls.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);
@@ -393,9 +394,10 @@ public:
    * Point arrays of the output; normals and scalars are on by default.
    * - Normals, "Normals": unit length, towards lower values, from the analytic gradient of the field (in
    *   previews from the triangles).
-   * - Scalars: the iso value. A scalar array gives its name to it; else the name is that of the vector and
-   *   the component or "Magnitude" ("Velocity_X"), of both vectors of a dot product ("A_Dot_B"), or
-   *   "IsoValue" in free-surface mode and where a computed array ("Normals", ...) has that name.
+   * - Scalars: the iso value. The array has the name of the contoured scalar array; for a vector, its name
+   *   and the component or "Magnitude" ("Velocity_X"); for a dot product, the names of both vectors
+   *   ("A_Dot_B"). It is "IsoValue" in free-surface mode and where a computed array ("Normals", ...) has that
+   *   name.
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
    * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, whatever is chosen there.
@@ -466,11 +468,12 @@ public:
 
   ///@{
   /**
-   * Values that an update with the present properties and input would find: FluidScalarRange,
-   * the default iso value (NaN: not known), the number of components of the chosen array (1 for
-   * a dot product), whether there is a free surface, the dimension, EstimatedCells (of all blocks), UsedFluid, the array that
-   * is contoured if none is chosen, and a warning of very many cells. The input is not updated. 0 to 0, 0, or empty: not known,
-   * without particles or a scalar. If processes share a run, these are the values of the last
+   * Values that an update with the present properties and input would find: FluidScalarRange, the
+   * default iso value (NaN: not known), the number of components of the chosen array (1 for a dot
+   * product), whether there is a free surface, the dimension, EstimatedCells (of all blocks),
+   * UsedFluid, the array that is contoured if none is chosen, and a warning of very many cells. The
+   * input is not updated. Without particles, or without a scalar where one is needed, a value is
+   * not known: 0 to 0, 0, or empty. If processes share a run, the values are those of the last
    * update, because one process cannot ask the others without waiting for them.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }

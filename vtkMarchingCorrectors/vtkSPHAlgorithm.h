@@ -183,9 +183,9 @@ public:
   ///@{
   /**
    * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles
-   * repeat along x with the period x1 - x0. A surface has one period, is open at its sides,
-   * where it meets itself to the last bit. Periods are whole numbers of cubes; the cube size is
-   * reduced to fit, see "CubeSize" in the statistics. The points of a probe may lie anywhere.
+   * repeat along x with the period x1 - x0. A surface covers one period. It is open at the period's
+   * sides, where it meets itself to the last bit. Periods are whole numbers of cubes; the cube size
+   * is reduced to fit, see "CubeSize" in the statistics. The points of a probe may lie anywhere.
    */
   vtkSetVector6Macro(PeriodicBounds, double);
   vtkGetVector6Macro(PeriodicBounds, double);

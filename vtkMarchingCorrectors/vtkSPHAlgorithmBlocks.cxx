@@ -202,7 +202,8 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// Keeps, for each end of each axis, the few values nearest to it; values at upper ends are negated.
+// Keeps, for each end of each axis, the few values nearest to the end; values at upper ends are
+// negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);
@@ -304,7 +305,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   return true;
 }
 
-// Without an answer if processes share a run, because all of them would have to ask together.
+// The bounds are unknown if processes share a run, because all of them would have to ask together.
 double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =

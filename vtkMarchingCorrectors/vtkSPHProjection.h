@@ -5,9 +5,9 @@
  * @brief   column densities of SPH particles: an image of integrals along lines of sight
  *
  * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight,
- * and gives the mean of this over each pixel of an image. Each kernel's integral is exact to 1e-6
- * of the largest that one particle adds to a pixel, also if it is much smaller or larger than a
- * pixel, so the image has all of the mass that falls into it.
+ * and gives the mean of the integrals over each pixel of an image. Each kernel's integral is exact
+ * to 1e-6 of the largest that one particle adds to a pixel, also if it is much smaller or larger
+ * than a pixel, so the image has all of the mass that falls into it.
  *
  * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
  * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
@@ -63,10 +63,10 @@ public:
 
   ///@{
   /**
-   * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along
-   * x, y or z, a particle counts if its position is between the box's sides along the line of sight
-   * and its kernel reaches between the other sides; else if its position is in the box. Each counts
-   * with all of its kernel. Off by default.
+   * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along x,
+   * y or z, a particle counts if its position is between the box's sides along the line of sight
+   * and its kernel reaches between the other sides. Looking along another direction, a particle
+   * counts if its position is in the box. Each counts with all of its kernel. Off by default.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);

@@ -176,7 +176,8 @@ public:
   }
   /**
    * Sends results, a tuple for each point, or for each particle if there are no points, back to the
-   * process that these came from. home: where they belong on this process; may be null.
+   * process that the points or particles came from. home: where the results belong on this process;
+   * may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
   /** Lists the first particle of all processes at which each interpolated array is not finite. */

@@ -181,7 +181,8 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 
 namespace
 {
-/// Adds a value to the sum over several runs, keeps the greatest, or, if all are the same, the last.
+/// Adds a value to the sum over several runs; or keeps the greatest value; or, if all values are
+/// the same, takes the last one.
 template <typename T>
 void AddToRun(vtkFieldData* run, vtkSPHHow how, const char* name, const T& value)
 {

@@ -40,7 +40,10 @@ std::string vtkSPHRealName(const std::string& name);
 /** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
-/** Adds a state: VTK's modification times are unique in a process, so object and time identify it. */
+/**
+ * Adds an object's state to a signature: VTK's modification times are unique in a process, so
+ * object and time identify it.
+ */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
@@ -64,7 +67,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPoints> vtkSPHTakePoints(
 /** Makes a vertex of each point from 0 to count - 1. */
 vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
-/** Copies a text of the core, and frees the core's; returns an empty text for null. */
+/** Copies a text of the core, and frees the core's text; returns an empty text for null. */
 std::string vtkSPHTakeText(char* text);
 /** Does the same with a sentence of the core, and fills its slots, see vtkSPHAlgorithm::SetWord(). */
 std::string vtkSPHTakeText(mcor_message message);

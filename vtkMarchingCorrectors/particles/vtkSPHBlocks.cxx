@@ -34,9 +34,9 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 }
 
 /**
- * Joins the arrays of this name, one block after the other. Returns nothing if a block that is
- * no wall lacks the array; for walls values are made up, unless the array tells kinds of
- * particles apart.
+ * Joins the arrays of this name, one block after the other. Returns null if a block that is no wall
+ * lacks the array. For walls that lack it, makes up values, unless the array tells kinds of
+ * particles apart: then returns null, too.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
@@ -121,9 +121,9 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 }
 
 /**
- * Finds which of the blocks with points are walls: all but the block that was chosen as fluid,
- * else those with names of walls. Returns nothing where no block of the tree, or every one, has
- * such a name. Empty blocks count, so that processes with different blocks agree.
+ * Finds which of the blocks with points are walls. If a block is chosen as fluid, all others are
+ * walls, else the blocks with names of walls. Returns an empty list if no block of the tree, or
+ * every block, is a wall. Empty blocks count, so that processes with different blocks agree.
  */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {

@@ -53,7 +53,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
 /**
- * Lists "Block: NAME" for each name of a block, if there are several: these can be chosen as
+ * Lists "Block: NAME" for each name of a block, if there are several. Each entry can be chosen as
  * fluid array.
  */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);

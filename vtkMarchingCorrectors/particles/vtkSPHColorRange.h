@@ -26,7 +26,8 @@ public:
 
   /**
    * Finds the range of most values of a point array, or of its vectors' magnitudes. For iso values,
-   * or if most values are equal, finds the range of all. Returns false if no value is finite.
+   * or if most values are equal, finds the range of all values. Returns false if no value is
+   * finite.
    */
   bool Find(vtkDataArray* array, double range[2]) const;
 

@@ -62,9 +62,9 @@ void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequ
   const mcor_ranks* ranks);
 
 /**
- * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or densities
- * of the first `count` particles. Returns why that failed; an empty text if it did not, or if another
- * rank failed.
+ * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or
+ * densities of the first `count` particles. Returns why that failed on this rank, else an empty
+ * text.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
   std::int64_t count, double* values);
@@ -93,8 +93,10 @@ public:
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /** Returns the name under which values computed from neighbours travel to other processes, a name
-   * that no file's array has; and whether a name is one of these. */
+  /**
+   * NameMade() returns the name under which values computed from neighbours travel to other
+   * processes; no file's array has such a name. IsMade() says whether a name is one.
+   */
   static std::string NameMade(const std::string& name);
   static bool IsMade(const char* name);
   ///@}

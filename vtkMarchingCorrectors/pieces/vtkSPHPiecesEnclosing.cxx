@@ -141,8 +141,8 @@ private:
 };
 
 /**
- * Sets `innermost` to the piece of least volume, without sign, among the pieces around the point
- * and the present `innermost`.
+ * Sets `innermost` to the piece with the volume of least magnitude, among the pieces around the
+ * point and the present `innermost`.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)

@@ -270,8 +270,8 @@ void vtkSPHRanksSpace::Cut(
   this->Cut(middle, end, first + lower, count - lower, high);
 }
 
-// If there are more ranks than parts or bricks, some boxes are empty. The core needs a box, so it
-// gets a box at a place where there is nothing.
+// If there are more ranks than parts or bricks, some boxes are empty. The core needs a box, so an
+// empty box is replaced by a box at a place where there is nothing.
 vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
 {
   const vtkSPHRanksBox box =

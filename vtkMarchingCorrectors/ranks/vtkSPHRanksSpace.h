@@ -108,12 +108,12 @@ private:
 };
 
 /**
- * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on it
- * (solids, if it uses none), and a share of the surface's cost if a surface is expected there. It is
- * expected in cells of a coarse grid that have values on both sides of an iso value in or around
- * them, or, for a free surface, far fewer particles beside them. The number of cells does not grow
- * with the particles. The result is the same to the last bit however particles are spread over
- * ranks. Collective.
+ * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on the
+ * particle (a solid, if solids are not used), and a share of the surface's cost if a surface is
+ * expected there. A surface is expected in a cell of a coarse grid if values in or around the cell
+ * are on both sides of an iso value, or, for a free surface, if a cell beside it has far fewer
+ * particles. The number of cells does not grow with the particles. The result is the same to the
+ * last bit however particles are spread over ranks. Collective.
  */
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals);

@@ -2,15 +2,16 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Finds the blocks. A few large cubes of nodes cover the whole lattice; active cubes are divided,
- * down to blocks. A cube is inactive if it and all cubes around it are void, or certain of one and
- * the same side of the iso value: then no crossed edge is in it or leads out of it. Empty space
- * costs next to nothing, and so does space that coarse particles fill with values far from the iso
- * value.
+ * down to blocks. A cube is inactive if it and all cubes around it are void or certain of their
+ * side of the iso value, and none is above while another is below: then no crossed edge is in the
+ * cube or leads out of it. Empty space costs next to nothing, and so does space that coarse
+ * particles fill with values far from the iso value.
  *
  * Cubes of one size are sorted by key, like blocks, and mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube of the largest size; all of these exist. Writes its key. */
+/* One work-item = one cube of the largest size. Writes the cube's key. All cubes of this size
+ * exist. */
 __kernel void mcor_block_all(
   const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {

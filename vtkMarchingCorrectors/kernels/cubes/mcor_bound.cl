@@ -14,11 +14,11 @@
 
 /* Rounding. u is the unit roundoff, n the number of particles that reach the box. The relative
  * error of a distance that a node's evaluation computes is at most 8 u. The bound uses distances
- * that are shorter or longer by this. A slightly larger box covers the rounding of positions. Given
- * the distance, the relative error of w is less than 96 u, because no kernel subtracts large terms
- * where it is small. The error of a sum of n terms, each a product of a few factors, is at most (n
- * + 16) u of the sum of the absolute terms, in any order, to first order. Hence the errors of the
- * bound and of a node's value together are at most
+ * that are shorter or longer by this error. A slightly larger box covers the rounding of positions.
+ * Given the distance, the relative error of w is less than 96 u, because no kernel subtracts large
+ * terms where w is small. The error of a sum of n terms, each a product of a few factors, is at
+ * most (n + 16) u of the sum of the absolute terms, in any order, to first order. Hence the errors
+ * of the bound and of a node's value together are at most
  *
  *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
  *
@@ -67,7 +67,8 @@ realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side
   return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
 }
 
-/* Finds the least and greatest w in the boxes: w falls with the distance. */
+/* Finds the least and greatest w in the boxes, at their farthest and nearest points: w falls with
+ * the distance. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {

@@ -11,8 +11,8 @@ __kernel void mcor_brick_count(
   counts[word] = (int)popcount(brick_bits[word]);
 }
 
-/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes to each brick's slot
- * its coordinates, and all its cells if it is chosen as seed. */
+/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes each brick's
+ * coordinates to its slot, and its seeds: all its cells if the brick is chosen, else none. */
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
@@ -47,9 +47,9 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: all if they
- * are not known yet. With leaves of several levels, nodes of a certain slot are evaluated only if
- * mcor_leaf_need marked the slot; nodes of a void slot never. */
+/* One work-item = one brick. Writes which of its nodes to evaluate: all if they are not known yet,
+ * else none. With leaves of several levels, a slot whose state is certain is evaluated only if
+ * mcor_leaf_need marked it, and a void slot never. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
@@ -60,7 +60,8 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
 }
 
 /* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
- * one. words: 4-byte words of a brick's node values, of which all or none are known. */
+ * one. words: how many 4-byte words the values of a brick's nodes take. Either all values are
+ * known, or none. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

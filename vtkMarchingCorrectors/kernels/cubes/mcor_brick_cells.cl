@@ -8,7 +8,7 @@
   const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
 #define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
 
-/* Returns the cells of a brick, which are of its level, whose centres are in the box. */
+/* Returns the cells of a brick whose centres are in the box. Cells are of the brick's level. */
 ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
 {
   ulong cells = ~0UL;

@@ -52,9 +52,9 @@ void mcor_corners_of(
   mcor_cell_corners(corners);
 }
 
-/* Finds which edges of a brick along an axis have the bits of the cells around them: q[0] of the
- * cell above in both other axes, q[1] below in the first, q[2] below in the second, q[3] below in
- * both. m: cell masks of the brick and its lower neighbours. */
+/* Finds, for the edges of a brick along an axis, the bits of the four cells around each edge. q[0]:
+ * of the cell above in both other axes; q[1]: of the cell below in the first; q[2]: below in the
+ * second; q[3]: below in both. m: cell masks of the brick and its lower neighbours. */
 MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
@@ -151,8 +151,8 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   return row;
 }
 
-/* What says how cells are cut: the rows of all cases, and, if the topology is resolved, the
- * decisions on faces and cells. */
+/* Parameters that say how cells are cut: the rows of all cases, and, if the topology is resolved,
+ * the decisions on faces and cells. */
 #define MCOR_CUT_PARAMS                                                                            \
   const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
     __global const int *cases, __global const mcor_cell_row *rows
@@ -176,7 +176,7 @@ __global const mcor_cell_row* mcor_cell_cut(
   return rows + (other ? first + other : row);
 }
 
-/* Writes the triangles of a cell that is cut as in a row. Returns their number. */
+/* Writes the triangles of a cell that is cut as `row` says. Returns their number. */
 int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_CELL_NODES],
   int cell, __global int* to)
 {

@@ -26,8 +26,8 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* The share of each particle's support within which the proof looks at particles. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether the proof is tried: for regions if a work-item evaluates whole bricks, else for
- * bricks. */
+/* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries it,
+ * else mcor_seed_brick does. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
@@ -62,9 +62,9 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
 }
 
 /* Whether the close particles lift all nodes of the leaf's level on its far sides above the iso
- * value, too. Finer nodes there belong to finer leaves: the proof of such a leaf covers its own
- * nodes, and with nodes on its far sides, beside the larger leaf, it is chosen, and the march goes
- * on from it. tile: particles close to any of the leaf's nodes. */
+ * value, too. Finer nodes there belong to finer leaves. A finer leaf's proof covers its own nodes.
+ * If the proof fails on the finer leaf's far sides, beside the larger leaf, the finer leaf is
+ * chosen, and the march goes on from it. tile: particles close to any of the leaf's nodes. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
@@ -101,12 +101,12 @@ bool mcor_sides_are_inside(
 #endif
 
 /* Returns MCOR_ABOVE if the particles within half their support of a brick's nodes alone lift all
- * its nodes above the iso value, else MCOR_EXAMINE. These are an eighth of all particles in reach,
- * and make up most of the weight sum. The others can only add to the sum: w >= 0, rounding is
- * monotone, and the order is the same. The margin allows for a compiler that rounds the same term
- * differently elsewhere. Far inside the fluid, nothing else is evaluated. A leaf `beside` finer or
- * coarser leaves gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide: the close
- * particles of the brick's region, if complete. */
+ * its nodes above the iso value, else MCOR_EXAMINE. Such particles are an eighth of all particles
+ * in reach, and make up most of the weight sum. Other particles can only add to the sum: w >= 0,
+ * rounding is monotone, and the order is the same. The margin allows for a compiler that rounds the
+ * same term differently elsewhere. Far inside the fluid, nothing else is evaluated. A leaf `beside`
+ * finer or coarser leaves gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide: the
+ * close particles of the brick's region, if complete. */
 int mcor_seed_proof(
   const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
 {
@@ -146,8 +146,8 @@ int mcor_seed_proof(
 }
 
 #if MCOR_PROVES_INSIDE
-/* One work-item = one slot, of `count` from `first` on. Tries the proof if the nodes are not known,
- * and neither a state nor an earlier trial is. */
+/* One work-item = one slot, of `count` from `first` on. Tries the proof if neither the nodes nor a
+ * state is known, and the proof was not tried before. */
 __kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global ulong* above, __global ulong* valid)

@@ -16,8 +16,8 @@ typedef struct
   ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
-/* Returns the slot, of the finer or of the leaf's own level, and the number there of node (x, y,
- * z). */
+/* Returns the slot of node (x, y, z), and the node's number in the slot. finer: the slot is of the
+ * finer level, else of the leaf's own level. */
 int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
 {
   return finer ? (int2)(leaf->slots[8 + MCOR_DIRECTION(x >> 2, y >> 2, z >> 2)],
@@ -26,8 +26,8 @@ int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
                    (x >> 1 & 3) + 4 * (y >> 1 & 3) + 16 * (z >> 1 & 3));
 }
 
-/* Returns slot and number of node (x, y, z): in a slot of the leaf's level if that level has
- * one. */
+/* Returns slot and number of node (x, y, z). The slot is of the leaf's level if that level has the
+ * node in a slot, else of the finer level. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
   z = leaf->plane ? 0 : z;
@@ -196,9 +196,9 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* One work-item = one leaf. If it is mixed, reads its nodes' masks. Writes to its slot which of its
- * cells are plain and which leaf it is; if mixed, also all cells if any cell is valid at all nodes
- * and has nodes on both sides, else none. */
+/* One work-item = one leaf. Writes to its slot which of its cells are plain, and the leaf's number.
+ * If the leaf is mixed, reads its nodes' masks, and writes all its cells if any cell is valid at
+ * all nodes and has nodes on both sides, else no cells. */
 __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global ulong* cells,
   __global ulong* plain, __global int* leaf_of)
 {

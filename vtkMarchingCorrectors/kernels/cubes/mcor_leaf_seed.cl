@@ -80,8 +80,8 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
   return (its & above[slot] ? MCOR_ABOVE : 0) | (its & ~above[slot] ? MCOR_BELOW : 0);
 }
 
-/* One work-item = one row of 8 bricks of a block. Chooses those of its leaves whose cells may have
- * nodes on both sides. */
+/* One work-item = one row of 8 bricks of a block. Chooses the leaves in the row whose cells may
+ * have nodes on both sides of the iso value. */
 __kernel void mcor_leaf_choose(
   MCOR_KNOWN_PARAMS, const int plane, __global const uint* beside, __global uint* chosen)
 {

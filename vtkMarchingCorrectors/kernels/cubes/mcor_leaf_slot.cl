@@ -111,8 +111,8 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
 }
 
 /* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, it has no
- * surface. If so, marks the slots whose values its cells need, also slots that are certain. Several
- * leaves may mark one slot. */
+ * surface. If so, marks the slots whose values its cells need, even slots whose sides are certain.
+ * Several leaves may mark one slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global ulong* need)

@@ -8,10 +8,10 @@
  * of its level. With several levels, mcor_march_hanging finds which other cells are used, and which
  * edges they use. */
 
-/* One work-item = one leaf. Reads its nodes' masks. Of its cells that are not plain, keeps only the
- * used ones in `used`, marks the edges that these use, and writes the number of their triangles, or
- * lines, to its slot. Adds to flat_loops the number of loops of owned cells that lie in one
- * face. */
+/* One work-item = one leaf. Reads its nodes' masks. Removes from `used` those of its cells that are
+ * neither plain nor used. Marks the edges of its used cells that are not plain, and writes the
+ * number of their triangles, or lines, to its slot. Adds to flat_loops the number of loops of owned
+ * cells that lie in one face. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -54,8 +54,8 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   }
 }
 
-/* One work-item = one brick. Reads the node masks. Keeps, of its plain cells in `used`, those that
- * are valid at all nodes and have nodes on both sides; writes these to plain_used, too. */
+/* One work-item = one brick. Reads the node masks. Keeps a plain cell in `used` only if it is valid
+ * at all nodes and has nodes on both sides. Writes the plain cells that stay to plain_used. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
   __global const ulong* plain, __global const ulong* above, __global const ulong* valid,
   __global ulong* used, __global ulong* plain_used)
@@ -232,7 +232,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   }
 }
 
-/* One work-item = one vertex, pairs[i].x, which pairs[i].y replaces. Copies `width` numbers. */
+/* One work-item = one pair of vertices. Replaces the `width` numbers of vertex x by the numbers
+ * of vertex y. */
 __kernel void mcor_march_replace(
   const int count, __global const int2* pairs, const int width, __global real* numbers)
 {
@@ -243,7 +244,7 @@ __kernel void mcor_march_replace(
   }
 }
 
-/* One work-item = one mask. Writes its number of bits. */
+/* One work-item = one mask. Writes how many of its bits are also set in `within`. */
 __kernel void mcor_march_bits(
   const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)
 {

@@ -42,8 +42,9 @@ __kernel void mcor_pair_request(
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* reached
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
-/* Returns, as a share of the line from `from` on, where it leaves a cell along an axis; more than 1
- * if it ends in the cell. low: the cell's lower side; 1 / gap: the line's extent along the axis. */
+/* Returns where the line from `from` leaves a cell along an axis, as a share of the line's length;
+ * more than 1 if the line ends in the cell. low: the cell's lower side; 1 / gap: the line's extent
+ * along the axis. */
 real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
 {
   const long side = step < 0 ? from - low : low + edge - from;
@@ -142,8 +143,8 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
   }
 }
 
-/* Fits the query to those of particles [begin, end) that come first, in one row, with the reach of
- * pairs. Returns their number. */
+/* Fits the query, with the reach of pairs, to the first particles of [begin, end), as many as are
+ * in one row. Returns their number. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -173,7 +174,8 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
     }
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
-      /* A particle below leaves all its pairs to the others if no other length is shorter. */
+      /* A particle below the iso value leaves all its pairs to its partners if no smoothing length
+       * is shorter than its own. */
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {

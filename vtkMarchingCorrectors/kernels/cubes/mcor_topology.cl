@@ -97,7 +97,7 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
       const real f10 = mcor_topology_value(node_value, neighbours, slot, n, du) - iso;
       const real f01 = mcor_topology_value(node_value, neighbours, slot, n, dv) - iso;
       const real f11 = mcor_topology_value(node_value, neighbours, slot, n, du | dv) - iso;
-      /* All differences have the same sign. */
+      /* Both differences have the same sign, so their sum does not cancel. */
       const real sum = (f00 - f01) + (f11 - f10);
       const real at[3] = { 0, mcor_topology_part(f00 - f01, sum),
         mcor_topology_part(f00 - f10, sum) };
@@ -147,15 +147,16 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* Returns the root t of xyz t + q = p, or -1 if it is not between -1 and 1. If p - q cancels, the
- * other root of (xyz t + q)^2 = p^2 gives it: the product of both roots is n / (a xyz). */
+/* Returns the root t of xyz t + q = p, or -1 if t is not between -1 and 1. If p - q would cancel,
+ * computes t from the other root of (xyz t + q)^2 = p^2: the product of both roots is n / (a
+ * xyz). */
 real mcor_topology_root(real p, real q, real xyz, real n, real a)
 {
   const real above = p * q > 0 ? n : p - q, below = p * q > 0 ? -a * (p + q) : xyz;
   return fabs(above) < fabs(below) ? above / below : (real)-1;
 }
 
-/* Returns the product of both roots, times a xyz. */
+/* Returns n of mcor_topology_root: the product of both roots, times a xyz. */
 real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, real xyz)
 {
   return yz * (x * yz - y * xz - z * xy) + y * z * xyz;

@@ -8,8 +8,8 @@
 #define __has_builtin(name) 0
 #endif
 
-/* 1 if the compiler makes a CPU's instructions itself. One that makes SPIR-V first may know these
- * built-in functions, too, but SPIR-V cannot express them. */
+/* 1 if the compiler makes a CPU's instructions itself. A compiler that makes SPIR-V first may know
+ * the built-in functions below, too, but SPIR-V cannot express them. */
 #if (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || defined(__arm__) ||       \
   defined(__powerpc64__) || defined(__riscv)) &&                                                   \
   !defined(__SPIRV__)

@@ -68,8 +68,8 @@ MCOR_FUNCTION(double, convert_double, (long x), (double)x)
 MCOR_DEFINE_ATOMICS(int, min, max)
 MCOR_DEFINE_ATOMICS(uint, umin, umax)
 
-/* Functions of vectors R of n numbers T. Clang makes one instruction of such a loop, but branches
- * of a loop that has a conditional. */
+/* Functions of vectors R of n numbers T. Clang makes one instruction of such a loop, but makes
+ * branches if the loop has a conditional. */
 #define MCOR_LANES_FUNCTION(n, R, name, parameters, value)                                         \
   MCOR_DEFINE R name parameters                                                                    \
   {                                                                                                \

@@ -7,7 +7,7 @@
  *
  *   2 mean = div n = (g . H g - |g|^2 tr H) / |g|^3        Gaussian = g . adj(H) g / |g|^4
  *
- * For a sphere of radius R around higher values these are 1 / R and 1 / R^2. */
+ * For a sphere of radius R around higher values, the mean is 1 / R, the Gaussian 1 / R^2. */
 
 /* A sum and its derivatives, per cube. Elements of the Hessian: xx, yy, zz, xy, yz, zx. */
 typedef struct

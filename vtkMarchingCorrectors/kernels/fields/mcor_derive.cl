@@ -97,7 +97,7 @@ __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* off
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* Beyond the last array, the first one takes its place. */
+    /* Beyond the last array, the first one is read again. */
     array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
     own[c] = mcor_derive_own(&points, order, array[c] + first);
     for (int a = 0; a < 3; ++a)

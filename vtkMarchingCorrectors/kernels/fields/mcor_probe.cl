@@ -6,7 +6,7 @@
  * depend on other points. */
 
 /* One work-item = one point. Reads its node, which is below 0 if no particle reaches it. Writes a
- * key by which points of a cell, and cells of a brick, are next to each other. first_x, ...: the
+ * sort key that puts points of a cell, and cells of a brick, next to each other. first_x, ...: the
  * first brick. */
 __kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
@@ -86,7 +86,7 @@ __kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offs
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* Beyond the last array, the weights take its place: any finite values will do. */
+    /* Beyond the last array, the weights are read: any finite values will do. */
     arrays[c] = c < count ? attributes + (first_array + c) * (long)stride : p_weight;
     slopes[c][0] = slopes[c][1] = slopes[c][2] = 0;
   }

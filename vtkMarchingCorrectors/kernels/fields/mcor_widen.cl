@@ -8,10 +8,10 @@
  * `least` is the iso value plus a margin, without which sheets would get holes. At the surface of
  * deep water, where all neighbours are on one side, the margin is 0, and a particle may even be
  * slightly outside, because each particle that has to be inside would raise a bump. At the rim of a
- * sheet, where few neighbours are on one side, the margin is wider: their own lengths may be
+ * sheet, few neighbours are on one side. The margin is wider there: the neighbours' lengths may be
  * longer, and a thread that hangs there would break. A particle in the corner of a tank has as few
- * neighbours, but its neighbours are widened, so that it would stick out as a knob with its own
- * length; its factor goes most of the way to their mean. A particle with more neighbours on one
+ * neighbours, but its neighbours are widened. With its own length it would stick out as a knob, so
+ * its factor goes most of the way to the mean of theirs. A particle with more neighbours on one
  * side is at the surface of a drop, and keeps its length. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
@@ -266,8 +266,8 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor. Nearly all groups
- * are so deep inside that this is true; their means are then known. */
+/* Whether all particles that may reach the query's box have the widest factor. In nearly all
+ * groups they have, because the groups are deep inside; the mean is then known. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -343,8 +343,8 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
- * mcor_widen_solve wrote for these. Writes whether c(1) is at least the iso value while c(factor)
- * is below it. */
+ * mcor_widen_solve wrote for the listed ones. Writes whether c(1) is at least the iso value while
+ * c(factor) is below it. */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)

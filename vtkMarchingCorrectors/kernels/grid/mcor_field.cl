@@ -108,8 +108,8 @@ realv mcor_weight_gradient(
   along[2] = sign(d[2]) * MCOR_DW(q[2]) * w[0] * w[1] * inv_h;
   return w[0] * w[1] * w[2];
 #else
-  /* inv_r is finite at r = 0, so the gradient is 0 there; with the quadratic kernel by definition,
-   * because its slope is not 0 at 0. */
+  /* inv_r is finite at r = 0, so the gradient is 0 there. The quadratic kernel's slope is not 0 at
+   * 0; its gradient is 0 there by definition. */
   const realv per_r = length->inv_r * inv_h, q = length->r2 * per_r;
   *slope = MCOR_DW(q) * per_r;
   along[0] = d[0];

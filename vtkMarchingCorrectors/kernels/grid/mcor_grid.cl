@@ -261,9 +261,9 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle, if it is the first of several at one position. Sorts these by
- * their scalar, so that results never depend on the order of the input. raw: the scalar in input
- * order. */
+/* One work-item = one sorted particle, if it is the first of several at one position. Sorts the
+ * particles at this position by their scalar, so that results never depend on the order of the
+ * input. raw: the scalar in input order. */
 __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS,
   __global const real* raw, __global real* value, __global int* order)
 {

@@ -215,8 +215,8 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, margin, &points, &query); \
   mcor_tile_init(&reach.tile)
 
-/* Finds the points' nodes relative to the query's origin, from which a tile's particles count,
- * too. */
+/* Finds the points' nodes relative to the query's origin, which is also the origin of a tile's
+ * particles. */
 void mcor_points_relative(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
 {

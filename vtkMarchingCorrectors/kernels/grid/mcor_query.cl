@@ -22,7 +22,7 @@ typedef struct
 {
   int particle_count, level_count, bucket_shift;
   /* The unit of length is a cube, or the cell of a level of adaptive cubes, which is view_edge
-   * cubes long. unit: a fixed-point unit in this unit; units: its inverse. All are powers of
+   * cubes long. unit: a fixed-point unit, in units of length; units: its inverse. All are powers of
    * two. */
   real unit, units, view_edge;
   real edge[3]; /* length of an edge, at most 1 */
@@ -192,8 +192,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Moves to the row before the one with the level's next particle, or to the end of the plane of
- * rows before it. */
+/* Skips empty rows: moves to the row before the level's next row with particles. If the next row is
+ * in another plane, moves to the end of the plane before that plane. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -289,8 +289,8 @@ int mcor_query_particles(
  * mcor_gather_lanes.cl (packed copies of particles, for MCOR_LANES points at once) or
  * mcor_gather_point.cl (the particles themselves, for one point). Both define
  *
- *   mcor_tile tile;                  particles that may reach the query's box, maybe more: one that
- *   mcor_tile_init(&tile);           does not adds exactly 0
+ *   mcor_tile tile;                  particles that may reach the query's box; a particle
+ *   mcor_tile_init(&tile);           that does not reach it adds exactly 0
  *   for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
  *     for (int i = 0; i < tile.count; ++i)
  *       ... MCOR_EACH(&tile, x, i), MCOR_INDEX(&tile, i) ...
@@ -328,7 +328,7 @@ int mcor_query_particles(
 #define MCOR_TRIM_WEIGHT weight
 #endif
 
-/* A particle's term of the field is its weight times this. */
+/* A particle's term of the field is its weight times MCOR_FIELD_TERM. */
 #if MCOR_FIELD == MCOR_SHEPARD
 #define MCOR_FIELD_TERM(value, iso) ((value) - (iso)) /* both relative to A0 */
 #else

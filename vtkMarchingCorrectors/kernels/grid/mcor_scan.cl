@@ -26,8 +26,8 @@ __kernel void mcor_scan_sum(
 }
 
 #if MCOR_LANES > 1
-/* The first work-item does all, because a CPU has few segments. Reads the segment sums. Writes
- * their exclusive prefix sums. */
+/* The first work-item does all the work, because a CPU has few segments. Reads the segment sums.
+ * Writes their exclusive prefix sums. */
 __kernel void mcor_scan_top(const int segments, __global long* sums)
 {
   long sum = 0;
@@ -185,8 +185,9 @@ __kernel void mcor_run_fill(__global const ulong* keys, const int count,
 
 #define MCOR_ITEM_BUCKETS MCOR_ITEM_BUCKETS_OF(MCOR_LANES)
 
-/* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index
- * of the first key that is not below its first key. Bucket b begins at key b << shift. */
+/* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Bucket b begins at key b << shift.
+ * Writes, for each bucket, the index of the first sorted key that is at least the bucket's first
+ * key. */
 __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, const int shift,
   const int bucket_count, __global int* buckets)
 {

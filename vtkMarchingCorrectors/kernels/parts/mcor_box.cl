@@ -10,7 +10,8 @@
     const int last_z
 #define MCOR_BOX_ARGS first_x, first_y, first_z, last_x, last_y, last_z
 
-/* Whether the box's cells have nodes among those of a cube, `size` nodes long. */
+/* Whether any of the box's cells has a node in a cube of nodes. node: the cube's first node; size:
+ * the cube's length in nodes. */
 bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
 {
   return node.x + size > first_x && node.x <= last_x && node.y + size > first_y &&

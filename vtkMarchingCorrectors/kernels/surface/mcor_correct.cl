@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES edges
- * at a time. Vertices of a compact contour that are not on an edge move along a line instead. It is
- * one cube long, in the gradient's direction at the vertex's start. */
+ * at a time. Vertices of a compact contour that are not on an edge move along a line instead. The
+ * line is one cube long, in the gradient's direction at the vertex's start. */
 
 /* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value or a
  * NaN, because compilers that relax arithmetic may treat them wrongly. */
@@ -211,9 +211,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
 }
 
 /* One work-item = one group of vertices. Reads edges and the values less iso at their ends, or,
- * with `lines`, starts (offset). Writes the vertices' offsets; linear: linear less final position
- * along the edge; value, gradient and trimming weight; number of evaluations; attributes. On lines,
- * linear becomes 1 if the surface is not reached. limit 0: no correction (preview). */
+ * with `lines`, starts (offset). Writes the vertices' offsets; to `linear`, the linear less the
+ * final position along the edge; value, gradient and trimming weight; number of evaluations;
+ * attributes. On lines, `linear` becomes 1 if the surface is not reached. limit 0: no correction
+ * (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

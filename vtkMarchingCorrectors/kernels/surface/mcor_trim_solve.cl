@@ -14,10 +14,10 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes the quantity by which it is trimmed. This is `quantity`,
- * unless the fluid needs a share of the weight: then it is the smaller of quantity - threshold and
- * the excess of the fluid's weight over its share (for the weight sum, this excess alone), and is
- * trimmed at 0. A vertex without a mean is always outside: at most at the threshold. */
+/* One work-item = one vertex. Writes the quantity by which it is trimmed: `quantity`, unless the
+ * fluid needs a share of the weight. Then it is the smaller of quantity - threshold and the excess
+ * of the fluid's weight over its share (for the weight sum, this excess alone), and is trimmed at
+ * 0. A vertex without a mean gets at most the threshold, and so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -42,11 +42,11 @@ real mcor_trim_fraction(real wa, real wb, real w)
 }
 
 /* One work-item = one cut vertex. Writes its position, as the nearer end's node and an offset:
- * where the weight, taken as linear along the mesh edge, equals the threshold, or, if nearer to the
- * end inside, the fluid's weight equals the least for a mean. It stays away from the ends, because
- * cut vertices of several edges would meet there. Its bits do not depend on the order of vertices.
- * In place of its gradient, writes the vector to the end inside, and whether the fluid's weight
- * decided. */
+ * where the weight, taken as linear along the mesh edge, equals the threshold, or where the fluid's
+ * weight equals the least for a mean, whichever is nearer to the end inside. It stays away from the
+ * ends, because cut vertices of several edges would meet there. Its bits do not depend on the order
+ * of vertices. In place of its gradient, writes the vector to the end inside, and whether the
+ * fluid's weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -295,8 +295,8 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
  * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 1, or 2
- * if this fails, because the two surfaces are tangent or too far away, or the boundary eigenvalue
- * has no gradient. */
+ * if the search fails, because the two surfaces are tangent or too far away, or the boundary
+ * eigenvalue has no gradient. */
 __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
   const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
   const int plane, __global real4* offset, __global real* value, __global real4* gradient,

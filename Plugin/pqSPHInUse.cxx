@@ -268,14 +268,14 @@ void pqSPHInUse::beginNew()
     const bool isFree = vtkSMPropertyHelper(filter, "NextFreeSurface").GetAsInt() != 0 ||
       !*vtkSMPropertyHelper(filter, "NextArray").GetAsString();
     vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(isFree ? 1 : 0);
-    // Lines of particles in a plane are hard to see.
+    // Lines are hard to see, so surfaces of particles in a plane begin filled.
     vtkSMUncheckedPropertyHelper(filter, "Filled")
       .Set(vtkSMPropertyHelper(filter, "NextDimension").GetAsInt() == 2 ? 1 : 0);
   }
 }
 
-// Sets a slice through the middle, or the particles' own plane; or a line along the longest side,
-// or upright, through the densest part, which ends somewhat beyond the fluid.
+// Sets a slice: through the middle, or in the particles' own plane. Or sets a line through the
+// densest part, along the longest side or upright, that ends somewhat beyond the fluid.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
@@ -495,7 +495,8 @@ void pqSPHInUse::colourLate()
                                 : "What was found, and what is used");
 }
 
-// Puts ParaView's own filter behind this one, as a person would, and shows one quantity alone.
+// Puts ParaView's Plot Data Over Time behind this filter, as a person would, and shows one quantity
+// alone.
 void pqSPHInUse::plotOverTime()
 {
   const bool isGauge = this->proxy()->GetProperty("Point1") != nullptr;
@@ -531,7 +532,7 @@ bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
   vtkSMProperty* property = shown->getProxy()->GetProperty("ColorArrayName");
   if (!this->Coloured.contains(shown))
   {
-    // A later picture may have the same address.
+    // Forgets a picture that is destroyed, because a later one may have the same address.
     this->connect(
       shown, &QObject::destroyed, this, [this, shown] { this->Coloured.remove(shown); });
     if (property)

@@ -57,7 +57,7 @@ std::size_t WidthOfTerminal()
   return static_cast<std::size_t>(std::max(asked > 0 ? asked : isTerminal ? size.ws_col : 80, 60));
 }
 
-/// Whether the reader of standard output has gone, which is no fault: --help | head.
+/// Whether the reader of standard output has gone, as in --help | head. This is no fault.
 bool IsReaderGone()
 {
   pollfd output = { STDOUT_FILENO, POLLOUT, 0 };

@@ -41,9 +41,9 @@ struct Extra
 
 extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectorsExtra;
 
-// The functions for .vtkhdf files in that library. VTK's reader, whose older versions know nothing
-// else, reads an unstructured grid without steps as a whole. A file is refused if some of its
-// values lie in other files. Without steps, there are no times.
+// That library's functions for .vtkhdf files. ReadHdf() itself reads poly data and steps, because
+// older versions of VTK's reader know neither. A file is refused if some of its values lie in other
+// files. A file without steps has no times.
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 Picture NewPicture(const PictureOptions& options);

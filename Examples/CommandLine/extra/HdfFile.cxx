@@ -92,7 +92,8 @@ struct Kind
   hid_t Hdf;
 };
 
-/// Returns VTK's type for these numbers; VTK_VOID: they are not numbers.
+/// Returns the types of VTK and of HDF5 for the numbers of a data set; VTK_VOID if it holds no
+/// numbers.
 Kind KindOf(hid_t data)
 {
   const Kind wholes[] = { { VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR },
@@ -169,7 +170,8 @@ public:
     this->Check(first >= 0 && wanted <= rows && first <= rows - wanted,
       "'" + name + "' has " + std::to_string(rows) + " values, not " + std::to_string(wanted) +
         " from " + std::to_string(first) + " on");
-    // Chunks that were never written cost nothing in a file.
+    // The values may be packed 1000 to 1. 16 MB more are accepted, because chunks that were never
+    // written take no room in a file.
     const auto size = static_cast<double>(std::filesystem::file_size(this->Name));
     this->Check(
       static_cast<double>(wanted) * static_cast<double>(extent[1]) * 8 <= 16e6 + 1000 * size,

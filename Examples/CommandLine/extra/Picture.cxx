@@ -83,7 +83,7 @@ struct View
   Vector ToEye;
 };
 
-/// Returns the view from the direction `toEye`; if this is along `up`, the next axis points upwards.
+/// Returns the view from the direction `toEye`. If this is parallel to `up`, another axis points upwards.
 View MakeView(Vector up, Vector toEye)
 {
   vtkMath::Normalize(toEye.GetData());
@@ -214,7 +214,7 @@ public:
     {
       this->ShowBar(colors, data);
     }
-    // DualSPHysics, whose particles have these numbers, has z upwards.
+    // Only particles of DualSPHysics have an array Idp; its z axis points upwards.
     const bool isUpright = frame->GetPointData()->HasArray("Idp");
     const Vector up =
       AxisOf(!this->Options.Up.empty() ? this->Options.Up : isUpright ? "z" : "y");

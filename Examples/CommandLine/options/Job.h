@@ -40,8 +40,7 @@ enum Modes : unsigned
 /// Settings of pictures.
 struct PictureOptions
 {
-  std::string File;               ///< empty: no picture; with %04d in it: a picture for each step
-                                  ///< of a film
+  std::string File;               ///< empty: no picture; with %04d: one for each step of a film
   std::string ColorBy;            ///< an array of the data that is shown; empty: chosen
   std::vector<double> ColorRange; ///< lowest and highest value; empty: the array's range
   std::string Up;                 ///< axis, or -axis, that points upwards; empty: chosen
@@ -74,8 +73,8 @@ struct GaugeGrid
   std::array<double, 6> Bounds = {};
 };
 
-/// The request of a command line: the filters, set up as far as possible without the input, and
-/// what the program does around them. Array names are spelled as ReadParticles() spells them.
+/// What a command line asks for: the filters, set up as far as possible before the input is read,
+/// and all other settings. Array names are spelled as ReadParticles() spells them.
 struct Job
 {
   Job() { this->Surface->FreeSurfaceOff(); }
@@ -95,7 +94,8 @@ struct Job
   }
   /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
-  /// Lists all files that the run reads, but not the files that these list.
+  /// Lists the files that the command line names to be read. Leaves out files that only these files
+  /// name.
   std::vector<std::string> InputFiles() const;
   /// Returns one of the modes, which the options and the names of the files tell.
   unsigned Mode() const;
@@ -124,8 +124,8 @@ struct Job
   std::vector<Place> Gauges;
   GaugeGrid Grid;        ///< if it is given, there are no other gauges
   std::vector<Place> Fluxes;
-  std::string Derive; ///< the array to derive: its gradient, and what follows from it, is
-                      ///< computed for the particles
+  /// The particles get the gradient of this array, and what follows from the gradient.
+  std::string Derive;
 
   std::string Scalar;
   /// A quantity is an array name or one value for all particles. If the input has an array "2", the
@@ -135,8 +135,7 @@ struct Job
   std::string Density;
   double ParticleDistance = 0.0; ///< DualSPHysics' dp; 0: not given
   double CoefH = 1.0;
-  double NeighborRatio = 0.0;              ///< eta of --smoothing-length neighbours; 0: lengths
-                                           ///< are given otherwise
+  double NeighborRatio = 0.0;              ///< eta of --smoothing-length neighbours; 0: not given
   bool DetectPeriod = false;               ///< --periodic auto
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
   std::vector<std::string> AttributeNames; ///< names of arrays to carry; empty: all

@@ -18,7 +18,7 @@ const char* const GaugeForm = "NAME=X,Y,Z:X,Y,Z";
 const char* const FluxForm = "NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:X,Y,Z:NX,NY,NZ:R, "
                              "NAME=box:X0,X1,Y0,Y1,Z0,Z1 or NAME=FILE";
 
-/// Returns the numbers of a text like X,Y,Z:X,Y,Z; none unless each part has as many as `counts` says.
+/// Returns the numbers of a text like X,Y,Z:X,Y,Z. Part i must have counts[i] numbers; else returns an empty list.
 std::vector<double> ParsePlaces(Text text, const std::vector<std::size_t>& counts)
 {
   std::vector<double> numbers;
@@ -44,8 +44,8 @@ std::string ToRowName(Text option, Text noun, Text text)
   return name;
 }
 
-/// Returns the places, followed by those of the option's file, if it is given: one for each line that
-/// is not empty and does not begin with #.
+/// Returns the places, followed by the places in the option's file, if the option is given. Each line of the file is a
+/// place, unless it is empty or begins with #.
 std::vector<Place> WithFile(std::vector<Place> places, const Job& job, const char* option,
   Text nouns, Text form, Place (*parse)(Text option, Text text))
 {

@@ -68,7 +68,7 @@ std::string Escape(const char* format, unsigned code)
   return digits;
 }
 
-/// Returns the text with each character replaced by written(c), unless this is empty.
+/// Returns the text with written(c) in place of each character c; c stays if written(c) is empty.
 std::string Rewritten(const std::string& text, std::string (*written)(const Character& c))
 {
   std::string result;
@@ -361,7 +361,7 @@ std::vector<double> ToBox(Text option, Text text)
   for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = box[2 * a], high = box[2 * a + 1];
-    // A flat box means particles in that plane.
+    // Two equal bounds are for particles in a plane.
     Need(low < high || (low == high && std::isfinite(low)), option,
       std::string("the lower number first along ") + "xyz"[a], text);
   }

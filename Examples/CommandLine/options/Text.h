@@ -23,8 +23,8 @@ std::string Printable(const std::string& text);
 /// Returns the text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
-/// Writes the program's word for a slot of a sentence of the core, such as --cube-size, as an
-/// mcor_word of mcor.h. Returns 0 if there is none.
+/// An mcor_word, see mcor.h: writes the program's word, such as --cube-size, for a slot of the
+/// core's sentences. Returns 0 if there is no such word.
 int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
 /// Prints an error or a warning as one line on standard error, after the program's name. Names and
@@ -34,7 +34,8 @@ void Say(const std::string& sentence);
 /// Throws std::runtime_error, "FILE cannot be read: WHY".
 [[noreturn]] void FailToRead(const std::string& file, const std::string& why);
 
-/// These throw std::runtime_error unless `isGood`, with the sentence, or with why the file cannot be read or written.
+/// The functions below throw std::runtime_error unless `isGood`, with the sentence, or with why the file cannot be read
+/// or written.
 ///@{
 void Require(bool isGood, const std::string& sentence);
 void RequireToRead(bool isGood, const std::string& file, const std::string& why);
@@ -88,7 +89,8 @@ bool ParseNumber(const std::string& text, double& value);
 /// Returns "; did you mean NAME?" with the name that is most like the text; empty if none is near.
 std::string NearestOf(const std::string& text, const std::vector<std::string>& names);
 
-/// These read the text behind an option. If it has no meaning, a UsageError names the option.
+/// The functions below read the text behind an option. If it is not valid, a UsageError names the
+/// option.
 ///@{
 double ToNumber(const std::string& option, const std::string& text);
 double ToPositive(const std::string& option, const std::string& text);

@@ -44,7 +44,7 @@ std::vector<vtkSmartPointer<vtkXMLDataElement>> ReadElements(
   return elements;
 }
 
-/// Splits JSON into signs, numbers and words, and texts, which begin with a quotation mark here.
+/// Splits JSON into signs, numbers, words and texts. A text keeps only its first quotation mark.
 std::vector<std::string> Tokens(const std::string& text)
 {
   std::vector<std::string> tokens;

@@ -20,30 +20,32 @@ using View = std::string_view;
 
 // These functions read files. All throw std::runtime_error with one sentence.
 
-/// Returns the bytes of a file, which stay at hand as long as a copy of the pointer; none if the file cannot be opened.
+/// Returns the bytes of a file; none if the file cannot be opened. They stay in memory while a copy of the pointer
+/// exists.
 using FileBytes = std::shared_ptr<const View>;
 FileBytes BytesOf(const std::string& file);
 
 /// Returns points without arrays at these places.
 vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places);
 
-/// Opens a file that is to be read, so that IsSource() knows it. Refuses a name that is not a file, and a file that
-/// cannot be opened or has no positions to go to.
+/// Opens a file that is to be read, so that IsSource() knows it. Refuses a name that is not a file, a file that cannot
+/// be opened, and one that can only be read from its begin to its end, such as a pipe.
 void CheckRegularFile(const std::string& file);
 
 /// Runs a library that reads a file. The user gets a sentence if the library crashes over the file, asks for too much
-/// memory, or reports an error, after which VTK would go on with arrays of zeros.
+/// memory, or reports an error. VTK alone would go on after an error, with arrays of zeros.
 void ReadWithCare(const std::string& file, const std::function<void()>& read);
 
-/// Files of VTK. Its readers use the counts that a file declares for memory and loops. A count
-/// below 0, or greater than a file of its size can hold, means that the file is damaged.
+/// The functions below read VTK's files. VTK's readers trust the counts in a file when they take
+/// memory and loop. So a file is refused if a count is below 0, or greater than a file of this size
+/// can hold.
 ///@{
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
 /// arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Does the same for the number in the first of these arrays that the file has.
+/// Returns, in the same way, the number in the first of the arrays `names` that the file has.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
@@ -51,8 +53,7 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
 struct CollectionEntry
 {
   double Time;
-  std::string File; ///< a name that can be opened from the working directory; the .pvd file has
-                    ///< it relative to itself
+  std::string File; ///< from the working directory, not from the list's folder
   std::string Part; ///< the part's name in the list; empty: none
 };
 
@@ -74,9 +75,9 @@ std::vector<double> ListTimesInText(const std::string& file);
 /// Reads the vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
 vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);
 
-/// Snapshots of GADGET's binary formats 1 and 2, of any name. These return whether a file begins like one, the files of
-/// its snapshot, its time, and the gas in one file. GADGET's smoothing length is the support radius; SmoothingLength is
-/// half of it.
+/// The functions below read snapshots in GADGET's binary formats 1 and 2, with files of any name. They return, in this
+/// order, whether a file begins like a snapshot, all files of its snapshot, its time, and the gas in this one file.
+/// GADGET's smoothing length is the support radius; the array SmoothingLength is half of it.
 bool IsGadget(const std::string& file);
 std::vector<std::string> ListGadget(const std::string& file);
 std::vector<double> ListTimesOfGadget(const std::string& file);

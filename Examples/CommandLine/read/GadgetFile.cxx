@@ -21,8 +21,8 @@
 namespace
 {
 
-/// An array's names in the formats, its name here, and its number of columns. All types of
-/// particles have the first arrays; only gas has the others.
+/// An array: its label in format 2, its name here, its number of columns, and whether all types of
+/// particles have it, or only gas.
 struct Known
 {
   View Label;
@@ -40,7 +40,8 @@ const Known Arrays[] = { { "POS ", "Points", 3, true }, { "VEL ", "Velocities", 
 constexpr std::size_t HeaderSize = 256;
 
 /// One file of a snapshot: records of Fortran, each between two copies of its number of bytes. In
-/// format 2, a record with a label comes before each array; in format 1, the order tells arrays.
+/// format 2, a record with a label comes before each array; in format 1, the order of the arrays
+/// tells their names.
 class File
 {
 public:

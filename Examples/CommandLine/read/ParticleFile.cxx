@@ -144,8 +144,8 @@ Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step 
   return data;
 }
 
-/// Checks that arrays have `count` elements, and makes their names fit for sentences and for the
-/// surface's file: a legacy file can hold bytes that these cannot. kind: the elements, in words.
+/// Checks that arrays have `count` elements. Makes their names fit for sentences and for the
+/// surface's file, because names in a legacy file may hold any bytes. kind: the elements, in words.
 /// Throws std::runtime_error.
 void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
@@ -172,7 +172,7 @@ void CheckAllArrays(const std::string& file, vtkDataSet* data)
   CheckArrays(file, data->GetCellData(), data->GetNumberOfCells(), " cells");
 }
 
-/// Returns the array with its texts as numbers, if --only chooses words in it.
+/// Returns the array; if --only chooses words in it, its texts become numbers, see ChosenWords().
 vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstractArray* array)
 {
   const auto chosen = ChosenWords().find(array->GetName());
@@ -241,7 +241,7 @@ std::pair<std::string, std::size_t> StepOf(const std::string& name)
     : std::make_pair(name, 0ull);
 }
 
-/// Adds the data of a file, unless they have no points. Throws std::runtime_error.
+/// Adds the data of a file if they have points. Throws std::runtime_error.
 void ReadSet(const std::string& name, ParticleSets& sets)
 {
   const auto [file, step] = StepOf(name);

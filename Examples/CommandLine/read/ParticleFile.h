@@ -17,7 +17,7 @@ class vtkFieldData;
 class vtkPointSet;
 struct vtkSPHPeriod;
 
-/// Lists arrays, or their names; "" is the name of an array without one.
+/// Lists arrays, or their names; "" stands for an array without a name.
 std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data);
 std::vector<std::string> NamesOf(vtkFieldData* data);
 
@@ -27,15 +27,15 @@ void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<d
 /// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .vtk".
 std::string ParticleFileEndings();
 
-/// The words that --only NAME=WORD chooses, by the names of their arrays. An array of texts with such a
-/// name is read as the numbers of these words, from 1 on, and 0 for other words.
+/// The words that --only NAME=WORD chooses, by array name. An array of texts with such a name is read as numbers: 1, 2,
+/// ... for these words in their order, 0 for other words.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
 /// Reads particles and their arrays from files that each hold a part of them. Leaves out arrays
 /// that some files lack, and particles that a part marks as another part's (vtkGhostType). Throws
-/// std::runtime_error with one sentence if a file cannot be read or is damaged, or if there are no
-/// points, unless `mayBeEmpty`. If VTK's reader crashes over a file, the program ends with a
-/// sentence. Names of arrays are made fit to print.
+/// std::runtime_error with one sentence if a file cannot be read or is damaged, or, without
+/// `mayBeEmpty`, if there are no points. If VTK's reader crashes over a file, the program ends with
+/// a sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, bool mayBeEmpty = false);
 
@@ -57,8 +57,8 @@ void OpenSources(const std::vector<std::string>& files);
 /// writer asks this.
 bool IsSource(const struct stat& file);
 
-/// Particles of files at one time. If any of the data have vertices, points of meshes without
-/// vertices are no particles, so cells are kept until all data are read.
+/// Particles of files at one time. Cells are kept until all files are read: if one file has
+/// vertices, the points of meshes without vertices are no particles.
 struct ParticleSets
 {
   std::vector<std::string> Files;
@@ -74,7 +74,8 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int c
 /// Joins the sets to one; there may be no particles.
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
-/// Reads a data set of any class with the same care. Changes only its names, to make them fit to print.
+/// Reads a data set of any class, as carefully as ReadParticles(). Makes names of arrays fit to print; all else stays
+/// as it is.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 
 /// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
@@ -90,7 +91,8 @@ extern const char* const WallArrayName;
 /// std::runtime_error.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
-/// Returns the period for "--periodic auto". Throws std::runtime_error if none was found, or with the problem.
+/// Returns the period for "--periodic auto". Throws std::runtime_error with the problem, or because no period was
+/// found.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
 /// Returns a hint if --periodic is not given although the data tell a period, else "".

@@ -78,7 +78,8 @@ std::vector<double> Median(vtkDataArray* array)
   return median;
 }
 
-/// Joins both arrays, the fluid's first, in the fluid's type.
+/// Returns one array in the fluid's type: the fluid's values, then the walls', or the fluid's
+/// median for walls without a fitting array.
 vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
 {
   const vtkIdType count = fluid->GetNumberOfTuples();

@@ -99,7 +99,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
   }
   RequireToRead(!table.empty(), file, "it has no row of values");
   std::vector<std::size_t> positions = FindPositions(file, table);
-  // Without names, the first three columns are positions, but only between blanks.
+  // Without names, the first three columns are positions if blanks separate the columns.
   if (positions.empty() && separator == ' ' && table.size() > 1)
   {
     positions.resize(std::min<std::size_t>(table.size(), 3));
@@ -115,8 +115,8 @@ vtkTypeInt64 CountOf(View line)
   return ToInteger(Trimmed(line), count) ? count : -1;
 }
 
-/// Returns the texts behind KEY= in the second line of extended XYZ, with or without quotes, by the
-/// keys in small letters.
+/// Returns the texts behind KEY= in the second line of extended XYZ, by the keys in small letters.
+/// Texts may have quotes.
 std::map<std::string, std::string> ValuesOf(View comment)
 {
   std::map<std::string, std::string> values;
@@ -305,8 +305,8 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// Returns the columns of a step's positions: x, unwrapped xu, or xs and xsu, which are multiplied
-/// by the cell's sides first.
+/// Returns the columns of a step's positions: x, or unwrapped xu; or xs or xsu, shares of the cell,
+/// which are replaced by positions first.
 std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, const Step& step)
 {
   for (const char* kind : { "u", "s", "su" })
@@ -363,7 +363,7 @@ StepFinder FinderOf(const std::string& file)
 {
   Lines lines(file);
   const View first = lines.Next() ? lines.Get() : View();
-  // A count of particles stands in the first line of such a file, but not of a table.
+  // A .xyz file begins with a count of particles, unless it is a table.
   const bool isCounted = EndsWith(file, "xyz") && CountOf(first) >= 0;
   return StartsWith(first, "ITEM:") || EndsWith(file, ".lammpstrj") || EndsWith(file, ".dump")
     ? FindDumpStep
@@ -371,8 +371,8 @@ StepFinder FinderOf(const std::string& file)
                 : nullptr;
 }
 
-/// Where steps begin, as ListTimesInText() has found in a file of this size. A film therefore need
-/// not go through all earlier steps to read one.
+/// Where the steps of a file begin, as ListTimesInText() has found, and the file's size then. A
+/// film thus reads a step without going through all earlier steps.
 struct Steps
 {
   std::size_t Size = 0;
@@ -421,7 +421,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   const bool beginsStep = behind.empty() ||
     (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(behind[0], "ITEM:"));
-  // Other lines behind later steps are reported when the next step is read.
+  // Behind a later step, a line with another number of words is reported when the next step is
+  // read.
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");

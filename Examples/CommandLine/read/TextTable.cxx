@@ -144,7 +144,7 @@ void Column::Add(View cell)
   {
     this->Words.emplace_back(cell);
   }
-  // A single word among numbers becomes NaN; a column of words begins with a word.
+  // A word among numbers becomes NaN. Only a column that begins with a word keeps its words.
   this->Numbers.push_back(isNumber ? number : none);
 }
 
@@ -216,7 +216,8 @@ struct Array
   std::vector<std::size_t> Columns;
 };
 
-/// Lists arrays by their first columns: columns alone, and vectors, whose names tell components.
+/// Lists arrays, each by its first column: an array of one column, or a vector, if the names of
+/// columns tell components.
 std::map<std::size_t, Array> FindArrays(
   const Table& table, const std::vector<std::size_t>& positions = {})
 {

@@ -55,8 +55,8 @@ std::vector<double> Numbers(View text)
   }
 }
 
-/// Refuses the file if `count` times the value of `name` is more than `most`, which the file can
-/// hold.
+/// Refuses the file if `value`, which it declares as `name`, is below 0, or if `count` times
+/// `value` is more than `most`.
 void CheckSize(const std::string& file, double most, View name, double value, double count = 1.0)
 {
   if (!(value >= 0.0) || !(value * count <= most))
@@ -69,12 +69,13 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks an XML file. Counts are attributes of tags: of pieces, and of their arrays, where they
-/// say how many numbers each point or cell has.
+/// Checks the counts in an XML file's tags. A piece has numbers of points and cells; an array has
+/// the number of values for each point or cell.
 void CheckXmlSizes(const std::string& file, View text)
 {
   const bool isPacked = text.substr(0, 1000).find("compressor") != View::npos;
-  // A byte has eight bits. LZMA packs best of all that VTK reads: 7,000 zeros into a byte.
+  // A byte holds eight bits at most. Packed, it may hold more: 7,000 zeros by LZMA, the best packer
+  // that VTK reads.
   const double most = static_cast<double>(text.size()) * (isPacked ? 1e4 : 8.0);
   double elements = 0.0;
   for (std::size_t begin = 0; (begin = text.find('<', begin)) != View::npos;)
@@ -436,7 +437,8 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
     FailureOf([&] { ReadWithCare(file, read); }); // it is reported when the whole file is read
   }
   Messages() = {};
-  // If an XML file has field data at its end, its beginning has their least and greatest value.
+  // If an XML file has field data at its end, a tag at its beginning has the least value of each
+  // array; for a single number, this is the number itself.
   for (std::size_t i = 0; i < names.size() && number.empty(); ++i)
   {
     const std::size_t at = text.find("Name=\"" + names[i] + "\"");

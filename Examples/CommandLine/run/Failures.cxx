@@ -26,10 +26,10 @@
 namespace
 {
 
-/// People and batch systems send these to end a program.
+/// Signals that people and batch systems send to end a program.
 const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
 
-/// All ending signals; and the ones not ignored at the start. Under nohup, hangups are ignored.
+/// All ending signals; and those that were not ignored at the start. nohup ignores hangups.
 sigset_t All, Awaited;
 
 void FindAwaited()
@@ -64,7 +64,7 @@ volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError =
   STDERR_FILENO; ///< leads to the user even while an Activity is silent
 
-/// Never destroyed: the waiting thread lives as long as the process.
+/// Both are never destroyed, because the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
 std::vector<std::string>& Files = *new std::vector<std::string>;
 
@@ -126,8 +126,8 @@ void EndByCrash(int number)
   _exit(1);
 }
 
-/// Returns the sentence: of "ERROR: In F.cxx, line 1\nvtkClass (0x55): It failed.\n\n" and of
-/// "Generic Warning: In F.cxx, line 1\nIt failed.\n\n" it is "It failed."
+/// Returns only the sentence of a message: "It failed." for "ERROR: In F.cxx, line 1\nvtkClass
+/// (0x55): It failed.\n\n" and for "Generic Warning: In F.cxx, line 1\nIt failed.\n\n".
 std::string Sentence(const char* text)
 {
   std::string message = text ? text : "";
@@ -150,7 +150,7 @@ std::string Sentence(const char* text)
   return message;
 }
 
-/// Takes the place of VTK's window.
+/// Takes the place of VTK's output window, and keeps the messages.
 class Window : public vtkOutputWindow
 {
 public:
@@ -169,8 +169,8 @@ public:
   void DisplayErrorText(const char* text) override
   {
     const std::string sentence = Sentence(text);
-    // Two errors are ignored: VTK writes inf in the range of an array, and cannot read it (arrays
-    // are checked when they are used); and VTK cannot read files that it wrote without points.
+    // Ignores two errors about files that VTK itself writes: inf in the range of an array (arrays
+    // are checked when they are used), and no points.
     if (sentence.find("reading InformationKey element") == std::string::npos &&
       sentence.find("No Points element available") == std::string::npos)
     {
@@ -221,7 +221,7 @@ void KeepWatchOfCrashes()
 void PrepareForEnding()
 {
   ClearsLine = isatty(STDERR_FILENO);
-  // Writing then fails with a message; these signals would end the program in silence.
+  // Ignores signals that would end the program in silence. Writing then fails with a message.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   KeepWatchOfCrashes();
@@ -302,7 +302,7 @@ int MakeTemporary(std::string& name)
 
 bool EndTemporary(const std::string& name, const std::string& target)
 {
-  // This is done before the lock is taken, because it may hang.
+  // Renaming may hang, so it comes before the lock is taken.
   if (!target.empty() && std::rename(name.c_str(), target.c_str()) != 0)
   {
     return false;

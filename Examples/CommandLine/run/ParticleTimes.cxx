@@ -56,8 +56,8 @@ Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
   return steps;
 }
 
-/// A file's name, divided into the text between numbers, and the numbers: each one's count of digits
-/// and its digits, without zeros in front, so that they are ordered as numbers are.
+/// A file's name as its text without numbers, and its numbers. A number is its count of digits and its digits, without
+/// leading zeros, so that pairs are ordered as numbers are.
 using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
 
 NumberedName Numbered(const std::string& name)
@@ -139,7 +139,7 @@ std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
   }
   for (double& time : times)
   {
-    // 3 * 0.1 means 0.3.
+    // A time such as 3 * 0.1 means the stored time 0.3.
     const double tolerance = 1e-12 * (end - begin);
     const auto next = FindStep(steps, time - tolerance);
     time = next != steps.end() && next->Time <= time + tolerance ? next->Time : time;
@@ -429,7 +429,7 @@ bool Series::MakeAll()
     const std::string kind = error.empty() ? "warning: " : "";
     for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
     {
-      // The number of dry places differs from step to step.
+      // Warnings of dry places count as one warning, even if they name other numbers of places.
       const mcor_says code = vtkSPHCodeOf(warning);
       const bool areDry = code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
       if (this->Shared.IsFirst() &&

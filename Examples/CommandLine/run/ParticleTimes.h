@@ -43,8 +43,8 @@ public:
   /// Opens all files that will be read, see OpenSources().
   void OpenFiles() const;
 
-  /// Returns a warning if nobody has told the times of several steps; tables need them. Says what
-  /// the time between steps should be, if velocities tell.
+  /// Returns a warning if neither the files nor the user tell the times of several steps, which
+  /// tables need. Names the time between steps if velocities tell it.
   std::string CheckTold();
 
   /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), so that

@@ -24,8 +24,8 @@
 namespace
 {
 
-/// Members of JSON: keys, which are empty in a list, and texts. VTK's own library for JSON is private
-/// in some builds.
+/// The members of an object or a list of JSON: key and value, as text; a list has empty keys. VTK's own library for
+/// JSON is private in some builds.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes a number so that it is read back exactly; NaN and infinity, which JSON lacks, become null.

@@ -219,8 +219,8 @@ bool MakeMeterTable(Sharing& sharing)
     std::to_string(places) + (isFlux ? " section" : " gauge") + (places == 1 ? "" : "s"));
 }
 
-// Describes the particles to the filter of pieces as to the filter of the surface. Surfaces of
-// several iso values are nested, so each is measured by its pieces.
+// Gives the filter of pieces the same settings of the particles as the surface's filter. Surfaces
+// of several iso values are nested, so each is measured by its pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {

@@ -32,8 +32,8 @@ bool MakeSurface(Sharing& sharing);
 /// a step fails, makes the others.
 bool MakeFilm(Sharing& sharing);
 
-/// Measures, at each time of the input, the free surface along lines, or what flows, and has flowed since the first
-/// time, through sections. Writes the table, of the steps that did not fail, or, for a grid of gauges, an image.
+/// Measures at each time of the input: the free surface along lines; or what flows through sections, and has flowed
+/// since the first time. Writes a table of the steps that did not fail; for a grid of gauges, an image.
 bool MakeMeterTable(Sharing& sharing);
 
 /// Writes a table of the field at the points of a file at each time. The table has the steps that did not fail.
@@ -54,7 +54,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
 /// Returns the particles with the factors of --widen or --smooth, see vtkMarchingCorrectors::Widen().
 vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles);
 
-/// Does SetUpParticles() for the surface, which gets the particles as its input.
+/// Calls SetUpParticles() for the filter of the surface, and gives it the particles as input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
 
 /// Runs a filter once, and shows its progress after the words `before`. Returns its seconds. Throws
@@ -76,7 +76,7 @@ struct Run
   double WallSeconds = 0.0;
 };
 
-/// Runs the surface once. Throws as Update().
+/// Extracts the surface once. Throws as Update() does.
 Run Extract(const Sharing& sharing, const std::string& before = "");
 
 /// Includes the surface's colours in the scale, and warns of arrays that the surface's file cannot
@@ -110,16 +110,18 @@ vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* p
 std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name);
 double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 
-/// Returns the form with the run's values for names in braces, {Area}, {ScalarRange:1}: texts, the
-/// array of a quantity if there is one, whole counts, and other numbers with six digits. [A|B|C]
-/// becomes the first alternative whose names all have values, or nothing.
+/// Returns the form with the run's values in place of names in braces, such as {Area} or
+/// {ScalarRange:1}. A value is a text, the array of a quantity if there is one, a whole count, or a
+/// number with six digits. [A|B|C] becomes the first alternative in which all names have values, or
+/// nothing.
 std::string Fill(vtkFieldData* run, const std::string& form);
 
 /// Describes a run's field data in three lines, or, at length, in more, for users who know the
 /// method; empty if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run, bool atLength);
 
-/// Returns "seconds     0.500\n"; at length "seconds     input 0.010, ..., total 0.500\n"; or empty as above.
+/// Returns "seconds     0.500\n"; at length "seconds     input 0.010, ..., total 0.500\n"; "" if the run had no
+/// particles to use.
 std::string DescribeSeconds(vtkFieldData* run, bool atLength);
 
 /// Returns the statistics of the last of `runs` as JSON, with the seconds of each run. wallSeconds: for

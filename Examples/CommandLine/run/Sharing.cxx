@@ -181,8 +181,7 @@ private:
       this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
       job.DetectPeriod = false;
     }
-    if (job.Periodic.size() == 3) // only lengths are known; the particles tell where the period
-                                  // begins
+    if (job.Periodic.size() == 3) // lengths; the particles tell where the period begins
     {
       job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
     }

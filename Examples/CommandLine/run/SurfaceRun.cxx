@@ -84,8 +84,8 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
 }
 
-/// Gives the particles the lengths that --widen and --smooth make, as for the surface, and the
-/// filter the names of their arrays.
+/// Gives the particles the smoothing lengths that --widen and --smooth make for the surface, and
+/// tells the filter the names of their arrays.
 vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
   SetParticles(job.Surface, job, input);
@@ -152,7 +152,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
   if (filter == job.Surface)
   {
-    // A single iso value of all points is useless, unless it is their colour.
+    // An array of one iso value for all points is useless, unless it colours them.
     const std::string& color = job.Picture.ColorBy;
     job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
       job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !Contains(names, color)));
@@ -212,8 +212,8 @@ std::string ReasonForNoSurface(vtkFieldData* run)
                            "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
-/// Shows a run's progress line; or, if this is not shown, a notice, once, if the driver is still
-/// compiling after a few seconds.
+/// Shows a run's progress line. If no line is shown, tells once that the driver still compiles
+/// after a few seconds.
 class Progress
 {
 public:

@@ -13,7 +13,7 @@ class vtkDataArray;
 class vtkDataSet;
 struct PictureOptions;
 
-/// Throws std::runtime_error if the array to colour by is none of these.
+/// Throws std::runtime_error if `name`, the array to colour by, is not one of `names`.
 void CheckColorName(const std::string& name, const std::vector<std::string>& names);
 
 /// The colours of --color-by, for a picture and for a .ply file's points.
@@ -31,8 +31,8 @@ public:
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// If no array was wanted, and the surface has several iso values, suggests the array that tells
-  /// these apart.
+  /// If no array was wanted, and the surface has several iso values, suggests the array that has
+  /// them.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -36,7 +36,8 @@ std::string SurfaceFileEndings();
 /// lines with all arrays. Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
-/// Returns the bytes of an XML file with a mark: a step of a film, which another film may replace.
+/// Returns the bytes of an XML file with a mark: this is a step of a film, and another film may
+/// replace it.
 std::string MarkedStep(std::string bytes);
 
 /// Whether the file has the mark of MarkedStep().

@@ -29,8 +29,8 @@
 namespace
 {
 
-/// VTK's writers put names into XML as they are. As long as this lives, arrays and their components
-/// have names that are fit for XML.
+/// VTK's writers put names into XML as they are. While this object lives, arrays and their
+/// components have names that are fit for XML.
 class NamesForXml
 {
 public:

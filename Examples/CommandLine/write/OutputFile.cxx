@@ -22,7 +22,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Fails, unless `isGood`, with the system's reason or with another one.
+/// Unless `isGood`, fails with `why` or, if it is empty, with the system's reason.
 void Check(bool isGood, const std::string& file, const std::string& why = "")
 {
   RequireToWrite(isGood, file, why.empty() ? std::strerror(errno) : why);
@@ -69,8 +69,8 @@ int DescriptorOf(const std::string& path)
 }
 
 /// Follows symbolic links, also to a file that does not exist yet. Asks the system, by the given
-/// name, whether the file may be written: its rules for links and for protected files then hold for
-/// replacing, too. Refuses a file that the run reads.
+/// name, whether the file may be written: the system's rules for links and for protected files then
+/// hold for replacing, too. Refuses a file that the run reads.
 Target Find(const std::string& name)
 {
   Target target;
@@ -85,7 +85,7 @@ Target Find(const std::string& name)
       break;
     }
     Check(i < mostLinks, name, std::strerror(ELOOP));
-    // The operator leaves an absolute path as it is.
+    // operator/ leaves an absolute path as it is.
     target.Path = (FolderOf(target.Path) / fs::read_symlink(target.Path, error)).string();
   }
   target.Exists = (target.Descriptor >= 0 ? fstat(target.Descriptor, &target.Status)

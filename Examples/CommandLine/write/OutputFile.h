@@ -37,8 +37,8 @@ private:
 /// Writes one file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
-/// A file of all steps so far, which can be read during the run, and if the program was ended. In a long series it is
-/// written less often than after each step, so that this takes a twentieth of the time. A device or a pipe gets the
+/// A file of all steps so far, which can be read during the run, and after the program was ended. In a long series it
+/// is not written after each step, so that writing takes at most a twentieth of the time. A device or a pipe gets the
 /// text once, at the end.
 class GrowingFile
 {
@@ -48,7 +48,7 @@ public:
   {
   }
 
-  /// To be called with the whole text whenever it may have grown. Does nothing without a name. Throws
+  /// Call this with the whole text whenever it may have grown. Does nothing if the file has no name. Throws
   /// std::runtime_error with one sentence.
   void Write(const std::string& text, bool isLast);
 

@@ -136,7 +136,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
   MCOR_TRY(status);
   mesh->march_count = first;
   mesh->vertex_count = first + count;
-  for (int l = 0, i = 0; l < context->lattice.levels; ++l) /* they are sorted by level, too */
+  for (int l = 0, i = 0; l < context->lattice.levels; ++l) /* starts are sorted by level, too */
   {
     while (i < count && bunches->starts.of[i].vertex < mesh->level_first[0][l])
     {

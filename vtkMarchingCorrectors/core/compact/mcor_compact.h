@@ -34,8 +34,8 @@ enum
 };
 
 /* A vertex before merging. A bunch is a set of vertices that belong to one lattice node and are
- * joined by edges of triangles; its first vertex stands for it. Other vertices are bunches, too,
- * which stay apart. */
+ * joined by edges of triangles; its first vertex stands for it. Each other vertex is a bunch of its
+ * own, and stays apart. */
 typedef struct mcor_bunch_vertex
 {
   uint64_t key;        /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
@@ -64,8 +64,8 @@ typedef struct mcor_point
 typedef struct mcor_start
 {
   int64_t at[3];
-  int32_t vertex, last; /* last: its place in the mesh until then */
-  double worst;         /* the greatest badness of the triangles around it there */
+  int32_t vertex, last; /* last: its place in the mesh before the correction */
+  double worst;         /* the greatest badness of the triangles around that place */
 } mcor_start;
 
 typedef struct mcor_bunches
@@ -104,7 +104,7 @@ static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
 }
 
-/* Whether a triangle, or line, is left, because its corners differ. */
+/* Whether a triangle or line is left: its corners must differ. */
 static inline bool mcor_is_left(const int32_t corner[3], int corners)
 {
   return corner[0] != corner[1] &&
@@ -137,7 +137,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches);
  * other bunches; fills `starts` with them. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
-/* mcor_compact_face.c. mcor_take_apart ends the merging of bunches that turn triangles over;
+/* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over;
  * mcor_move_slivers moves vertices of slivers. */
 mcor_status mcor_take_apart(mcor_bunches* bunches);
 mcor_status mcor_move_slivers(mcor_bunches* bunches);

@@ -24,7 +24,7 @@
 
 /* ---- Nodes ---- */
 
-/* Vertices on these sides, of caps and of periods, stay. side: coordinates of nodes, or -1. */
+/* Vertices on the sides of caps and periods stay. side: node coordinates of the sides; -1: none. */
 typedef struct mcor_keying
 {
   const mcor_bunches* bunches;
@@ -134,7 +134,7 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    of[v].first = of[of[v].first].first; /* that vertex already has its bunch's first vertex */
+    of[v].first = of[of[v].first].first; /* the lower vertex already has the bunch's first */
   }
   for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
   {
@@ -282,8 +282,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged. all: both if no other bunch is merged and if all others are; else:
- * beside the bunches that are merged so far. */
+/* Whether a bunch can be merged. all: both with no other bunch merged and with all others merged;
+ * else: with the bunches that are merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };

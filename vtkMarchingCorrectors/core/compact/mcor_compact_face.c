@@ -15,8 +15,8 @@
 #define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
 /* Returns a triangle's badness: four times the squared cosine of its least angle, which is opposite
- * to the shortest side; 4 if it has no area. Lines have none unless they are turned over. widest:
- * the corner opposite to the longest side. */
+ * to the shortest side; 4 if it has no area. A line's badness is 0 unless the line is turned over.
+ * widest: the corner opposite to the longest side. */
 static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], int* widest)
 {
   double side[3][3], square[3], normal[3], uphill[3] = { 0 };

@@ -28,9 +28,10 @@ enum
   MCOR_ALL_VERTICES = 3
 };
 /* Launch a heavy kernel level by level, with the search grid in cells of each level. The kernel
- * takes MCOR_GRID_PARAMS, then own arguments, then up to MCOR_MORE_ARGS `more`. Own arguments are,
- * at vertices, the groups of vertices and their nodes; by level, the first and the count of
- * elements first[l] to end[l] - 1, each with `items` work-items. */
+ * takes MCOR_GRID_PARAMS, then two or three arguments that these functions add, then up to
+ * MCOR_MORE_ARGS `more`. At vertices, they add the number of groups of vertices, the groups, and
+ * the vertices' nodes. By level, they add the first and the count of the elements [first[l],
+ * end[l]); each element has `items` work-items. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \

@@ -222,8 +222,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   return best;
 }
 
-/* Writes a loop's triangles. Each is followed by all triangles beyond its first side, then by those
- * beyond its second side. Returns the cost of their diagonals. */
+/* Writes a loop's triangles. Each triangle is followed by all triangles beyond its first side, then
+ * by all beyond its second side. Returns the cost of the diagonals. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {

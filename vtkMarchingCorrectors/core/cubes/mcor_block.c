@@ -7,14 +7,13 @@
 
 #include <math.h>
 
-/* Most cubes that may cover the lattice at first. The first cubes have the smallest size with no
- * more cubes than this. */
+/* The first cubes are the smallest that cover the lattice with at most this number of cubes. */
 #define MCOR_FIRST_CUBES 32768
 
 /* Finds the states of the cubes in block_keys, and which of them are inactive. parts: the number of
- * cubes that were made by dividing; `index` has their places, or is empty if these are 0, 1, 2 ....
- * The other cubes are kept blocks in larger cubes that are now inactive; they become void, as if
- * they did not exist. */
+ * cubes that were made by dividing; `index` has their places, or is empty if the places are 0, 1,
+ * 2, .... The other cubes are kept blocks in larger cubes that are now inactive; these blocks
+ * become void, as if they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
@@ -51,8 +50,8 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, parts));
   /* foreseen: the least number of blocks that these cubes will become. In cubes that are small
-   * against the particles' supports, a surface is nearly flat: dividing them makes more than three,
-   * and fewer than four, times as many. */
+   * against the particles' supports, a surface is nearly flat: each division makes three to four
+   * times as many cubes. */
   const double edge = ldexp(context->lattice.cube, level - 1) * MCOR_BLOCK_CUBES;
   const bool is_flat = edge < 0.25 * context->measure.h_median;
   const double foreseen = (double)(*parts + added) * (is_flat ? pow(3, level - 1) : 1);

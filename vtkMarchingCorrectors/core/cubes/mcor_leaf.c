@@ -72,7 +72,8 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
   const mcor_options* options = context->run.options;
   const mcor_bricks* bricks = &context->bricks;
   const mcor_brick_data* now = &bricks->now;
-  /* The proof is tried if a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
+  /* Tries to prove that bricks are inside, if a work-item evaluates whole bricks; see
+   * MCOR_PROVES_INSIDE. */
   const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
     context->cl.lanes > 1 && context->space.axes == 3;
   if (proves)

@@ -102,8 +102,8 @@ static mcor_status mcor_count_edges(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Writes the vertices, the triangles or lines, and, if mcor_follows_cells, the cells of these.
- * Counts the triangles of each level; with a box, only the owned ones. */
+/* Writes the vertices, the triangles or lines, and, if mcor_follows_cells, the cell of each
+ * triangle or line. Counts the triangles of each level; with a box, only the owned ones. */
 static mcor_status mcor_emit(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;

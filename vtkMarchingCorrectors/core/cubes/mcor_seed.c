@@ -23,7 +23,7 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Requests the bricks that `fresh` nodes of bricks beside them require. */
+/* Requests the bricks that `fresh` nodes of neighbouring bricks require. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -56,10 +56,10 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Requests the bricks that the tests of regions leave uncertain, whose cells are the seeds, and
- * lists these regions. Places these bricks, and all bricks that are known from earlier iso values.
- * Finds states of the uncertain bricks, and evaluates most of them; but not in a plane, where
- * bounds cost more than a brick's few nodes. */
+/* Tests regions. Requests the bricks that stay uncertain, whose cells are the seeds, and lists
+ * their regions. Places the requested bricks, and all bricks that are known from earlier iso
+ * values. Finds states of the uncertain bricks, and evaluates most of them; but not in a plane,
+ * where bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -101,8 +101,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
         MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* Evaluates, for uniform cubes, the bricks whose states require it. Then, round by round, it adds
- * the bricks that the last round's nodes require; see mcor_seed.cl. */
+/* For uniform cubes: evaluates the bricks whose states require it. Then adds, round by round, the
+ * bricks that the last round's nodes require; see mcor_seed.cl. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: samples of the field decide what is ambiguous for Marching Cubes. */
+/* Topology by the field: samples of the field decide the ambiguous cases of Marching Cubes. */
 
 #include "mcor_adaptive.h"
 

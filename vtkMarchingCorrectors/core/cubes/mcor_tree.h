@@ -82,7 +82,7 @@ int mcor_tree_level_of(double h, double h_min, int top);
 /* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the
  * highest leaves. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
-/* Returns the end of the keys of all bricks. */
+/* Returns a number above the keys of all bricks. */
 static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 {
   return tree->lattice->rungs[tree->top + 2].base * MCOR_BLOCK_BRICKS;

@@ -26,7 +26,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
   mcor_lattice* lattice = &context->lattice;
   uint64_t base = 0;
-  double most = MCOR_BLOCK_BRICKS; /* becomes nearly the number of bricks of all levels */
+  double most = MCOR_BLOCK_BRICKS; /* becomes the number of bricks of level 0 */
   tree->lattice = lattice;
   tree->top = lattice->levels - 1;
   tree->is_plane = context->space.flat;

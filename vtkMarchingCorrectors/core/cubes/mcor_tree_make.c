@@ -54,8 +54,8 @@ static mcor_status mcor_add_block(
 }
 
 /* Adds the blocks of one level that have parts of split bricks of the next level, or of their
- * periodic images, and all blocks around these. They have all finer leaves beside leaves, and all
- * bricks whose nodes leaves need. */
+ * periodic images, and all blocks around these. Together, the blocks have all finer leaves beside
+ * leaves, and all bricks whose nodes leaves need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {

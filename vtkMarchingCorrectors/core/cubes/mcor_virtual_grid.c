@@ -78,7 +78,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   return status;
 }
 
-/* Finds the slots of the bricks beside each brick, all of its level. */
+/* Finds the slots of the bricks of the same level beside each brick. */
 mcor_status mcor_find_neighbours(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -19,8 +19,8 @@
 #define MCOR_KINK 0.5
 #define MCOR_KINKS 16 /* most pieces of a line of sight through a tensor kernel */
 
-/* Gauss quadrature from 0 to 1: of a cell, and of one piece of a line of sight, where it is exact
- * for products of three cubic polynomials. */
+/* Gauss quadrature from 0 to 1: MCOR_CELL_POINTS for a cell; MCOR_LINE_POINTS for one piece of a
+ * line of sight, exact for products of three cubic polynomials. */
 #define MCOR_CELL_POINTS 4
 static const double mcor_cell_at[MCOR_CELL_POINTS] = { 0.069431844202973712388,
   0.33000947820757186760, 0.66999052179242813240, 0.93056815579702628761 };
@@ -185,7 +185,7 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Sums along x, then divides all by the sum over the whole kernel. */
+/* Sums along x, then divides all values by the integral over the whole kernel. */
 static void mcor_fill_nodes(const mcor_column_job* job)
 {
   mcor_column* column = job->column;

@@ -85,8 +85,8 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, run->moment, 9 * i + k);
     }
-    if (context->space.axes == 2) /* with the third axis empty, this keeps the condition of the
-                                   * other two */
+    if (context->space.axes == 2) /* the third axis is empty: this m[2][2] keeps the
+                                   * condition of the other two */
     {
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
@@ -305,9 +305,8 @@ static void mcor_rotate_away(double m[3][3], int p, int q, int r)
   m[r][q] = m[q][r] = s * rp + c * rq;
 }
 
-/* Returns the middle eigenvalue of a symmetric matrix, by Jacobi's rotations. The roots of the
- * characteristic polynomial would lose half of the digits where two are equal, as they are for a
- * rotation. */
+/* Returns the middle eigenvalue of a symmetric matrix, by Jacobi's rotations. Roots of the
+ * characteristic polynomial would lose half of their digits if two are equal, as for a rotation. */
 static double mcor_middle_eigenvalue(double m[3][3])
 {
   const double trace = m[0][0] + m[1][1] + m[2][2];

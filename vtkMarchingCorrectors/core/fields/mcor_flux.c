@@ -37,8 +37,8 @@
  * this number times (longest side / h)^2. */
 #define MCOR_FLUX_BEND 0.125
 
-/* What differs between triangles and lines. A piece has samples: its corners come first, its middle
- * is the last one. */
+/* Data that differ between triangles and lines. The first samples of a piece are its corners; the
+ * last sample is its middle. */
 #define MCOR_FLUX_POINTS 7
 #define MCOR_FLUX_PARTS 4
 struct mcor_flux_form
@@ -89,8 +89,8 @@ static double mcor_longest_side(const mcor_flux_job* job, const mcor_flux_piece*
   return sqrt(longest);
 }
 
-/* Whether the halves of a side are shorter. They are not where it is so far away that doubles do not
- * tell its middle from its ends. */
+/* Whether halving makes a side shorter. Far from the origin, doubles may not tell the middle of a
+ * side from its ends. */
 static bool mcor_can_halve(const mcor_flux_piece* piece, int side, double length)
 {
   const double *from = piece->corner[side], *to = piece->corner[(side + 1) % 3];
@@ -117,7 +117,7 @@ static mcor_status mcor_halve_piece(mcor_flux_job* job, const mcor_flux_piece* p
   return MCOR_OK;
 }
 
-/* Whether particles may be near a piece. There are particles all along a period. */
+/* Whether particles may be near a piece. Along a period, particles may be anywhere. */
 static bool mcor_is_near(const mcor_flux_job* job, const mcor_flux_piece* piece)
 {
   const mcor_measure* measure = &job->base.context->measure;
@@ -231,8 +231,9 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds the integrals over the part in fluid of a triangle or line. Its corners are samples of a
- * piece; between them, weights and values are linear. Returns whether the level cuts it. */
+/* Adds the integrals over the part in fluid of a triangle or line, whose corners are samples of a
+ * piece. Between the corners, weights and values are linear. Returns whether the level cuts the
+ * triangle or line. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
@@ -272,10 +273,10 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   return is_cut;
 }
 
-/* What the samples of a piece tell. */
+/* The integrals of a piece, and what decides whether they are accurate. */
 typedef struct mcor_flux_result
 {
-  double sum[2][MCOR_FLUX_SUMS]; /* by the simpler and the better way */
+  double sum[2][MCOR_FLUX_SUMS]; /* by the simpler and the better rule */
   double scale[MCOR_FLUX_SUMS];  /* how large a sum may be for a unit of area */
   bool is_unclear;               /* the level may cross the piece between its samples */
   bool is_reached;

@@ -48,7 +48,7 @@ typedef struct mcor_flux_job
   double cells, area_done;  /* how many cells there were so far; area of the pieces that are done */
   MCOR_LIST(mcor_flux_piece) pieces; /* to do */
   mcor_flux_piece* batch;            /* pieces under way */
-  /* Samples of these pieces. */
+  /* Samples of the pieces in `batch`. */
   double *weight, *velocity, *density;
 } mcor_flux_job;
 

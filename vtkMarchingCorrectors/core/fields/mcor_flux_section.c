@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-/* A disc is a polygon that has the area of the disc: its corners are this many radii away from the
- * centre. From one corner to the next it turns by an angle with this cosine and sine. */
+/* A disc becomes a polygon with the disc's area. The corners are MCOR_DISC_RADIUS radii away from
+ * the centre; the angle between successive corners has this cosine and sine. */
 #define MCOR_DISC_CORNERS 128
 #define MCOR_DISC_RADIUS 1.0002008339103527
 #define MCOR_DISC_COSINE 0.9987954562051724
@@ -177,7 +177,8 @@ static mcor_status mcor_add_disc(
     cosine = MCOR_DISC_COSINE * last - MCOR_DISC_SINE * sine;
     sine = MCOR_DISC_SINE * last + MCOR_DISC_COSINE * sine;
   }
-  /* The largest triangles come first: two, which are a square, then one on each side of it. */
+  /* The largest triangles come first: two that form a square, then one on each side of the
+   * square. */
   for (int step = MCOR_DISC_CORNERS / 4; step > 0; step /= 2)
   {
     for (int i = 0; i < MCOR_DISC_CORNERS; i += 2 * step)
@@ -189,8 +190,8 @@ static mcor_status mcor_add_disc(
   return MCOR_OK;
 }
 
-/* Appends the pieces of a section whose points are known to be as many as its shape has. Tells
- * whether it has an area or, in two dimensions, may have one outside of the plane. */
+/* Appends the pieces of a section with the number of points that its shape has. *has_size becomes
+ * false if the section has no area; in two dimensions, an area outside of the plane counts. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];

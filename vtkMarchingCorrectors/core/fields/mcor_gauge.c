@@ -35,7 +35,7 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
 
 /* ---- lines ---- */
 
-/* Returns the length of a line. hypot does not have the same bits everywhere. */
+/* Returns the length of a line. Avoids hypot, whose bits are not the same everywhere. */
 static double mcor_gauge_length(const mcor_gauge_line* line)
 {
   double way[3];
@@ -134,7 +134,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     const double high = m->high[a] + margin - line->from[a];
     if (context->lattice.period[a] > 0)
     {
-      continue; /* there are particles all along a period */
+      continue; /* along a period, particles may be anywhere */
     }
     if (way == 0)
     {
@@ -170,7 +170,8 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 
 /* ---- readings ---- */
 
-/* Makes the reading of a line from its crossings, and turns these from places into lengths. */
+/* Makes the reading of a line from its crossings, and turns the crossings from places into
+ * lengths. */
 static void mcor_read_line(
   const mcor_gauge_line* line, bool full, mcor_gauge_reading* r, double* crossings)
 {
@@ -180,7 +181,7 @@ static void mcor_read_line(
   r->state = full ? MCOR_GAUGE_FULL : n > 0 ? MCOR_GAUGE_WET : MCOR_GAUGE_DRY;
   r->first = r->last = NAN;
   r->depth = 0;
-  /* Crossings alternate. The end of the line tells whether the last one led into the fluid. */
+  /* Crossings lead into and out of the fluid in turn. If `full`, the last one leads into it. */
   for (int64_t i = n - (full ? 0 : 1); i >= 0; i -= 2)
   {
     const double end = i < n ? at[i] : 1, begin = i > 0 ? at[i - 1] : 0;

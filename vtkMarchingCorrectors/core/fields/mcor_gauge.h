@@ -40,7 +40,7 @@ typedef struct mcor_level_job
 {
   mcor_context* context;
   const char* who; /* subject of the error sentence about the level */
-  mcor_body body;  /* gets a pointer to this */
+  mcor_body body;  /* is called with a pointer to this job */
   double level;
   bool has_box;
   double box[6];       /* the box of what this call owns, in the call's coordinates */
@@ -54,7 +54,7 @@ typedef struct mcor_gauge_job
 {
   mcor_level_job base;          /* must be first */
   const mcor_gauge_line* given; /* [line_count] */
-  mcor_gauge_line* lines;       /* [line_count] the same in the device's coordinates */
+  mcor_gauge_line* lines;       /* [line_count] `given`, in the device's coordinates */
   int64_t line_count;
   mcor_gauges* gauges;
   mcor_findings around; /* ranges along x, y, z that hold all lines */

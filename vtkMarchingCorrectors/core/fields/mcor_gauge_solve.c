@@ -6,8 +6,8 @@
  *
  * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel,
  * so it is almost a parabola over that distance. A parabola through three samples goes beyond
- * the middle one by at most an eighth of their differences. If the level is nearer than four
- * times this, the part is looked at more finely. */
+ * the middle one by at most an eighth of their differences. If the middle sample is nearer to the
+ * level than four times this, the part is looked at more finely. */
 
 #include "mcor_gauge.h"
 #include "mcor_vector.h"
@@ -93,8 +93,8 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
   return MCOR_OK;
 }
 
-/* Whether the weight sum may pass the level and come back next to sample i. Sample i must be
- * nearer to the level than its neighbours, and on their side of it. */
+/* Whether the weight sum may pass the level and come back next to sample i. Sample i must be nearer
+ * to the level than its neighbours, and on the same side of the level. */
 static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;

@@ -55,8 +55,8 @@ static void mcor_put_component(
   const double shift = component->shift, unscale = 1 / component->scale;
   const double sum = mcor_get_real(context, job->sums, at), mean = sum / weight;
   const bool is_sum = job->run->is_sum;
-  /* Rounding must not take a mean out of the range of its values. Only with M'4, which is partly
-   * negative, can a mean lie there. */
+  /* Rounding must not take a mean out of the range of its values. With M'4, which is partly
+   * negative, a mean may lie out of the range anyway. */
   const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
@@ -166,8 +166,8 @@ static bool mcor_has_attributes(const mcor_context* context, const mcor_input* i
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
 }
 
-/* Evaluates all arrays at all points: some arrays at a time, and for these some points at a
- * time. */
+/* Evaluates all arrays at all points: one group of arrays after the other, for one batch of points
+ * after the other. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
   mcor_context* context = run->context;

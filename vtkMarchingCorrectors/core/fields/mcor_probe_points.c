@@ -52,9 +52,9 @@ static void mcor_read_points(
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    /* Along a period, whose upper side is included, points are rounded, too, so that points a
-     * period apart have the same position. A point on one side is moved to the other side if the
-     * box is there. */
+    /* A period includes both of its sides. Along a period, points are rounded, too, so that points
+     * a period apart have the same position. A point on a side that is not in the box is moved to
+     * the other side. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {
@@ -137,7 +137,7 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
     mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices));
   const mcor_findings found = mcor_merge_findings(job.slices, slices);
   run->inside = (int)found.sums[0];
-  for (int a = 0; a < 3 && run->inside > 0; ++a) /* the box of their bricks */
+  for (int a = 0; a < 3 && run->inside > 0; ++a) /* the box of the points' bricks */
   {
     run->batch.first[a] = (cl_int)found.least[a] >> 2;
     run->batch.bricks[a] = ((cl_int)found.most[a] >> 2) - run->batch.first[a] + 1;

@@ -113,8 +113,8 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Finds the sides of the image: it shows the box or the period as it is seen, else all that
- * particles reach. */
+/* Finds the sides of the image, which shows the box or the period, seen along the line of sight;
+ * else all that particles reach. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {
   mcor_context* context = job->context;

@@ -46,7 +46,7 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
 
 /* Finds a side at `at` along x (axis 0) or y. */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
-/* Finds E at the corners that `count` sides along x share with one along y. */
+/* Finds E at the corners where `count` sides along x meet one side along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,
   const mcor_column_side* side, double* sums);
 
@@ -83,9 +83,10 @@ typedef struct mcor_project_job
   double h_scale;
   mcor_column column;
   int channels; /* 2 for a mean, else 1 */
-  /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine. */
+  /* [channel], coarse and fine: 3/2 of a power of 2. Adding a unit to a number, and subtracting it
+   * again, rounds the number. */
   double unit[2][2];
-  double* sums;           /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
+  double* sums;           /* [channels][2][pixels]: of rounded numbers; of their rounded rests */
   int64_t first;          /* first of the particles of this step */
   int bands;              /* number of bands of rows of the image */
   pthread_mutex_t* locks; /* [bands]; NULL in the first pass */

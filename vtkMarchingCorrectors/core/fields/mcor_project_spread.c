@@ -82,9 +82,9 @@ void mcor_read_project_chunk(
 
 /* ---- particles in the image ---- */
 
-/* Finds the images of a particle that count, [first, last] along each axis: images in the box and,
- * across the line of sight, images beside the box that reach into it. Moves the particle into the
- * first period of the box. */
+/* Finds the periodic images of a particle that matter, [first, last] along each axis: images in the
+ * box and, across the line of sight, images beside the box that reach into it. Moves the particle
+ * into the first period of the box. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {
@@ -238,7 +238,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
           }
         }
       }
-      /* No pixel has more than twice a whole kernel: M'4 is partly negative. */
+      /* A pixel's share of a kernel may exceed 1, because M'4 is partly negative, but not 2. */
       const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
       for (int c = 0; c < job->channels && found.sums[0] > before; ++c)
       {
@@ -257,7 +257,7 @@ static double mcor_rounding_unit(double number)
   return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
 }
 
-/* Counts images, and chooses units: a sum of this many multiples of a unit is exact. */
+/* Counts images, and chooses units that make the sums over all images exact. */
 static mcor_status mcor_count_splats(mcor_project_job* job)
 {
   mcor_context* context = job->context;

@@ -8,19 +8,20 @@
  * t^2 (3 - 2 t).
  *
  *   c(s)  = sum V_k W(x_j - x_k, s h_j)      the weight sum at particle j with its length times s
- *   n_k   = max(0, 1 - (r_jk / 2 h_j)^3), k other than j; N = sum n_k: its neighbours
- *   m     = |sum n_k (x_k - x_j)| / (max(N, 1) h_j): how far their middle is from it
+ *   n_k   = max(0, 1 - (r_jk / 2 h_j)^3), k other than j; N = sum n_k: the neighbours of j
+ *   m     = |sum n_k (x_k - x_j)| / (max(N, 1) h_j): how far their middle is from particle j
  *   taper = ramp(N, 2.2, 4.5)
  *   sided = ramp(m, 0.4, 0.6) (1.5 ramp(N, 4.5, 6) - 0.5)
  *   least = iso + 0.1 (1 - sided) - 0.08 max(sided, 0) ramp(c(widest), iso - 0.16, iso - 0.08)
- *   s     = the greatest in [1, widest] with c(s) >= least, looked for from the widest one down at
- *           1, 1.2, 1.4, ... and linear between the two steps around; 1 if there is none
+ *   s     = the greatest in [1, widest] with c(s) >= least; 1 if there is none. Steps go down from
+ *           widest through ..., 1.4, 1.2, 1; c is taken as linear between steps
  *   f     = 1 + (s - 1) taper
- *   the factor = the lesser one of f and the Shepard mean of f there with the lengths h, but at
- *           least 1; where s = 1 and sided > 0: 1 + 4 sided (1 - sided) (mean - 1)
+ *   mean  = the Shepard mean of f at particle j, with the lengths h
+ *   the factor = max(1, min(f, mean)); where f = 1 and sided > 0:
+ *           1 + 4 sided (1 - sided) (max(1, mean) - 1)
  *
- * iso: that of the free surface, the greatest of several; 0.5 for scalars. In the plane the numbers
- * to which N is compared are multiplied by 0.31. */
+ * iso: the iso value of the free surface, the greatest of several; 0.5 for scalars. In the plane,
+ * the limits of N are multiplied by 0.31. */
 
 #include "mcor_widen.h"
 #include "mcor_box.h"
@@ -57,7 +58,7 @@ typedef struct mcor_widen_run
   cl_int* originals;
   void *order, *weight, *inv_h; /* views */
   void *factors, *is_outside; /* views; NULL if only volumes are wanted */
-  int64_t left[MCOR_SLICES]; /* number of widened particles outside */
+  int64_t left[MCOR_SLICES]; /* number of widened particles outside of the surface */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
@@ -69,8 +70,8 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
   run->originals = NULL;
 }
 
-/* Finds the factors of the sorted particles, and which particles they leave outside. `limited`
- * first holds the least sums, then the factors. */
+/* Finds the factors of the sorted particles, and which particles are outside of the surface with
+ * these factors. `limited` first holds the least sums, then the factors. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;

@@ -92,9 +92,10 @@ double mcor_box_slack(const mcor_options* options)
 /* A side further out than any cell, in halves of a cube. */
 #define MCOR_NO_SIDE (1 << 30)
 
-/* Writes the sides of the box from `low` to `high` in halves of a cube, because cells of all levels
- * have their centres there. With several levels, a side is infinite, or at the period's end, if
- * `sides` is NULL or if it is the lattice's side, because large cells stick out of the lattice. */
+/* Writes the sides of the box from `low` to `high` in halves of a cube: centres of cells of all
+ * levels are whole numbers of halves. With several levels, a side is infinite, or at the period's
+ * end, if `sides` is NULL or if it is the lattice's side, because large cells stick out of the
+ * lattice. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
@@ -149,8 +150,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     if (box->of_points)
     {
-      /* Takes the cells of a probe's points; the whole period if points lie beyond it, because they
-       * are moved into it. */
+      /* Takes the cells around a probe's points; the whole period if points lie beyond the period,
+       * because they are moved into it. */
       const double *points = box->points + 2 * a, edge = lattice->edge[a];
       const double origin = (double)lattice->origin[a], rounding = 0.25 / (double)lattice->step[a];
       const double low = points[0] / edge - origin, high = points[1] / edge - origin;
@@ -204,8 +205,8 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* Keeps, of the marched bricks' cells, those in the box and in `ring` cells around it. With
- * adaptive cubes, it keeps mcor_level_ring(ring) cells of each level around it. */
+/* Keeps the marched bricks' cells that are in the box or in `ring` cells around it. With adaptive
+ * cubes, the ring is mcor_level_ring(ring) cells of each level wide. */
 static mcor_status mcor_clip(
   mcor_context* context, int ring, const mcor_buffer* cells, mcor_buffer* clipped)
 {
@@ -312,8 +313,8 @@ double mcor_reach_around(
    * within a smoothing length. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
-  /* A factor depends on sums with widened supports, at the particle and at the particles around
-   * it. */
+  /* A widening factor depends on sums with widened supports, at the particle and at the particles
+   * around it. */
   const double factors = widest > 0 ? fmax(volumes, reach) * (1 + widest) + margin : 0;
   return reach > 0 ? fmax(fmax(volumes, nearest), factors) : 0;
 }
@@ -327,7 +328,7 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
 }
 
 /* Finds the box in which the field is evaluated, in cubes from the lattice's origin; without a box,
- * 1e30, which single precision can hold. */
+ * from -1e30 to 1e30, which single precision can hold. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;

@@ -11,7 +11,7 @@
 /* mcor_lattice.c. Lays the virtual grid over all that the particles' supports reach. */
 mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options);
 
-/* Limits the cells along an axis, [side[0], side[1]), to those of the box. */
+/* Limits the cells along an axis, [side[0], side[1]), to the cells of the box. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
 /* Finds the cells that the call owns. The lattice must be known. */
@@ -41,9 +41,9 @@ typedef struct mcor_images
 /* Returns the distance from the box up to which a particle is needed, from its kernel's length and
  * its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells whose particles need sums; returns false if all particles do. Of a particle's
- * images, only the one in the period counts; or the one on the upper side, if the lower side is not
- * in the box. */
+/* Finds the cells whose particles need sums. Returns false if all particles need them. Only one
+ * image of a particle counts: the image in the period, or on the period's upper side if the lower
+ * side is not in the box. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
@@ -70,7 +70,8 @@ int mcor_list_images(
 /* The usual box.ring: the number of cells around the owned cells that are examined, too. */
 #define MCOR_BOX_RING 1
 int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
-/* Returns how far beyond its support from a box a particle is needed, in cells of its level. */
+/* Returns a distance in cells of a particle's level: the particle is needed if its support ends at
+ * most this far from the box. */
 double mcor_box_slack(const mcor_options* options);
 /* Returns the ring with adaptive cubes, in cells of each level. A wide ring counts double, because
  * the cells between may be larger. */
@@ -83,7 +84,7 @@ static inline int mcor_level_ring(int ring)
 mcor_status mcor_void_cubes(mcor_context* context);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction. Keeps, of the marched bricks' cells, those of the box and its ring; beyond, the
+/* Extraction. Keeps the marched bricks' cells that are in the box or its ring; beyond the ring, the
  * device lacks particles or has images of them. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that

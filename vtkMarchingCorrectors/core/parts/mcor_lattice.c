@@ -22,7 +22,7 @@
 /* Greatest relative error of a period that counts as a whole number of cubes. */
 #define MCOR_PERIOD_ERROR 1e-9
 
-/* Most numbers of units of an edge that are tried. */
+/* The most lengths of the longest edge, in fixed-point units, that mcor_fit_steps tries. */
 #define MCOR_STEP_TRIES (1 << 17)
 
 /* Adaptive cubes may shrink by this factor to keep all their levels. */
@@ -83,8 +83,8 @@ static mcor_status mcor_fit_edges(
     edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
     return MCOR_OK;
   }
-  /* If no cube divides all periods, each period has its own edges, in whole bricks as above: as few
-   * as possible, none longer than the cube. */
+  /* If no cube divides all periods, each axis has its own edge: the longest that is at most a cube
+   * and divides the period into whole cells or, as above, whole bricks. */
   for (bool fits = false; !fits; levels -= !fits)
   {
     const int64_t unit = levels > 0 ? (int64_t)MCOR_BRICK << (levels + 1) : 1;
@@ -183,8 +183,9 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  /* spared: the trailing zeros that an edge needs as a fixed-point number. Nodes must have as many
-   * as the particles with the longest supports, and a double must hold them exactly. */
+  /* spared: the least number of trailing zeros of an edge as a fixed-point number. Nodes need as
+   * many as particles with the longest supports have, and enough for a double to hold the nodes
+   * exactly. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;

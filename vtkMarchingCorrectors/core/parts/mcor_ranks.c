@@ -13,8 +13,8 @@ mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
-/* Calls nothing if count is 0 (without fluid, there are no samples); count is the same on all
- * ranks. */
+/* Does not communicate if count is 0 (without fluid, there are no samples); count is the same on
+ * all ranks. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

@@ -130,8 +130,8 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Adds 1 to the band of each node that is above this level. If marching has evaluated a node, its
- * answer counts, because the lines are made from it. */
+/* Adds 1 to the band of each node that is above this iso value. If marching has evaluated a node,
+ * marching decides, because the lines are made from its results. */
 mcor_status mcor_take_lines(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

@@ -109,7 +109,7 @@ static mcor_status mcor_add_fill_fan(
 }
 
 /* Finds the point where trimming has cut a line; or, on the border, finds or makes the point where
- * it cuts the lattice edge. */
+ * trimming cuts the lattice edge. */
 static mcor_status mcor_cut_fill_side(
   void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {
@@ -169,8 +169,8 @@ static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      /* Goes to the other end of the line. A level has two corners on the border; or four, which
-       * lines then join around the parts below or above. */
+      /* Goes to the other end of the line. A level has two corners on the border, or four. Lines
+       * join four corners around the parts below or around the parts above. */
       const int level = next->level;
       const bool joined =
         mcor_find_number(&job->fill->lines[level].joined, (uint64_t)job->lowest) >= 0;

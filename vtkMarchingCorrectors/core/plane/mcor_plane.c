@@ -22,7 +22,7 @@ typedef struct mcor_flatten_job
   mcor_array positions;
   float* floats;   /* output in single precision, or NULL */
   double* doubles; /* output in double precision; always for points */
-  bool are_points; /* these are points, which may lie off the plane */
+  bool are_points; /* `positions` are points, which may lie off the plane */
 } mcor_flatten_job;
 
 static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)

@@ -5,9 +5,9 @@
 
 /* Two dimensions. Particles that share one coordinate lie in the plane z = 0 for all phases. A call
  * first turns the caller's coordinates to (u, v, w) with a constant w, and turns its results back
- * at the end. Between, sums in three dimensions equal those in two, because each particle's weight
- * is multiplied by c h (c: plane_factor). The lattice is one layer of cells above the plane, and
- * its upper nodes copy the lower nodes, so that lines lie where the surface in three dimensions
+ * at the end. In the plane, sums in three dimensions equal sums in two, because each particle's
+ * weight is multiplied by c h (c: plane_factor). The lattice is one layer of cells above the plane,
+ * and its upper nodes copy the lower nodes, so that lines lie where the surface in three dimensions
  * would cross the plane. Until the output, a line is a triangle whose last two corners are the
  * same. */
 
@@ -58,8 +58,8 @@ static inline char mcor_axis_letter(const mcor_context* context, int a)
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* mcor_turn_back turns three numbers of `width` bytes back, in place; mcor_unflatten_doubles
- * [count][3] numbers, whose constant coordinate becomes `constant`. */
+/* mcor_turn_back turns three numbers of `width` bytes back, in place. mcor_unflatten_doubles turns
+ * [count][3] numbers back; the constant coordinate of each becomes `constant`. */
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);

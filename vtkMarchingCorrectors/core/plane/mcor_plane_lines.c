@@ -10,18 +10,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The lines at a point: at most one begins there, and at most one ends. next: the point to which
- * the first leads; last: the point from which the second comes; -1: none. */
+/* The lines at a point: at most one begins there, and at most one ends. next: where the first one
+ * ends; last: where the second one begins; -1: none. */
 typedef struct mcor_line_ends
 {
   int32_t next, last;
   bool done; /* the line that begins here is already in a polyline */
 } mcor_line_ends;
 
-/* The lines, found by their points. count: number of lines. */
+/* The lines, found by their points. */
 typedef struct mcor_joining
 {
-  int64_t count, points; /* lines */
+  int64_t count, points; /* numbers of lines and points */
   mcor_line_ends* at;    /* [points] */
 } mcor_joining;
 
@@ -100,8 +100,8 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   return true;
 }
 
-/* Measures the length, and the area: of the filled region, or, if all lines are closed, the area
- * that they enclose, from one of the points. u, v: the plane's axes. */
+/* Measures the length, and the area: of the filled region or, if all lines are closed, of what they
+ * enclose. Areas of lines count from one of the points. u, v: the plane's axes. */
 static void mcor_measure_lines(mcor_surface* surface, int u, int v)
 {
   mcor_statistics* s = &surface->statistics;

@@ -32,8 +32,8 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Decides which attributes to leave out, and lists components of the others: those that vary
- * (of_surface), or all (samples). not_finite: [attribute_count], as in mcor_surface. */
+/* Decides which attributes to leave out, and lists components of the others. of_surface: only
+ * varying components; else, for samples, all. not_finite: [attribute_count], as in mcor_surface. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {
@@ -65,7 +65,7 @@ mcor_status mcor_list_components(
           scaled->scale = mcor_component_scale(found.largest);
           continue;
         }
-        const double half = 0.5 * found.high - 0.5 * found.low; /* samples: to [-1, 1] */
+        const double half = 0.5 * found.high - 0.5 * found.low; /* scales samples to [-1, 1] */
         scaled->shift = 0.5 * found.high + 0.5 * found.low;
         scaled->scale = half > 0 ? mcor_component_scale(half) : 1;
         scaled->low = found.low;

@@ -58,7 +58,7 @@ typedef struct mcor_cap_vertex
   cl_int node[3];
   int32_t band, number; /* in a filled region: its band, and the number that triangles use */
   double offset[3];
-  uint64_t key[2]; /* in a cap: the first square that uses it, and its look-up's number */
+  uint64_t key[2]; /* in a cap: its first square, and the number of the look-up that made it */
   uint8_t flag;    /* the surface's flag: MCOR_CAP_FLAG; for cuts 2, or 1 if they are exact */
 } mcor_cap_vertex;
 
@@ -138,8 +138,8 @@ typedef struct mcor_cap_nodes
   double* margin;                   /* [node_count], trim margins of nodes above */
 } mcor_cap_nodes;
 
-/* Returns the bit, in its brick's masks, of the node at coordinate `along` the axis that is in line
- * with node number `at` of the side. */
+/* Returns a node's bit in the masks of its brick. The node has coordinate `along` on the side's
+ * axis, and is in line with node number `at` of the side. */
 static inline int mcor_side_bit(const mcor_cap_nodes* nodes, int along, int64_t at)
 {
   return (along & 3) << 2 * nodes->axis | (int)(at & 3) << 2 * nodes->across[0] |
@@ -185,8 +185,8 @@ mcor_status mcor_ask_cap_nodes(
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
   mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
   void* data);
-/* Loads the nodes of axis a's lower or upper side. opposite: the other side of the period if this
- * is loaded, else NULL. */
+/* Loads the nodes of axis a's lower or upper side. opposite: the period's other side if it is
+ * loaded already, else NULL. */
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);

@@ -42,7 +42,7 @@ typedef struct mcor_cap_job
   MCOR_LIST(mcor_cap_vertex) vertices;
   MCOR_LIST(mcor_cap_line) lines; /* cuts in a plane that must be placed exactly */
   MCOR_LIST(mcor_cap_triangle) triangles;
-  /* The triangles' squares, with numbers behind all cells, see mcor_triangle_cell.c. */
+  /* The number of each triangle's square, see mcor_triangle_cell.c. */
   MCOR_LIST(cl_ulong) cells;
   int64_t owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
@@ -64,8 +64,8 @@ typedef struct mcor_cap_square
   bool is_joined; /* it is ambiguous, and joins its nodes above */
 } mcor_cap_square;
 
-/* mcor_cap_square.c. Begins a square. node: its lowest node; across: the side's axis; along the
- * other axes, the square is owned if it is in the box. */
+/* mcor_cap_square.c. Begins a square. node: its lowest node; across: the side's axis. The square is
+ * owned if it is in the box along the other axes. */
 void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across);
 /* Adds what trimming leaves of a square to the cap. */
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);

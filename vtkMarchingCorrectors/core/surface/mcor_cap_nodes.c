@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The nodes where caps may be: of one side of a period or box, or of a plane that is filled. They
- * are kept in bricks that particles reach; elsewhere is nothing to close. Memory and time therefore
- * depend on the particles at the side, not on the side's area. If marching has evaluated a brick,
- * its nodes are taken from there, so that the cap fits the surface. */
+ * are kept in bricks that particles reach; elsewhere, there is nothing to close. Memory and time
+ * therefore depend on the particles at the side, not on the side's area. If marching has evaluated
+ * a brick, the brick's nodes are taken from marching, so that the cap fits the surface. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -83,8 +83,8 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two positions, in nodes, to a set of clusters, which are masks by first
- * brick. */
+/* Adds the bricks between two positions, in nodes, to `clusters`: masks of bricks, by the first
+ * brick of each cluster. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters)
 {
@@ -296,9 +296,10 @@ static void mcor_take_cap_node(
   }
 }
 
-/* Goes brick by brick, so that successive points are near each other. On the side, nodes above need
- * their margin, and unknown nodes their side, too. Nodes further in need their validity if the cell
- * has no vertex on the side. */
+/* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
+ * above, whose margins are needed, and for nodes of unknown bricks. One node further in, asks for
+ * unknown nodes beside valid nodes above: a square without vertices needs to know whether they are
+ * valid. */
 mcor_status mcor_ask_cap_nodes(
   mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points)
 {

@@ -45,8 +45,8 @@ static mcor_status mcor_find_cap_vertex(
   return MCOR_OK;
 }
 
-/* Finds the node that is (u, v) nodes from the square's lowest node. In two dimensions, nodes above
- * each other are one node. */
+/* Finds the node that is (u, v) nodes from the square's lowest node. In two dimensions, nodes that
+ * differ only in z are one node. */
 static void mcor_square_node(
   const mcor_cap_job* job, const mcor_cap_square* square, int u, int v, cl_int node[3])
 {
@@ -56,8 +56,8 @@ static void mcor_square_node(
   node[2] = job->context->space.flat ? 0 : node[2];
 }
 
-/* Makes a corner of the surface's vertex on side k. On a pinched edge (see mcor_cell_emit), this is
- * the vertex on the side of this square's cell. */
+/* Makes a corner at the surface's vertex on side k. If the edge is pinched (see mcor_cell_emit),
+ * takes the vertex on the side of this square's cell. */
 static mcor_status mcor_cap_edge_corner(
   mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
@@ -271,8 +271,8 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
 
 /* ---- Moving cuts ---- */
 
-/* Most steps. No cut needs as many, unless it is at an end of its line, because every fourth step
- * halves the bracket. */
+/* Most steps. Every fourth step halves the bracket, so only a cut at an end of its line needs as
+ * many. */
 #define MCOR_PLACE_STEPS 100
 /* With a margin below this, a few units of rounding in single precision, a cut stays. */
 #define MCOR_PLACE_ROOT 1e-6

@@ -52,8 +52,8 @@ typedef struct mcor_level
  * do other work while it waits for one. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
-/* INSERTION: most particles of cells that are sorted together by insertion; a larger cell is sorted
- * by a heap. USUAL: the least value of most_in_cell in mcor_grid. */
+/* INSERTION: successive cells with at most this number of particles together share an insertion
+ * sort; a larger cell is sorted by a heap. USUAL: the least value of most_in_cell in mcor_grid. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
 

@@ -127,7 +127,8 @@ typedef struct mcor_mesh
 {
   mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
-  int march_count; /* vertices on lattice edges; sorted by level, as the trim boundary's are */
+  int march_count; /* vertices on lattice edges; these are sorted by level, and so are those on the
+                    * trim boundary */
   int
     vertex_count; /* first vertices on lattice edges, then vertices on the trim boundary, then, from
                    * cap_first on, vertices of caps */
@@ -173,7 +174,8 @@ typedef struct mcor_tree
 typedef struct mcor_adaptive
 {
   int count;                   /* number of leaves that may have surface */
-  mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many come before */
+  mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many listed leaves
+                                * come before */
   mcor_buffer cells, finer; /* int4, uint: the listed leaves, in order; which bricks around each are
                              * finer */
   mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of each leaf's nodes */

@@ -120,7 +120,8 @@ typedef struct mcor_cl
   double build_seconds;   /* how long the present call has built programs */
   mcor_observer observer; /* progress of the present call; NULL: none */
   double terms;           /* about the number of terms in the sum at a point, for mcor_enqueue_cut */
-  bool compiles; /* the driver compiles at first launches: the latest one of a kernel took long */
+  bool compiles; /* the driver compiles kernels when they are first launched: the last such launch
+                  * took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -181,7 +182,7 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 /* Begins to build those programs of a set that are missing, in threads of their own, in the order
  * in which a run needs them. Does nothing if no driver compiles them. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
-/* Returns about how many seconds the programs to come take; 0: not known. */
+/* Returns about how many seconds building the missing programs takes; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
 /* Ends the threads that build, after the programs that are under way, and keeps these. */
 void mcor_end_building(mcor_cl* cl);
@@ -224,7 +225,7 @@ mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
 /* Gives one buffer's memory to another one; the first is then empty. */
 void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to);
-/* Makes room for `bytes`, keeping the first `old`. */
+/* Makes room for `bytes`, keeping the first `old` bytes. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);
 /* Appends to a buffer that holds `old` bytes. */
 mcor_status mcor_append_bytes(

@@ -146,7 +146,7 @@ mcor_status mcor_await_program(
   }
   while (!job->is_done && status == MCOR_OK)
   {
-    /* Tells about every second how long it may still take. */
+    /* Reports about every second how long building may still take. */
     struct timespec until;
     timespec_get(&until, TIME_UTC);
     ++until.tv_sec;

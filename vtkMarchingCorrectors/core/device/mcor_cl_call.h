@@ -36,7 +36,7 @@ typedef enum mcor_command
   MCOR_COMMAND_LOCK,
   MCOR_COMMAND_BUILD
 } mcor_command;
-/* Opens the profile that MCOR_PROFILE in the environment names, if it does. */
+/* Opens the profile that MCOR_PROFILE in the environment names, if it is set. */
 mcor_status mcor_open_profile(mcor_context* context);
 /* Returns where OpenCL is to write the event of a command. */
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
@@ -108,8 +108,8 @@ void mcor_drop_programs(mcor_cl* cl, int programs);
 #define MCOR_PARTS_ALL ((1 << MCOR_PROGRAM_COUNT) - 1)
 mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program);
 
-/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. Leaves *program alone if
- * this one is not built ahead. */
+/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. Does not change *program
+ * if the program is not built ahead. */
 mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
 

@@ -156,9 +156,9 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
-  /* The kernels' form for CPUs suits CPUs with vectors. A device that claims to be one without
-   * them works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu
-   * or gpu, is for tests. */
+  /* The kernels' form for CPUs suits CPUs with vectors. A device without vectors that claims to be
+   * a CPU works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu or
+   * gpu, is for tests. */
   const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
   const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
   clGetDeviceInfo(
@@ -167,7 +167,8 @@ static void mcor_query_device(mcor_cl* cl)
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
    * when they are launched. So it gains nothing from parts. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
-  /* A CPU that is made to work as a GPU tests this, too. */
+  /* A CPU that works as a GPU counts as apart, so that tests reach the code for such devices,
+   * too. */
   cl->is_apart = !cl->is_cpu && (!unified || claims_cpu);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
@@ -288,7 +289,8 @@ static mcor_status mcor_start_device(
   return MCOR_OK;
 }
 
-/* Returns a sentence to append to another, or "". */
+/* Returns a sentence about drivers that were not listed, to follow another sentence; "" if all
+ * were. */
 static const char* mcor_driver_fault(const mcor_device_list* list)
 {
   return list->drivers_fail
@@ -341,7 +343,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
   int chosen = -1;
-  for (int drivers = 0; drivers < 2 && chosen < 0; ++drivers) /* drivers take a while to start */
+  for (int drivers = 0; drivers < 2 && chosen < 0; ++drivers) /* looks for drivers last, because
+                                                               * they take a while to start */
   {
     mcor_find_devices(&list, drivers);
     chosen = cl->is_default ? mcor_choose_device(&list, &mcor_usual_build)

@@ -18,12 +18,12 @@
 
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
-/* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not
- * worth waking threads. Any medium or heavy launch (groups of one) is. */
+/* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not worth
+ * waking threads. Any medium or heavy launch (groups of one) is worth it. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* Parts of a launch for each thread. There are many, because work-items differ, the heavy ones
- * by far, and threads without work wait for the last part. The last number limits the work-items
- * of a part. */
+/* Parts of a launch for each thread. There are many, because work-items differ, the heavy ones by
+ * far, and threads without work wait for the last part. A part has at most MCOR_PART_ITEMS
+ * work-items. */
 #define MCOR_LIGHT_PARTS 16
 #define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096

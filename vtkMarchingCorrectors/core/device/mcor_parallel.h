@@ -32,9 +32,9 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
 int mcor_parallel_for(
   mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
-/* Runs the body within a call. A call may be cancelled between slices, which leaves some out.
- * *slices becomes their number, unless it is NULL. A context that is NULL, or not in a call, is
- * not asked. A body must not use loops or launches of the same context. */
+/* Runs the body within a call. A call may be cancelled between slices; then some slices do not run.
+ * *slices becomes the number of all slices, unless it is NULL. A context that is NULL, or not in a
+ * call, is not asked. A body must not use loops or launches of the same context. */
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices);
 

@@ -11,8 +11,9 @@
 #include <float.h>
 #include <math.h>
 
-/* Search cells per support radius. The paper's cells are as large as the support. Smaller ones
- * fit the round reach of a query better, but need more rows: 2 took as long, 3 longer. */
+/* Search cells per support radius. The paper's cells are as large as the support. Smaller cells fit
+ * the round reach of a query better, but a query reads more rows: with 2 cells per support it took
+ * as long, with 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
 /* The most cells of a level along an axis, so that keys of all levels stay below 2^62. If particles
@@ -198,7 +199,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return mcor_index_cells(context, cells);
 }
 
-/* The factor of D^2 by which a side without neighbours adds to a density, see
+/* The factor of D^2 in a density, which makes up for a side without neighbours, see
  * mcor_density_factor. With 5/3, the uppermost layer of a lattice at rest has its true volume
  * within 0.7 %, for all kernels and smoothing lengths. */
 #define MCOR_ONE_SIDED (5.0 / 3)

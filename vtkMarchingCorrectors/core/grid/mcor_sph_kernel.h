@@ -81,8 +81,8 @@ MCOR_OF_Q mcor_w_quadratic(realv q)
   return a * a;
 }
 
-/* At q = 0 the gradient has no direction, so it is 0 there, and as near as positions of particles
- * with large supports are rounded. */
+/* At q = 0 the gradient has no direction, so it is 0 there. It is 0 up to 1e-6, too, because
+ * positions of particles with large supports are rounded by about as much. */
 MCOR_OF_Q mcor_dw_quadratic(realv q)
 {
   return q < (real)1e-6 ? (realv)0 : (real)-2 * fmax((real)2 - q, (realv)0);

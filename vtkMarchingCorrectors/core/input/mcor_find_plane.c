@@ -72,8 +72,8 @@ static mcor_findings mcor_spread_of(mcor_context* context, const mcor_input* inp
   return mcor_merge_findings(job.slices, slices);
 }
 
-/* Chooses the plane. Particles on a line, or at a point, lie in no known plane, unless the
- * caller says so. */
+/* Chooses the plane. Particles on a line, or at a point, do not tell their plane, so none is chosen
+ * unless the caller sets two dimensions. */
 static mcor_plane mcor_plane_of(const mcor_findings* spread, int dimension)
 {
   mcor_plane plane = { 0 };

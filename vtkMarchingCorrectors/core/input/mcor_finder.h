@@ -27,7 +27,7 @@ typedef struct mcor_finder
 {
   const mcor_request* request;
   const mcor_named *positions, *arrays;
-  int count; /* number of the given arrays; greater indices mean found->made */
+  int count; /* number of the given arrays; indices from this number on mean found->made */
   const mcor_ranks* ranks;
   mcor_found* found;
   mcor_array* views;        /* [count + 2]: the arrays that were viewed already */

@@ -20,7 +20,7 @@ mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    /* Finds the least number that a particle that is not finite has on any rank. */
+    /* Finds the least index, on any rank, of a particle where the attribute is not finite. */
     int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
     MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &not_finite, 1));
@@ -96,7 +96,7 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   own.globals = NULL;
   const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
-  own.ranks = options->ranks; /* mcor_evaluate_without_scalar leaves the scalar out */
+  own.ranks = options->ranks; /* mcor_evaluate_without_scalar drops the ranks */
   mcor_statistics statistics = { 0 };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);

@@ -195,7 +195,7 @@ typedef struct mcor_legal_job
   bool illegal[MCOR_SLICES];
 } mcor_legal_job;
 
-/* Written to be vectorised. */
+/* Compilers vectorise this loop. */
 #define MCOR_TEST_ALL(type, most)                                                                  \
   for (int64_t i = first; i < last; ++i)                                                           \
   {                                                                                                \

@@ -30,8 +30,8 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
     (context->kept.uses_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Whether a particle counts as a neighbour, and when the dimension is found. Here all solids count
- * unless they are ignored. */
+/* Whether a particle counts as a neighbour and for the dimension: all do but absent ones and
+ * ignored solids. */
 static inline bool mcor_is_present(const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
@@ -146,13 +146,13 @@ static inline double mcor_largest_of(double low, double high)
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If
- * this would be too many particles, fails with the sentence about the lattice. */
+/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If too
+ * many would be absent, fails with the sentence about the lattice. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
   uint8_t* solid; /* [count], freed by the caller; replaces the input's array */
-  bool is_cut;    /* the lattice is one around a region: a box, or a probe's points */
+  bool is_cut;    /* the lattice surrounds only a region: a box, or a probe's points */
   double region[6];
   int64_t count, first; /* number of absent particles, and the first of them */
   double place[3];
@@ -165,8 +165,8 @@ mcor_status mcor_leave_out_again(
  * particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
-/* If a particle's smoothing length is far from all others, adds this to the sentence about a
- * lattice that is too large. */
+/* If one smoothing length differs greatly from all others, names its particle in the sentence about
+ * a lattice that is too large. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that
@@ -197,7 +197,8 @@ mcor_status mcor_sample_own(
 /* Joins the samples of all ranks. Samples this rank's particles first, unless this call has done
  * so. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
-/* The most fluid particles whose neighbours are counted while all are measured: bits of a mask. */
+/* The most fluid particles whose neighbours are counted while all particles are measured; each is a
+ * bit of a mask. */
 #define MCOR_WATCHED 32
 /* Returns the usual `most_fluid`. */
 static inline int mcor_most_samples(const mcor_input* input)
@@ -205,13 +206,13 @@ static inline int mcor_most_samples(const mcor_input* input)
   return input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED;
 }
 
-/* Hashes a position: particles with the least hashes stand for all. The second function adds one to
- * the samples if its hash is among the least. */
+/* Hashes a position: particles with the least hashes stand for all. The second function adds a
+ * sample to a list if its hash is among the least. */
 uint64_t mcor_hash_position(const double x[3]);
 void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample);
 
 /* Estimates one smoothing length for all particles from the spacing of the samples, and sets it as
- * their h. */
+ * the samples' h. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
 /* Computes the cube root of a number above 0, with the same bits on every machine, unlike cbrt

@@ -36,7 +36,7 @@ typedef struct mcor_watch
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
 
-/* Written to be vectorised. */
+/* Returns the interval that holds x. */
 static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 {
   const double cell = (x - watch->low[axis]) * watch->per_length[axis];
@@ -107,7 +107,8 @@ static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* samples that may reach the chunk, each particle */
+  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* bits: samples that may reach the chunk, each
+                                            * particle */
   for (int s = 0; s < watch->count && count > 0; ++s)
   {
     const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;

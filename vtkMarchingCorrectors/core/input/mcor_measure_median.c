@@ -166,9 +166,9 @@ static bool mcor_choose_iso(
     value[i] = job->low;
   }
   const double *ends = value, *most = value + 2, median = value[4];
-  /* Avoids a median that shows nothing: where most values are alike (walls at rest, gas before a
-   * shock) its surface is noise or empty, and where values span decades it is far below the
-   * greatest ones. */
+  /* Avoids a median that shows nothing. If most values are alike (walls at rest, gas before a
+   * shock), the median's surface is noise or empty; if values span decades, the median is far below
+   * the greatest ones. */
   const double* span = most[0] < most[1] ? most : found;
   const double near = MCOR_NEAR_END * (span[1] - span[0]), ratio = ends[1] / ends[0];
   const bool at_end = median - span[0] <= near || span[1] - median <= near;

@@ -84,7 +84,7 @@ int mcor_find_fluid_value(const char* name, double low, double high, double* flu
     *fluid = mcor_is_usual_name(name, "isfluid");
     return 1;
   }
-  /* DualSPHysics' types: fixed, moving and floating bodies, fluid. */
+  /* In DualSPHysics, types 0 to 2 are fixed, moving and floating bodies, and 3 is fluid. */
   if (low >= 0 && low < 3 && high == 3 && mcor_is_usual_name(name, "type"))
   {
     *fluid = 3;
@@ -127,7 +127,7 @@ static const double* mcor_find_values(
   return NULL;
 }
 
-/* Whether there are periods; some of the lengths may be 0. */
+/* Whether the bounds give a period along at least one axis; along others, their length may be 0. */
 static bool mcor_are_periods(const double bounds[6])
 {
   bool some = false;

@@ -41,7 +41,7 @@ typedef struct mcor_neighbour_job
   int axes;
   double norm, support;
   double period[3];       /* 0: open */
-  double extent;          /* the greatest extent, of a period, too; what is far away does not count */
+  double extent;          /* the greatest length of the cut bounds or of a period */
   int64_t count, wanted;  /* how many particles are present; how many of the input's first ones get
                            * a result */
   int64_t leaves;         /* leaves of the tree, a power of 2 */
@@ -118,8 +118,8 @@ static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
   }
 }
 
-/* Measures the bounds of all ranks' particles, and cuts them to some widths around the middle half of
- * a sample. */
+/* Measures the bounds of all ranks' particles, and cuts them to MCOR_MOST_WIDTHS around the middle
+ * half of a sample. */
 static mcor_status mcor_measure_extent(
   mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
 {
@@ -289,8 +289,8 @@ static void mcor_list_neighbours(
   }
 }
 
-/* Returns sum_j W h^d; the terms have masses if densities are summed. Makes a new list if the last
- * one is shorter than the support, or much longer. */
+/* Returns sum_j W h^d or, for densities, sum_j m_j W h^d. Makes a new list if the last one is for a
+ * shorter length, or a much longer one. */
 static double mcor_sum_at(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
@@ -308,7 +308,8 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* Returns the step at or below h, or the one `further` steps on. Each power of 2 has four steps. */
+/* Returns the greatest step that is not above h, or the one `further` steps on. Each power of 2 has
+ * four steps. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;
@@ -323,8 +324,8 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is the distance of a near particle: the nearer one of those four places before
-   * and behind along the curve, because the curve may jump. */
+  /* The first guess is the distance of a near particle: the nearer one of two, four places before
+   * and four places behind this one along the curve, because the curve may jump. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {

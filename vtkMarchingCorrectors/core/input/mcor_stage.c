@@ -14,16 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns the factor from what a particle gives for its volume to what the device gets: the
- * volume in cubes (in two dimensions the area over the smoothing length), the mass over the
- * largest one, or 1; see the volume formulas of mcor_input. */
+/* Returns the factor by which a particle's volume or mass is multiplied for the device: volumes are
+ * then in cubes, masses are shares of the largest one. 1 if the particles have neither; see the
+ * volume formulas of mcor_input. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   const mcor_options* options = context->run.options;
   if (!mcor_needs_density(input))
   {
-    /* An area becomes a volume by this factor times the smoothing length, see mcor_plane.h. */
+    /* An area times this factor and its particle's smoothing length is a volume, see
+     * mcor_plane.h. */
     const double lift = context->space.flat
       ? mcor_kernel_of(options->sph_kernel)->plane_factor * options->h_scale
       : 1;
@@ -228,7 +229,7 @@ MCOR_VECTOR_LOOPS static void mcor_invert_lengths(
 {
   const double scaled_cube = context->lattice.cube / context->run.options->h_scale;
   const double* h = chunk->h;
-  const bool one = mcor_is_all_one(h, chunk->count, h[0]); /* then one division is enough */
+  const bool one = mcor_is_all_one(h, chunk->count, h[0]); /* if so, one division is enough */
   const double inverse = scaled_cube / h[0];
   for (int i = 0; i < chunk->count; ++i)
   {
@@ -308,7 +309,7 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   }
 }
 
-/* Returns the weight above which the device's numbers would be infinite. */
+/* Returns the weight above which numbers on the device may become infinite. */
 static double mcor_weight_limit(const mcor_context* context)
 {
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;

@@ -32,14 +32,15 @@ typedef struct mcor_staging
   mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of the six arrays above, once these are mapped */
   int view_count;
   double size_scale;        /* see mcor_size_scale */
-  double h_max;             /* the largest support that was measured, with rounding */
+  double h_max;             /* the greatest unscaled length of a kernel that was measured, with
+                             * rounding */
   mcor_reach_box* reach;    /* NULL: all particles are needed */
   bool one_inv_h, one_size; /* whether all elements of these arrays are the same */
   uint8_t* images;          /* by particle: whether an image is staged; NULL without reach */
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;
 
-/* Returns the factor from the input's volume or mass to the device's. */
+/* Returns the factor that turns the input's volume or mass into the device's. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input);
 /* Stages the input. The caller has set context and input. */
 mcor_status mcor_stage(mcor_staging* staging);

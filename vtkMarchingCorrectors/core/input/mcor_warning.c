@@ -28,8 +28,8 @@ typedef struct mcor_suspicion
 #define MCOR_MOST_RATIO_WENDLAND 2.6
 #define MCOR_LEAST_RATIO_QUINTIC 0.7
 
-/* Random particles have a neighbour as near, but fewer neighbours in all. The limits are numbers of
- * neighbours per (support / smoothing length)^3; sheets and drops have few. */
+/* Particles at random places have near neighbours, but not many in all, so there are limits for all
+ * neighbours, too: numbers per (support / smoothing length)^3. Sheets and drops have few. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
@@ -228,7 +228,8 @@ static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
   return mcor_say(MCOR_SAY(ISO_OUTSIDE), o->iso_values[first], others, name, low, high);
 }
 
-/* Where particles fill a small share of space, no cell has all weights above the threshold. */
+/* Where particles fill a small share of space, each cell has a node of weight below the
+ * threshold. */
 static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -292,7 +293,8 @@ static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
  * nobody sees them. If they move the field by more than its tolerance, another warning says so. */
 #define MCOR_MOST_POSITION_ERROR 1e-4
 
-/* Nor do errors below this share of the cube size, which short grids have. */
+/* Errors of positions below this share of the cube size need no warning either; short grids have
+ * them. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
 static mcor_message mcor_warn_precision(const mcor_suspicion* s)
@@ -341,7 +343,7 @@ static mcor_message mcor_warn_far(const mcor_suspicion* s)
     : mcor_say(MCOR_SAY(PARTICLES_FAR), (long long)n->far_particles, first, x[0], x[1], x[2]);
 }
 
-/* Returns whether another warning has named the cause of what this one would say. */
+/* Returns whether another warning already names the cause of this one. */
 static bool mcor_is_explained(mcor_warning warning, const mcor_suspicion* s)
 {
   const bool follows = warning == MCOR_WARN_TRIMMED || warning == MCOR_WARN_PRECISION ||

@@ -13,9 +13,9 @@
  * and caps, and leaves the borders that they make as they are. */
 mcor_status mcor_compact(mcor_context* context);
 
-/* Vertices in a box depend on this number of cells around it: four decide whether a vertex is
- * merged, two more for each round of taking bunches apart, four whether it moves, and one the
- * normals of triangles. */
+/* Vertices in a box depend on this number of cells around the box: four decide whether a vertex is
+ * merged, two more for each round of taking bunches apart, four whether a vertex moves, and one
+ * decides the normals of triangles. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 

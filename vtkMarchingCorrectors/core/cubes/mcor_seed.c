@@ -90,8 +90,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  /* One work-item treats a region, and evaluates its bricks, if particles are gathered for many
-   * lanes; else a brick. */
+  /* If particles are gathered for many lanes, one work-item treats a region, and evaluates its
+   * bricks; else one work-item treats a brick. */
   return context->space.flat
     ? MCOR_OK
     : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1, first, end,

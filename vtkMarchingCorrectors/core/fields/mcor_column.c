@@ -9,8 +9,8 @@
 #include <stdlib.h>
 
 /* Cells of the table from the centre to the end of the support: for pixels not much smaller than h,
- * and for much smaller ones. Errors fall with at least the third power: at h = 3 pixels they are
- * about 1e-8 of the greatest value, at 50 below 1e-6. */
+ * and for much smaller ones. Errors fall at least with the third power of a cell's size: at h = 3
+ * pixels they are about 1e-8 of the greatest value, at h = 50 pixels below 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125

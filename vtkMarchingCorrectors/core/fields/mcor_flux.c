@@ -19,15 +19,15 @@
  * doubles can tell the corners of cells apart. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
-/* A piece's accuracy is relative to its greatest speed and density, but at least to this share of
- * the greatest speed and density of all particles, which decide how means are rounded. */
+/* A piece's accuracy is relative to its greatest speed and density. Both count as at least this
+ * share of the greatest speed and density of all particles, which decide how means are rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
 /* A sum may become this many times area times the greatest speed and density. Weights below 0, as
  * M'4 has, make sums a little larger than that product. */
 #define MCOR_FLUX_ROOM 8
-/* Greatest difference between the two results of a piece, relative to its area times its speed. A
- * piece that is small beside the section may differ by more (MCOR_FLUX_SMALL), because errors of
- * many pieces cancel. */
+/* Greatest difference between the two results of a piece, relative to its area times the scale in
+ * mcor_flux_result. A piece that is small beside the section may differ by more (MCOR_FLUX_SMALL),
+ * because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
 /* The most halvings of a cell, and of a piece that the level may cross between its samples. */

@@ -3,9 +3,9 @@
 
 /* Gauges: where lines cross the free surface. The probe evaluates the weight sums.
  *
- * Ranks share lines sample by sample. A rank owns the samples in cells of its box: the extrema at
- * them, and the crossings between each and the next sample. It has the particles around two more
- * samples on either side, so it finds the same crossings as one process does. */
+ * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
+ * these samples, and the crossings between each sample and the next. The rank has the particles
+ * around two more samples on either side, so it finds the same crossings as one process does. */
 
 #include "mcor_gauge.h"
 #include "mcor_box.h"
@@ -292,7 +292,8 @@ mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
  * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
- * equals the level where F is exactly this share of T. Far from solids F = T, and F stays. */
+ * equals the level where F is exactly this share of T. Far from solids, F equals T, and the lowered
+ * sum is F. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

@@ -39,8 +39,8 @@ typedef struct mcor_column_side
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
 /* axes: unit vectors along x and y of the image and the line of sight. is_plane: takes the kernel
- * of two dimensions itself. least_pixel: the shorter side of a pixel / the greatest h. The caller
- * frees the nodes, even after a failure. */
+ * of two dimensions itself, not an integral along the line of sight. least_pixel: the shorter side
+ * of a pixel / the greatest h. The caller frees the nodes, even after a failure. */
 mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool is_plane,
   const double axes[3][3], double least_pixel, mcor_column* column);
 

@@ -21,8 +21,8 @@
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Reads volume times scalar (for the density: the mass) and, for a mean, both times the weight.
- * If the weight is the masses' array, a particle weighs its mass. */
+/* Reads the amounts of particles, see mcor_splat. For the density, V A is the mass. If the weight
+ * is the masses' array, V B is the mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {

@@ -118,7 +118,7 @@ typedef struct mcor_cap_brick
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* Used cells, and ambiguous faces that join their nodes above, by their lowest nodes. */
+  /* By lowest nodes: which cells are used; which ambiguous faces join their nodes above. */
   cl_ulong used, joined[3];
 } mcor_cap_brick;
 

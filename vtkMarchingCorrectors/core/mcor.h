@@ -461,8 +461,9 @@ extern "C"
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not
      * exclude; with adaptive cubes, the cells of leaves through which the surface passes. Pair
-     * seeds: the cells between the two particles. seed_cells_not_intersected: how many of these
-     * cells the surface does not use. These and the following counts are summed over iso values. */
+     * seeds: the cells between the two particles of each pair. seed_cells_not_intersected: how many
+     * of these cells the surface does not use. These and the following counts are summed over iso
+     * values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
@@ -685,8 +686,8 @@ extern "C"
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* Returns whether the free surface is what users want to see first, over all ranks unless `ranks`
-   * is NULL: 0 for a gas that fills its bounds: the smoothing lengths of its particles reach 98 %
-   * of them; 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
+   * is NULL: 0 for a gas that fills its bounds (its particles, by their smoothing lengths, reach 98
+   * % of them); 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
    * liquid: it has one smoothing length, and densities that differ by no more than a factor of 2.
    * Reads positions, solids, smoothing lengths and densities, of valid form. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);

@@ -12,7 +12,7 @@
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
-/* Whether cubes may differ, judged by about a thousand particles. */
+/* Whether cubes may have several sizes, judged by about a thousand particles. */
 static bool mcor_may_be_adaptive(const mcor_input* input, const mcor_options* options)
 {
   double low = INFINITY, high = 0;

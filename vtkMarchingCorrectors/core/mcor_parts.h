@@ -100,8 +100,9 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: it has no
-     * sides but those of a period. A vertex that several ranks have is counted by one of them. */
+    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: the whole
+     * surface has no sides but those of a period. A vertex that several ranks have is counted by
+     * one of them. */
     double whole_box[6];
   };
 

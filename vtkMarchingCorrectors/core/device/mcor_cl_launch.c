@@ -77,7 +77,7 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
  * part. Parts do not become larger, because the next work-items may have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
 #define MCOR_FIRST_SHARE                                                                           \
-  32 /* while a kernel's time is unknown, its first part is the limit / this */
+  32 /* while a kernel's time is unknown, its first part is the limit divided by this number */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel anew at its first

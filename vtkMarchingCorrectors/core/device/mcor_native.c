@@ -264,7 +264,7 @@ static cl_int mcor_copy_buffer(cl_command_queue queue, cl_mem from, cl_mem to, s
   return CL_SUCCESS;
 }
 
-/* Patterns are bytes here. */
+/* This library fills only with patterns of one byte. */
 static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void* pattern,
   size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event)

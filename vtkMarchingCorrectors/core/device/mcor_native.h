@@ -13,7 +13,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
-/* Instruction sets: x86-64-v3 (AVX2) and -v4 (AVX-512). Other processors have one. */
+/* Instruction sets: x86-64-v3 (AVX2) and -v4 (AVX-512). Other processors have only the base set. */
 typedef enum mcor_instructions
 {
   MCOR_INSTRUCTIONS_BASE, /* what the compiler assumes by default */

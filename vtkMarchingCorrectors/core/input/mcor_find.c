@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds, among named arrays, what a run needs, and makes an mcor_input of it. What all ranks must
- * agree on is found first, so that none waits for another that has failed. */
+/* Finds, among named arrays, what a run needs, and makes an mcor_input of it. Ranks first find
+ * together what they must agree on, so that later no rank waits for one that has failed. */
 
 #include "mcor_finder.h"
 

@@ -133,7 +133,7 @@ static mcor_status mcor_refuse_plane(
 /* How many particles are tested for a twin, a particle with the same place in the plane. */
 #define MCOR_TWIN_SAMPLES 32
 /* Rounding may have flattened the particles if a step of single precision is longer than this share
- * of their spacing, as if they were spread evenly over the plane. */
+ * of the spacing that they would have if spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
 /* Whether rounding made the plane: its coordinate is so large that single precision rounds it by

@@ -20,7 +20,8 @@
 /* A value nearer to an end of the range than this share of it counts as at the end. */
 #define MCOR_NEAR_END 0.01
 
-/* If a range spans more decades than this, its lowest values are what rounding has left of 0. */
+/* If the greatest value is more than this times the lowest, low values are what rounding has left
+ * of 0. */
 #define MCOR_MANY_DECADES 1e6
 
 typedef struct mcor_bin_job

@@ -686,8 +686,8 @@ extern "C"
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* Returns whether the free surface is what users want to see first, over all ranks unless `ranks`
-   * is NULL: 0 for a gas that fills its bounds (its particles, by their smoothing lengths, reach 98
-   * % of them); 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
+   * is NULL: 0 for a gas that fills its bounds (the smoothing lengths of its particles reach 98 %
+   * of them); 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
    * liquid: it has one smoothing length, and densities that differ by no more than a factor of 2.
    * Reads positions, solids, smoothing lengths and densities, of valid form. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);

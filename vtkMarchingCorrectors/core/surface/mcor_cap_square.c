@@ -271,8 +271,7 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
 
 /* ---- Moving cuts ---- */
 
-/* Most steps. Every fourth step halves the bracket, so only a cut at an end of its line needs as
- * many. */
+/* Most steps. They suffice, because every fourth step halves the bracket. */
 #define MCOR_PLACE_STEPS 100
 /* With a margin below this, a few units of rounding in single precision, a cut stays. */
 #define MCOR_PLACE_ROOT 1e-6

@@ -249,9 +249,10 @@ public:
   ///@}
 
   /**
-   * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines:
-   * by lines) where values are above the iso value; they share the points of its border. Trimming
-   * and walls may leave it open. Off by default. An error with PAIRS or Filled.
+   * Close the surface at the sides of the period and of the box's cells, by flat triangles where
+   * values are above the iso value; close lines by lines. These caps share the points of the
+   * border. Trimming and walls may leave the surface open. Off by default. An error with PAIRS or
+   * Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
 
@@ -311,8 +312,9 @@ public:
 
   /**
    * A compact contour: vertices of one node of the virtual grid become one, which is corrected
-   * along the gradient. A quarter fewer triangles, hardly any slivers, the same pieces. Vertices at
-   * borders, caps and periodic sides stay. Off by default. An error with Filled.
+   * along the gradient. The contour has a quarter fewer triangles, hardly any slivers, and the same
+   * pieces. Vertices at borders, caps and periodic sides stay. Off by default. An error with
+   * Filled.
    */
   vtkSPHFlagMacro(Compact, 0);
 

@@ -330,9 +330,10 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the
-   * box of the others than this box is long. Collective if processes share a run. False if no
-   * particle is fluid. densest: GetNextDensest(), of the particles at hand; may be null.
+   * Finds the box of the fluid's particles. Leaves out the few particles (0.1 %, or 8) that are
+   * farther from the box of the others than this box is long. Collective if processes share a run.
+   * Returns false if no particle is fluid. densest: GetNextDensest(), of the particles at hand; may
+   * be null.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
 

@@ -21,9 +21,9 @@
  *     mass                 their mass
  *     vx, vy, vz           their mean velocity, weighted by the mass
  *
- * NaN where it does not apply. The last five need the particles, the second input; a row is then
- * filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are
- * left out, with the cavities in them; open pieces, which have neither, stay.
+ * A value that does not apply is NaN. The last five need the particles, the second input; a row is
+ * then filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles
+ * are left out, with the cavities in them; open pieces, which have neither, stay.
  *
  * The surface may have been cut; only its triangles matter. With PeriodicBounds, a piece ends at
  * the sides of the period only where it has caps in them, and particles count in whichever piece

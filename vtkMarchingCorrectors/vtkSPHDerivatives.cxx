@@ -48,8 +48,8 @@ struct vtkSPHDerivatives::vtkWanted
   };
 
   /**
-   * Adds the arrays of `derivatives`, made from the array `from`, and takes over memory. Returns
-   * false if memory ran out.
+   * Adds the arrays of `derivatives`, made from the array `from`, and takes over their memory.
+   * Returns false if memory ran out.
    */
   bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
   {

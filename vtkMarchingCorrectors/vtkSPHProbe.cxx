@@ -73,7 +73,10 @@ public:
   }
 
 private:
-  /** Copies the points that GetPoint() gives, whose calls would take as long as sending points to the device. */
+  /**
+   * Copies the points that GetPoint() gives. Calls of GetPoint() would take as long as sending the
+   * points to the device.
+   */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
     const int* extent = image->GetExtent();

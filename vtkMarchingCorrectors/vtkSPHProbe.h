@@ -14,7 +14,7 @@
  *
  * The output is the data set of port 0, its own arrays included, with
  *
- *     one array for each float or double point array of the particles, of its name, its type
+ *     one array for each float or double point array of the particles, with the same name and type
  *     WeightSum             sum_j V_j W(x - x_j, s h_j): about 1 in the fluid, 0 far from it
  *     vtkValidPointMask     1 where the weight is not below WeightThreshold, else 0
  *     NAME_Gradient         of each of these arrays and of WeightSum, if ComputeGradients is on: 3

@@ -23,11 +23,12 @@ class vtkPointSet;
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
 
 /**
- * Returns the particles of a data set, or of each of its blocks. If a block has other cells, and
- * any block or process has vertices (haveVertices), points without a vertex are nodes of a mesh,
- * and are left out. Cell arrays become arrays of the vertices' points, unless the points have an
- * array of that name, also if there are only vertices, one for each point. The class stays, and all
- * cells of the result are vertices. Returns the data set itself if nothing changes.
+ * Returns the particles of a data set, or of each of its blocks. If a block has other cells than
+ * vertices, and any block or process has vertices (haveVertices), points without a vertex are nodes
+ * of a mesh, and are left out. Cell arrays become arrays of the vertices' points, unless the points
+ * have an array of that name. They do so even if there are only vertices, one for each point. The
+ * data set keeps its class, and all cells of the result are vertices. Returns the data set itself
+ * if nothing changes.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);

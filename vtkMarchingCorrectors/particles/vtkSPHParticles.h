@@ -55,8 +55,8 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Writes the detected fluid into the choice, and the array to contour into `first` if it has no
- * name. Collective.
+ * Writes the detected fluid into the choice, and the array to contour into `first` if `first` has
+ * no name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);

@@ -36,8 +36,8 @@ struct vtkSPHPiece
  * to the last bit. A surface ends at planes of its lattice, up to a cube away from these bounds; if
  * it reaches beyond the bounds, its own bounds are the sides. Caps at the sides end pieces. Pieces
  * are sorted by area, the largest first. Each is placed so that its centre is within the period.
- * Pieces of several iso values are nested, so each encloses particles, and cavities of its own
- * value, as if there were no other values.
+ * Surfaces of several iso values are nested. Each piece encloses particles, and cavities of its own
+ * iso value, as if there were no other iso values.
  */
 class vtkSPHPieces
 {
@@ -51,8 +51,9 @@ public:
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
   /**
-   * Finds, for each point, the innermost piece around it that has this iso value and a volume; -1:
-   * this piece is a cavity, or there is none. without: for each point a piece to ignore; may be empty.
+   * Finds, for each point, the innermost piece around it that has this iso value and a volume; -1
+   * if this piece is a cavity, or if there is no such piece. without: for each point a piece to
+   * ignore; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     double isoValue, const std::vector<vtkIdType>& without = {}) const;

@@ -260,8 +260,8 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   return found;
 }
 
-// Rays go both ways along each axis. Each ends at the first face of a piece without a volume, which
-// it leaves or enters; the majority decides, since an open piece has holes.
+// Rays go both ways along each axis. Each ray ends at the first face of a piece without a volume:
+// there the ray leaves or enters the piece. The majority decides, because an open piece has holes.
 std::vector<vtkIdType> vtkSPHPieces::FindAround(
   const std::vector<Triple>& points, double isoValue) const
 {

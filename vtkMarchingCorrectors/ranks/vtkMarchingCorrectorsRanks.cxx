@@ -42,8 +42,8 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 
 /**
  * Merges statistics: sums of counts, the longest seconds, and means over all points (one rank
- * counts each point). What is evaluated on both sides of a seam counts twice among bricks, nodes
- * and evaluations.
+ * counts each point). Bricks, nodes and evaluations count twice if both sides of a seam evaluate
+ * them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
@@ -90,7 +90,9 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples for each rank's range of keys: ranges differ by about an eighth. */
+/**
+ * How many samples decide on each rank's range of keys. The ranges then differ by about an eighth.
+ */
 constexpr std::int64_t Samples = 64;
 
 /** Finds where the range of keys of each rank ends; the same on all ranks. */

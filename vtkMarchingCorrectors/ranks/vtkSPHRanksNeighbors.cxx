@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Sums over neighbours that several ranks have. Each rank gets the particles in its box of space.
-// Smoothing lengths from these particles alone are too long, so spheres with these radii hold all
-// neighbours: the rank asks the other ranks for the particles in the spheres.
+// Smoothing lengths that are found from these particles alone are too long. So spheres with these
+// lengths as radii hold all neighbours: the rank asks the other ranks for the particles in the
+// spheres.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkMath.h"

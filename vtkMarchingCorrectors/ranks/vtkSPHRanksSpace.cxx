@@ -17,7 +17,7 @@ namespace
 /** Cubes along an edge of a brick. Cuts may lie anywhere, but cuts between bricks cost least. */
 constexpr double BrickCubes = 4.0;
 
-/** Samples for each rank's share of the work: shares come out even within some percent. */
+/** How many samples decide on each rank's share of the work. Shares then differ by some percent. */
 constexpr std::int64_t SamplesPerRank = 1024;
 
 /** Cells of the coarse grid. */

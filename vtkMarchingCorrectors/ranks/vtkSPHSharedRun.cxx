@@ -205,7 +205,8 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   return good;
 }
 
-// The box ends at the places, or where the particles end before them; along periods it is infinite.
+// The box ends at the places, or at the particles if these end earlier; along periods it is
+// infinite.
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;

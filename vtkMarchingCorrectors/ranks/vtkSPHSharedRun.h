@@ -54,8 +54,8 @@ public:
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
   /**
-   * Does what Share() does with these particles, which `mine` describes, and all their arrays.
-   * parts: how many ranks share the space, from the first on.
+   * Does the same as Share(), with these particles and all their arrays. `mine` describes the
+   * particles. parts: how many ranks share the space, from the first on.
    */
   vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
   /** Replaces this rank's particles by all ranks' particles, without positions, which warnings do

@@ -3,7 +3,7 @@
 
 /* Sets of cells and nodes of a brick. */
 
-/* A box [x0, x1) x ..., in halves of the smallest cubes. */
+/* Parameters of a box [x0, x1) x [y0, y1) x [z0, z1), in halves of the smallest cubes. */
 #define MCOR_SIDES_PARAMS                                                                          \
   const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
 #define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1

@@ -72,7 +72,8 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Returns the number of the first vertex of node n's edges among the vertices of its brick. */
+/* Returns the number, among the vertices of the brick, of the first vertex on the edges from
+ * node n. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -85,7 +86,7 @@ int mcor_edge_rank(__global const ulong* e, int n)
 }
 
 /* Finds the vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z. A
- * pinched edge gets -1 - the first of its two vertices. upper: slots of the brick's upper
+ * pinched edge gets -1 - v, with v the first of its two vertices. upper: slots of the brick's upper
  * neighbours, or -1. */
 void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])

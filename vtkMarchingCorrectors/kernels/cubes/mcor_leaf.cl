@@ -35,8 +35,8 @@ int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
   return ((x | y | z) & 1) == 0 && own.x >= 0 ? own : mcor_leaf_place(leaf, x, y, z, true);
 }
 
-/* Returns on which parts, bits MCOR_DIRECTION, a leaf has finer nodes: an edge or a face of a cell
- * there has a node in its middle, because a finer leaf touches the part. */
+/* Returns the parts of a leaf that have finer nodes, as bits MCOR_DIRECTION: an edge or a face of a
+ * cell there has a node in its middle, because a finer leaf touches the part. */
 uint mcor_leaf_hanging(uint finer)
 {
   uint hanging = 0;

@@ -5,10 +5,10 @@
  *
  * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of this level, 5 along an
  * edge. Where a finer leaf is beside it, they also have nodes of the finer level on its sides, 9
- * along an edge. If all leaves up from it are of its level, each of these gives the sides of its
- * own nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. If the leaf and the
- * leaves up from it are on the same side, it has no surface. Beside leaves of other levels, the
- * state has to cover all points of the leaf, with its sides. All lengths are in cells of the
+ * along an edge. If all leaves up from it are of its level, each of these leaves gives the sides
+ * of its own nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. If the leaf
+ * and the leaves up from it are on the same side, it has no surface. Beside leaves of other levels,
+ * the state has to cover all points of the leaf, with its sides. All lengths are in cells of the
  * level. */
 
 /* Returns the bits of the 8 bricks of a row. Rows are numbered through all blocks. */
@@ -63,8 +63,8 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* Returns the sides of those nodes of brick m that also belong to the leaf down from it by d (bits
- * x, y, z; 0: brick m itself). */
+/* Returns the sides of the nodes of brick m that also belong to another leaf: the one that is d
+ * (bits x, y, z) down from the brick. With d = 0, returns the sides of all nodes of the brick. */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))

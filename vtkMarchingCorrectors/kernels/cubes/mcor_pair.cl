@@ -16,7 +16,7 @@ bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reac
 
 #if MCOR_OF_LATTICE
 /* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells.
- * Sets flags[0] if one is new. */
+ * Sets flags[0] if a requested brick is new. */
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature, at a point, of the surface on which a field f has its value at this point; computed
+/* Curvature at a point: of the iso surface of a field f that goes through the point. It is computed
  * from the gradient g and the Hessian H of the SPH sum there. With the normal n = -g / |g|, which
  * points to lower values,
  *

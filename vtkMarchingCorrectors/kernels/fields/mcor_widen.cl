@@ -45,8 +45,8 @@ __kernel void mcor_widen_sizes(const int count, const int plane, __global const 
 }
 
 /* Fits the query's box to the particles of lanes `from` and following. Stops before a particle that
- * is far from the first, or whose x is less than its predecessor's, as at the end of a row, and
- * returns its lane. */
+ * is far from the first, or that has a lower x than its predecessor, as at the end of a row.
+ * Returns the lane of that particle. */
 int mcor_widen_place(
   const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
 {
@@ -87,9 +87,9 @@ typedef struct
   realv count, offset[3];
 } mcor_crowd;
 
-/* Finds c[l], the weight sum c(s) with factor s[l], for `levels` factors, the largest first, from
- * the particles within `reach` h_j, and the crowd unless it is NULL. Each lane has its own reach,
- * so its sum does not depend on the other lanes. */
+/* Finds c[l], the weight sum c(s) with factor s[l], for `levels` factors, the largest first. Sums
+ * over the particles within `reach` h_j. Also finds the crowd unless it is NULL. Each lane has its
+ * own reach, so its sum does not depend on the other lanes. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)

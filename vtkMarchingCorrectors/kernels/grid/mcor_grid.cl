@@ -334,8 +334,8 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 }
 
 /* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up for a
- * side without neighbours. one_sided: 5/3 variance. Solids fill that side, but never more: their
- * part of g is multiplied by the share, from 0 to 1, that makes |g| least. */
+ * side without neighbours. one_sided: 5/3 variance. Solids may fill that side, but not overfill it:
+ * their part of g is multiplied by the share, from 0 to 1, that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;

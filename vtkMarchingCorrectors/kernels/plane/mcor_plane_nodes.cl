@@ -4,8 +4,8 @@
 /* Evaluation of the field at nodes in the plane. The values have the same bits as those of
  * mcor_node_values. */
 
-/* Number of work-items that share a brick's 16 nodes, and of a work-item's rows of nodes along
- * x. */
+/* How many work-items share a brick's 16 nodes, and how many rows of nodes along x each of them
+ * has. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 

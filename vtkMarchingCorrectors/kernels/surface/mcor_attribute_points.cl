@@ -3,7 +3,7 @@
 
 /* Attributes at points; the functions for them are in mcor_attribute.cl. */
 
-/* One work-item = one group of points. Writes the means there. */
+/* One work-item = one group of points. Writes the means of the attributes at these points. */
 __kernel void mcor_attribute_means(
   MCOR_GROUP_PARAMS, __global const real4* offset, MCOR_ATTRIBUTE_PARAMS)
 {

@@ -52,7 +52,7 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
 /* Limits MCOR_EDGE_ERROR: the rounding error of a sum, relative to the iso value. It is 0 for a
- * Shepard mean, whose sum of terms against the iso value vanishes at the surface. */
+ * Shepard mean, because the sum of its terms, relative to the iso value, is 0 at the surface. */
 #define MCOR_SUM_ROUNDING (MCOR_FIELD == MCOR_SHEPARD ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
 /* A bracket of this length is not halved further. */
@@ -180,9 +180,9 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    /* side: the sign of the sum of terms against the iso value, which passes 0 between nodes of a
-     * positive weight. It differs from the sign of `value` only at a mean's pole, where a kernel
-     * with negative lobes lets the weight pass 0. */
+    /* side: the sign of the sum of terms relative to the iso value. This sum passes 0 between nodes
+     * of a positive weight. Its sign differs from the sign of `value` only at a mean's pole, where
+     * a kernel with negative lobes lets the weight pass 0. */
     const realv side =
       MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;

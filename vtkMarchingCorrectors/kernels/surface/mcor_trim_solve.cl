@@ -191,8 +191,8 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
   return tangent;
 }
 
-/* Moves points whose linear cut has no Shepard mean towards the edge's end inside, until they have
- * one. Returns which points were moved. */
+/* Moves points that have no Shepard mean at their linear cut towards the edge's end inside, until
+ * they have one. Returns which points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {

@@ -71,8 +71,8 @@ class Header:
         return fields
 
     def shapes_of(self, struct):
-        """Reads the shapes of a structure's arrays in the comments behind their declarations, on the same line, or before: "[count][3], unit L"
-        becomes ("count", 3), and "[attribute_count] -> [count][components]" a list."""
+        """Reads the shapes of a structure's arrays from the comments before their declarations, or behind them on the same line. "[count][3],
+        unit L" gives ("count", 3); "[attribute_count] -> [count][components]" gives ("attribute_count", "->", "count", "components")."""
         body, shapes = re.search(rf"struct\s+{struct}\s*\{{(.*?)\}}\s*{struct}\s*;", self.text, re.S).group(1), {}
         told = {name: comment for comment, names in re.findall(r"/\*((?:(?!\*/).)*)\*/\s*\w+([\s*\w,]*);", body, re.S)
                 for name in re.findall(r"\w+", names)}
@@ -192,7 +192,7 @@ def python_module(header, rows):
 
 
 def c_checks(module, header):
-    """Returns a C file that checks sizes and offsets against those of ctypes."""
+    """Returns a C file that fails to compile unless sizes and offsets are those of ctypes."""
     scope = {}
     exec(compile(module, "_structs.py", "exec"), scope)  # This is the file that was just written.
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",

@@ -84,7 +84,8 @@ def versions():
 
 
 def find_nonsense(value, path="results"):
-    """Returns names of options whose figures no measurement gives."""
+    """Returns the places of figures that no measurement gives: numbers that are not finite, and seconds that are not
+    above 0."""
     if isinstance(value, dict):
         return [bad for key, v in value.items() for bad in find_nonsense(v, f"{path}.{key}")]
     if isinstance(value, (list, tuple)):

@@ -18,9 +18,9 @@ def medians(rows):
 
 
 def adaptive(benchmark):
-    """With particles: triangles, and seconds of both kinds of cubes, in turn; each process extracts twice, its second
-    surface is timed, and the processors' time is a difference. Without: of whole processes, for smoothing lengths 1:10,
-    1:100, 1:1000."""
+    """With given particles, for uniform and adaptive cubes in turn: triangles, seconds of a process's second surface,
+    and the processor seconds by which two surfaces take longer than one. Without: whole processes with adaptive cubes,
+    for smoothing lengths 1:10, 1:100, 1:1000."""
     out, program = benchmark.report, benchmark.program
     if not benchmark.files:
         options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
@@ -74,11 +74,10 @@ def keys_of(bricks):
 
 
 def distance(benchmark):
-    """How far the surface on adaptive cubes is from that on uniform ones, and back. There: from vertices on adaptive cubes
-    to the nearest vertex on uniform ones, in the smallest cube: it is the same crossing of the same line of the lattice,
-    unless the finer cubes have none there. Back: from vertices on uniform cubes to the adaptive surface, in the cube of
-    the place. Levels are worked out here from the particles' SmoothingLength, all of which take part; cubic spline, no
-    scale."""
+    """Measures how far surfaces on adaptive and on uniform cubes are apart. There: from each vertex on adaptive cubes to
+    the nearest one on uniform cubes, in edges of the smallest cube; usually both are the same crossing of a line of the
+    lattice. Back: from each vertex on uniform cubes to the surface on adaptive cubes, in edges of the cube at that place.
+    The levels of cubes are computed here from SmoothingLength, for all particles, the cubic spline and no scale."""
     out, surface = benchmark.report, {}
     path = benchmark.files[0] if benchmark.files else benchmark.sets.get("graded-10", benchmark.sizes[-1])
     for mode in ("uniform", "adaptive"):
@@ -110,9 +109,9 @@ PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # The spacing is 1.
 
 
 def plane(benchmark):
-    """Two dimensions: an isoline of particles in a plane, against vtkSPHInterpolator with a kernel of two dimensions on the
-    same lattice, and vtkFlyingEdges2D. Seconds of processors, of all threads, and in brackets of the clock, without
-    reading: of six surfaces in a process less one."""
+    """Times an isoline of particles in a plane: by this program, and by vtkSPHInterpolator with a kernel of two dimensions
+    on the same lattice and vtkFlyingEdges2D. Prints processor seconds of all threads, and in brackets seconds by the clock.
+    This program's are a fifth of the difference between processes with six surfaces and with one; reading is not timed."""
     program, more, own = benchmark.program, 5, []
     path = benchmark.sets.get("plane", benchmark.sizes[-1])
     options = ["--scalar", "Swirl", "--iso", PLANE_ISO, "--smoothing-length", PLANE_LENGTH, "--no-attributes"]
@@ -164,9 +163,9 @@ def tank_or_file(benchmark):
 
 
 def probe(benchmark):
-    """A slice and a volume: vtkSPHProbe beside vtkSPHInterpolator. Both evaluate Swirl (Shepard mean, cubic spline, one
-    smoothing length) at the same points, in one process, in turn; reading the particles is not timed. The volume is
-    vtkSPHProbe's alone; memory is the largest resident set."""
+    """Probes a slice and a volume. On the slice, vtkSPHProbe and vtkSPHInterpolator evaluate Swirl (Shepard mean, cubic
+    spline, one smoothing length) at the same points, in one process, in turn; reading the particles is not timed. Only
+    vtkSPHProbe evaluates the volume. Memory is the largest resident set."""
     out, particles, runs, array = benchmark.report, tank_or_file(benchmark), benchmark.runs, "Swirl"
     size, side = (64, 32) if benchmark.quick else (512, 256)
     image = make_image(particles.GetBounds(), size, size, 1)
@@ -229,10 +228,10 @@ class Watch:
 
 
 def cancel(benchmark):
-    """How long a run goes on after it is cancelled. It asks when it reports progress, so one waits for the next report at
-    most, and then for the end. For each kind of run, all kernels being compiled: the longest time without a report, the
-    least over the runs, by the clock and in processor seconds of all threads, with what ran then; and the longest time
-    from a report that cancels to the return, over 8 places in a run."""
+    """Measures how long a run goes on after it is cancelled. A run stops after its next report of progress. For each kind
+    of run, with all kernels compiled: the longest time without a report, the least over the runs, by the clock and in
+    processor seconds of all threads, with what ran then; and the longest time from a report that cancels to the return,
+    over 8 places in a run."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)
@@ -261,10 +260,11 @@ def cancel(benchmark):
 
 
 def project(benchmark):
-    """Column densities of Evrard's sphere, 1 / r, with h of 1.2 spacings, in boxes of 2.6: project() of Python beside
-    sarracen's code for the processor. Its exact mode gives means over pixels, too; else it evaluates kernels at the
-    centres of pixels, here also of finer images, which are averaged. Errors: the largest difference from ours, by the
-    greatest value; the exact mode's tells how far both are right. By the clock and of processors."""
+    """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, boxes of 2.6) by project() of
+    Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
+    else it evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
+    largest difference from project(), over the greatest value; the exact mode's error tells how far both are right.
+    Seconds are by the clock and of processors."""
     import marchingcorrectors
     from sarracen.interpolate.cpu_backend import CPUBackend
     from sarracen.kernels import CubicSplineKernel
@@ -305,7 +305,7 @@ def project(benchmark):
 
 
 class Walls:
-    """Returns the planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
+    """Holds the planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
 
     def __init__(self, solid, h):
         self.low, self.high = solid.min(axis=0), solid.max(axis=0)
@@ -350,9 +350,9 @@ WALL_CHOICES = {
 
 
 def walls(benchmark):
-    """Where surfaces end at walls, for each choice of --solids: distance of their border from the first layer of wall
-    particles, in smoothing lengths (below 0: behind it), and the share of points behind it. A file without solids gets
-    a layer of them."""
+    """Measures where surfaces end at walls, for each choice of --solids: the distance of their border from the first
+    layer of wall particles, in smoothing lengths (below 0: behind the layer), and the share of points behind the layer.
+    A file without solids gets a layer of solids."""
     out, near = benchmark.report, 1.5  # A border point this near to a wall, in smoothing lengths, ends there.
     edges = vtk.vtkFeatureEdges()  # These edges have only one triangle.
     edges.FeatureEdgesOff()
@@ -421,8 +421,8 @@ class Model:
 
 def ranks(benchmark):
     """Writes what it costs processes to share a surface: particles owned, copies of others', bytes sent, nodes evaluated.
-    Fits a model to this, and writes what it says of larger data. Bytes are those of the copies, and of the particles that
-    travel, which are 1 - 1 / ranks of all."""
+    Fits a model to these figures, and writes what the model says of larger data. Bytes are those of the copies, and of
+    the particles that travel, which are 1 - 1 / ranks of all."""
     out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
     for count in benchmark.sizes:
         path = benchmark.sets.get("tank", count)

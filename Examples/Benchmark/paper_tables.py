@@ -27,8 +27,8 @@ CUBE_FACTORS = (0.5, 1.0)
 
 @dataclasses.dataclass(frozen=True)
 class Data:
-    """A data set of the paper, and what the paper says of it. Six entries: the columns of its
-    tables, h scale 1, 0.75 and 0.5 by cubes of 0.5 h and h. None: not in the paper."""
+    """A data set of the paper, and what the paper says of it. Six entries are the columns of the paper's tables: h
+    scale 1, 0.75 and 0.5, each with cubes of 0.5 h and h. None: not in the paper."""
     table: str
     title: str
     kind: str

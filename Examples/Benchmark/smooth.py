@@ -95,9 +95,9 @@ def times(benchmark):
 
 
 def smooth(benchmark):
-    """For each surface the tilt of its triangles against the true surface (root of the mean square, degrees), drops,
-    triangles, how many have an angle below 20 degrees, and the volume over N V. With particles only the processor's
-    seconds of whole runs, in turn, and their medians."""
+    """Measures, for each surface: the tilt of its triangles against the true surface (root of the mean square,
+    degrees), drops, triangles, how many of them have an angle below 20 degrees, and the volume over N V. With given
+    particles, measures only processor seconds of whole runs, in turn, and their medians."""
     if benchmark.files:
         return times(benchmark)
     random, path = np.random.default_rng(benchmark.arguments.seed), benchmark.folder / "scene.vtp"

@@ -78,8 +78,8 @@ def dam_break(count, ratio=1.28):
 
 
 def lambda2(positions, wave_number, speed):
-    """Middle eigenvalue of S^2 + W^2, S and W the parts of the velocity gradient, of the flow
-    u = speed (sin kz + cos ky, sin kx + cos kz, sin ky + cos kx) (Arnold, Beltrami, Childress)."""
+    """Returns the middle eigenvalue of S^2 + W^2 for the flow u = speed (sin kz + cos ky, sin kx + cos kz, sin ky + cos
+    kx) (Arnold, Beltrami, Childress). S and W are the symmetric and the antisymmetric part of the velocity gradient."""
     result = np.empty(len(positions))
     for first in range(0, len(positions), 1 << 18):  # all matrices at once would need much memory
         p = wave_number * positions[first:first + (1 << 18)]
@@ -206,12 +206,14 @@ def plane(count, jitter=0.15):
 
 
 def tangents(p):
-    """Returns dGamma per node: the central difference of the closed polygon."""
+    """Returns the line element at each node of a closed polygon: half the way from the node before to the node
+    behind."""
     return 0.5 * (np.roll(p, -1, 0) - np.roll(p, 1, 0))
 
 
 def moving_rings(sigma=0.1, z0=0.6, amplitude=0.012, time=3.5, dt=0.03, nodes=384):
-    """Returns the rings' centre lines at that time, and their core radii. The thin-filament model breaks down after about 4."""
+    """Returns the rings' centre lines at that time, and their core radii. After a time of about 4 the thin-filament model
+    breaks down."""
     t, rings = np.arange(nodes) * (2.0 * np.pi / nodes), []
     for sign in (1.0, -1.0):
         radius, height = np.ones(nodes), np.zeros(nodes)
@@ -286,7 +288,7 @@ def vortex_rings(count, keep_all=False, threshold=1e-3):
     size = high - low
 
     def lattice(dx):
-        """Centres the points on the box."""
+        """Returns the first point of a lattice that is centred on the box, and its numbers of points."""
         dims = np.ceil(size / dx).astype(int) + 1
         return 0.5 * (low + high) - 0.5 * dx * (dims - 1), dims
 

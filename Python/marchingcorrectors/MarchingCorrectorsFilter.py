@@ -14,13 +14,15 @@ from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
-# In a build the package is a folder of links to files of several folders; a plugin may be a link to this file.
+# The package's folder. In a build this is a folder of links, so a link is followed only if the folder lacks the panel's
+# XML: ParaView may load a link to this file.
 FOLDER = Path(__file__).absolute().parent
 if not (FOLDER / "MarchingCorrectors.xml").exists():
     FOLDER = Path(__file__).resolve().parent
 
 if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
-    # ParaView loads this file alone, not its package. The other modules in the folder must not become importable.
+    # ParaView loads this file without its package, so the package is loaded here. Nothing else in the folder becomes
+    # importable.
     _spec = spec_from_file_location("marchingcorrectors", FOLDER / "__init__.py", submodule_search_locations=[str(FOLDER)])
     sys.modules["marchingcorrectors"] = module_from_spec(_spec)
     _spec.loader.exec_module(sys.modules["marchingcorrectors"])
@@ -77,11 +79,11 @@ SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) *
 # The words for the numbers of properties, in order. A word is in a method's name, such as SetSeedModeToPairs(), and in a constant's.
 WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
          "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
-# These are findings of a run, which the panel shows.
+# The panel shows these findings of a run. Here they are empty.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-# A run's data on the device depend on marks of the particles, marks of the scalar, and options. The last entry holds the run's factors of
-# smoothing lengths.
+# The last run: marks of its particles and of its scalar, which tell whether data on the device still hold; the options that factors of
+# smoothing lengths depend on; and these factors.
 NO_RUN = None, None, None, None
 
 
@@ -235,7 +237,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.SetBox([side for axis, length in enumerate(lengths) for side in (b[2 * axis], b[2 * axis] + length)])
 
     def SetPanelComponent(self, component):
-        """ScalarComponent for ParaView's panel, where 3 stands for the magnitude."""
+        """Sets ScalarComponent by its number in ParaView's panel, where 3 stands for the magnitude."""
         self.SetScalarComponent(-1 if component >= 3 else component)
 
     def SetKernelByName(self, name):
@@ -312,7 +314,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 choice.FreeSurface = particles.has_free_surface()
 
     def _look_at(self, points, ahead):
-        """Adds to `ahead` what these points tell: the range needs no smoothing length, the number of cells no scalar."""
+        """Adds to `ahead` what these points tell. Each value needs only some of the arrays: the range no smoothing
+        length, the number of cells no scalar."""
         choice = self._choice()
         self._settle(choice, points)
         with suppress(Unusable):
@@ -432,7 +435,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     @staticmethod
     def _options(choice):
-        """Returns the core's options; some properties mean more than their values."""
+        """Returns the core's options. Some options depend on several properties."""
         options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
         lib.mcor_set_default_options(ctypes.byref(options))
         for member, (_, _, name) in c.OPTIONS.items():

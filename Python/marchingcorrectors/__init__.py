@@ -38,7 +38,7 @@ __all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Fluxe
            "InvalidData", "OutOfCapacity", "Projection", "Samples", "Surface", "derivatives", "devices", "flow",
            "flux", "free_surface", "gauge", "isosurface", "probe", "project", "read_pyvista", "widening"]
 
-# The C++ filter lies in a folder of the same name, where CMake installed it.
+# CMake may have installed the C++ filter in another folder of the same name.
 __path__ = _extend_path(__path__, __name__)
 
 

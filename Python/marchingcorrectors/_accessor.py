@@ -49,7 +49,8 @@ class Particles(Shared, total=False):
 
 
 def _method(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Returns a decorator: the method takes the keywords of Particles, and these options; its signature and text have all."""
+    """Returns a decorator. It gives a method the keywords of Particles and these options, in its signature and in its
+    text."""
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
         def call(self: Any, *arguments: Any, **words: Any) -> Any:
@@ -239,7 +240,8 @@ class SphAccessor:
                                 **self._prepare(words, with_attributes=False))
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
-        """Returns keywords for the functions that take NumPy arrays; their positions are particles."""
+        """Returns keywords for the functions that take NumPy arrays. `positions` has the points and arrays of the data
+        set."""
         words = {"periodic": None, **given, "positions": PointData(self._particles)}  # Without "auto", a period in the field data is ignored.
         names = words.pop("attributes", None)
         if with_attributes:

@@ -20,7 +20,7 @@ FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
 ABSENT = 2  # MCOR_ABSENT
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 WORDS = {int: "whole number", float: "number"}
-# Names of the header are words, too: "cubic_spline" is "cubic".
+# Words may also be the header's names: "cubic_spline" means "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
@@ -181,7 +181,8 @@ class Arguments:
         lib.mcor_spell_out(ctypes.byref(self.options))
 
     def per_neighbours(self, found, function, *more):
-        """Returns numbers, (particles,), which a function of the core sums over neighbours. found: a Found, which has all masses."""
+        """Returns sums over neighbours, (particles,), by a function of the core. found: a Found, which has the masses of all
+        particles."""
         given, values, why = c.mcor_input.from_buffer_copy(found.found.input), np.empty(self.count), c.mcor_message()
         given.mass = found.found.views[ROLES["mass"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
@@ -288,7 +289,7 @@ def take_rows(pointer, count):
 
 
 def take_all(result):
-    """Returns, by name, the arrays of a result, but for those with one entry for each attribute."""
+    """Returns {name: array} of a result, without the arrays that have one entry for each attribute."""
     arrays = {}
     for name, (count, *columns) in c.SHAPES[type(result).__name__].items():
         if count != "attribute_count":

@@ -65,13 +65,14 @@ class Keywords(Shared, total=False):
 
 
 def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str, Any]:
-    """Returns {name: type} of a class of keywords, without the core's options; without `outputs` if no option is an output."""
+    """Returns {name: type} of a class of keywords. Leaves out the core's options, and `outputs` if none of `options` is an
+    output."""
     return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__
             and (name != "outputs" or not OUTPUTS.keys().isdisjoint(options))}
 
 
 def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Returns a decorator: the function takes Keywords, and these options; its signature and text have all.
+    """Returns a decorator. It gives a function Keywords and these options, in its signature and in its text.
 
     Positions may be particles of io.read(). Names then mean the file's arrays, and smoothing length, mass, walls, kernel
     and period come from the file unless they are given.
@@ -109,8 +110,9 @@ def words_of_file(particles, given):
 
 
 def prepare(units, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
-    """Returns the core's arguments. words: Keywords. named: what `fluid` and `only` may name, if that is more than the attributes.
-    wants: names of mcor_want; nothing: the warning's words for no fluid, None: an error; roles: arrays by names in mcor_role."""
+    """Returns the core's arguments. words: Keywords. named: the arrays that `fluid` and `only` may name; by default the
+    attributes. wants: names of mcor_want. nothing: the warning's words if there is no fluid; None makes this an error. roles:
+    arrays by names in mcor_role."""
     options, attributes = dict(words), attributes or {}
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
@@ -132,7 +134,8 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
 
 
 class Ranges(list):
-    """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. Several may have one name: one of them must hold."""
+    """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. Pairs may share a name; then one of them must
+    hold."""
 
 
 class Finder(Arguments):
@@ -148,7 +151,7 @@ class Finder(Arguments):
         self.request = {"find": source is not None}
 
     def add(self, name, array):
-        """Returns the array's name for the core, where all names differ."""
+        """Returns the array's name for the core, which needs a different name for each array."""
         while name in self.named and self.named[name] is not array:
             name += "'"
         self.named[name] = array

@@ -144,8 +144,8 @@ def between(before, after, first, last, time, velocity=None):
     """Returns the particles at a time between two steps, which are at the times first and last.
 
     Particles are matched by their ids. Positions follow the cubic curve with both velocities; without velocities they
-    are linear in time, as other numbers are; integers are the nearer step's. A particle that only one step has is there
-    in the half of the interval beside this step.
+    are linear in time, as other numbers are; integers are the nearer step's. A particle that only one step has exists
+    in the half of the interval next to this step.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []

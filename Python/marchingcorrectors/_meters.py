@@ -47,7 +47,7 @@ class Gauges(Result):
 
 
 def warn_of_dry(arguments, noun, names, outside):
-    """Warns of places that no particle reaches, unless there is no fluid at all, which has a warning of its own."""
+    """Warns of places that no particle reaches. If there is no fluid, another warning says so."""
     dry = [name for name, is_dry in zip(names, outside) if is_dry and arguments.input.count]
     if dry:
         warn(say("PLACE_DRY", noun, dry[0]) if len(dry) == 1 else say("PLACES_DRY", len(dry), len(names), noun, dry[0]))

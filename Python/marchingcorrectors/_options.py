@@ -16,12 +16,13 @@ from ._library import lib
 BOUNDS = "six bounds (x0, x1, y0, y1, z0, z1)"
 Function = TypeVar("Function", bound=Callable)  # Type checkers see the function as it is written.
 
-# Outputs are bits of one number in mcor_options; here each bit is a member.
+
 def camel(name):
     """Returns VTK's spelling: "cube_size" becomes CubeSize."""
     return "".join(part.capitalize() for part in name.split("_"))
 
 
+# Outputs are bits of one number in mcor_options. Here each bit becomes a member.
 OUTPUTS = {name[len("MCOR_OUT_"):].lower(): bit for name, bit in c.ENUMS["mcor_output"].items()}
 
 
@@ -37,8 +38,8 @@ for _name, _bit in OUTPUTS.items():
 
 
 class Options(c.CoreOptions, total=False):
-    """Keywords of isosurface(); other functions take the keywords that matter there. CoreOptions has the options of
-    core/mcor_options.def."""
+    """Keywords of isosurface(). Each of the other functions takes the keywords that matter to it. CoreOptions has the
+    options of core/mcor_options.def."""
 
     smoothing_length_is_support_radius: bool
     estimate_smoothing_length: Union[bool, str]
@@ -50,7 +51,7 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """Returns the panel's text on a property, without the default if that is only a word."""
+    """Returns the panel's text on a property. Leaves out a default without a comma, which is a word or a number."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said
@@ -96,7 +97,7 @@ WORDS = {
 WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS},
          **{name: of_panel("Compute" + camel(name)) for name in OUTPUTS if name not in WORDS}, **WORDS}
 
-# Each function takes these options.
+# These are the options of each function.
 ISOSURFACE = tuple(Options.__annotations__)
 FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
@@ -146,7 +147,7 @@ def did_you_mean(name, known):
     return f" Did you mean '{close[0]}'?" if close else ""
 
 
-# Other packages have these names, or people try them first.
+# People try these names, or know them from other packages.
 SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoothing_length",
             "support_radius": "smoothing_length_is_support_radius", "spacing": "volume", "dp": "volume", "dx": "volume",
             "rho": "density", "m": "mass", "value": "iso", "isovalue": "iso", "level": "iso", "threshold": "iso",

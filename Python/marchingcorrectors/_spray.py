@@ -30,8 +30,8 @@ def fluid_and_volume(words):
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
     """Returns the surface without the closed pieces that enclose fewer than `least` fluid particles, and the spray: the
-    particles in these pieces, and particles where the sum of the weights is below `iso`. Particles at the tips of the
-    other pieces, to which points of the surface are nearest, are no spray.
+    particles in these pieces, and particles where the sum of the weights is below `iso`. A particle that is nearest to a
+    point of another piece, as at its tip, is no spray.
 
     words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of its array.
     """

@@ -82,9 +82,10 @@ class Surface(Result):
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
     line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
     band_value: Optional[np.ndarray] = None  #: filled: (triangles,) float64, the iso value with which the band begins
-    #: {name: (points,) or (points, components)}: means of real arrays, others as they are; of the array's own type
+    #: {name: (points,) or (points, components)}, of each array's own type: means of real arrays, else the nearest
+    #: particle's value
     attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
-    #: {name: particle} of the attributes that are left out, being NaN or infinite there
+    #: {name: particle}: attributes that are left out, because they are NaN or infinite at this particle
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: as mcor_statistics of mcor.h
     iso_value_name: str = "IsoValue"  #: of the array iso_value in files

@@ -158,7 +158,8 @@ class Film:
                 if name not in self._left_out:
                     warn(f"The array '{name}' is left out of {os.path.basename(self.path)}, whose integers have 32 bits.")
                 self._left_out.add(name)
-            # Blender knows velocities by this name.
+            # Blender takes an array "velocity" for the velocities, so the array is left out if `slow` changes the
+            # velocities.
             elif array.dtype.kind in "fiub" and (name != "velocity" or self.slow == 1 or velocities is None):
                 width = int(np.prod(array.shape[1:]))
                 kind = "Float" if array.dtype.kind == "f" else "Int"

@@ -27,8 +27,8 @@ def _identity(path):
 class Outputs:
     """Replaces all files at the end of the with block, or none if it raises.
 
-    Checks first that no output is an input or another output, by whatever link. Of a symbolic link, the file behind it
-    is replaced, and keeps its mode; other hard links of that file keep the old contents. steps: outputs that the user
+    Checks first that no output is an input or another output, by whatever link. If an output is a symbolic link, the file
+    behind it is replaced, and its mode stays; other hard links of that file keep the old contents. steps: outputs that the user
     has not named; they replace only steps of an older film.
     """
 

@@ -13,8 +13,8 @@ from .._find import Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean, words_of
 
-# Solvers' names for their kernels begin with these, if only letters and digits count; the first that fits counts. PySPH calls Wendland C2
-# WendlandQuintic.
+# A solver's name for its kernel, with only its letters and digits, begins with one of these keys; the first that fits counts. PySPH calls
+# Wendland C2 WendlandQuintic.
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}

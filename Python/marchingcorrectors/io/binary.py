@@ -110,7 +110,8 @@ class BinaryFile:
             begin += size + 8
 
     def read_arrays(self, blocks, with_masses):
-        """Yields (label, RawArray) of each array of a fitting size. Of others, an array that all types have is an error; the rest is skipped."""
+        """Yields (label, RawArray) of each array whose size fits. If a size does not fit, MASS and arrays of all types are an error, and other
+        arrays are skipped."""
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), sum(self.counts)), "MASS": with_masses}
         for label, (begin, size) in blocks:
             count, columns = counts.get(label, self.counts[0]), 3 if label in VECTORS else 1

@@ -47,7 +47,7 @@ def find_vertices(types, offsets, points, count):
 
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
-    of the points, unless points have an array of that name. They also do if all cells are vertices, and each point has one.
+    of the points, unless points have an array of that name. The same holds if all cells are vertices, and each point has one.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.
@@ -376,7 +376,8 @@ class Legacy:
         return values.reshape(count, columns) if columns > 1 else values
 
     def skip_strings(self, count, in_lines):
-        """Skips texts: in text files, one on each line; in others, each behind its length, whose first two bits tell its own size: 8, 4, 2 or 1 bytes."""
+        """Skips texts. In text files, each is a line. In others, each follows its length; the length's first two bits tell how many bytes the length
+        has: 8, 4, 2 or 1."""
         for _ in range(count):
             if in_lines:
                 self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1

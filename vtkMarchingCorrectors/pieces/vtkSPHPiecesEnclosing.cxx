@@ -174,7 +174,7 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
   }
 }
 
-/** Moves the place into the period. */
+/** Returns the image of a point that lies in the period. */
 Triple WithinPeriod(const double period[6], const Triple& point)
 {
   Triple at = point;

@@ -3,7 +3,7 @@
 /**
  * Private to the module: the processes (ranks) that share one run, and what they tell each other.
  *
- * A shared run in ten sentences:
+ * A shared run in ten points:
  *  1. Each rank comes with any particles, and drops particles that are marked as copies of another
  *     rank's; all agree on one list of arrays (vtkSPHRanksParticles.h).
  *  2. The core measures the globals, over the particles of all ranks (mcor_measure_globals).

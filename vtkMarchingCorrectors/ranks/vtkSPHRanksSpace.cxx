@@ -223,7 +223,8 @@ void vtkSPHRanksSpace::Divide(
 }
 
 // Divides a box among `count` ranks from `first` on. Cuts it across the longest side of the
-// samples' bounds, at the side of a brick where the work below the cut is nearest to the goal.
+// samples' bounds, at the side of a brick where the work below the cut is nearest to the lower
+// ranks' share.
 void vtkSPHRanksSpace::Cut(
   Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box)
 {

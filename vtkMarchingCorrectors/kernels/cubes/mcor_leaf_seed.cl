@@ -29,8 +29,8 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 }
 
 /* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are
- * split. Marks its leaves that are beside other levels: if a finer leaf is anywhere around them, or
- * if a brick up from them is neither a leaf nor split. In a plane, only x and y count as up. */
+ * split. Marks a leaf of the row as beside other levels if a finer leaf is anywhere around it, or
+ * if a brick up from it is neither a leaf nor split. In a plane, only x and y count as up. */
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {

@@ -3,7 +3,7 @@
 
 /* Grows the set of cells between pairs [III-C] from cell to cell through crossed faces. */
 
-/* Whether any brick that has nodes of these cells, and whose block exists, still lacks a slot. */
+/* Whether any brick that has nodes of these cells lacks a slot, though its block exists. */
 bool mcor_pair_lacks(
   MCOR_BLOCK_PARAMS, __global const int* neighbours, int slot, int own, int4 brick, ulong cells)
 {

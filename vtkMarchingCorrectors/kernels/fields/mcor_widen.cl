@@ -163,8 +163,8 @@ realv mcor_widen_ramp(realv x, real from, real to)
 
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factor of
  * particles that are inside with the widest factor, or whose factor is 1 anyway. For the others,
- * writes 1 to `wanted`, and their taper in place of the factor. Writes the least weight sum of all
- * particles. */
+ * writes 1 to `wanted`, and their taper in place of the factor. Writes to `least` the weight sum
+ * that each particle needs. */
 __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
   __global real* factor, __global real* least, __global int* wanted)
@@ -286,10 +286,9 @@ bool mcor_widen_is_plain(
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, and the least sums in `limited`.
- * Writes to `limited` the lower of each factor and the mean of factors at the particle. If the
- * factor is 1, it becomes 1 plus a share of mean - 1, which is 0 outside of corners. The mean is
- * the widest factor less the mean of (widest - factor), so it is exact if all factors are the
- * widest. */
+ * Writes to `limited` the lower of each factor and the mean of factors at the particle. A factor of
+ * 1 becomes 1 plus a share of mean - 1; the share is 0 outside of corners. The mean is the widest
+ * factor less the mean of (widest - factor), so it is exact if all factors are the widest. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
   const real margin, __global const real* factor, __global real* limited)
 {

@@ -34,7 +34,7 @@ typedef struct
   int4 low, high; /* box of the group's nodes */
 } mcor_grouping;
 
-/* Whether nodes this far apart may be in one group; its gather of particles has to stay small. */
+/* Whether nodes this far apart may be in one group: the group must gather few particles. */
 bool mcor_group_fits(int4 extent)
 {
   return extent.x + extent.y + extent.z <= MCOR_GROUP_EDGES &&

@@ -101,7 +101,8 @@ fix mcor_query_beyond(fix x, fix reach)
   return min(x, most - reach) + reach;
 }
 
-/* Moves to the first level from number `next` on that has cells in reach. */
+/* Moves to the first level from number `next` on that has cells in reach. Returns false if there is
+ * no such level. */
 bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int next)
 {
   query->begin = query->end = 0;

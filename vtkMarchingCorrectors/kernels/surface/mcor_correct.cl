@@ -59,7 +59,7 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
 /* Edges or lines: vectors a from end to end, and values v less iso at both ends. A line has a
- * start, relative to the node, and the slope there; it has no v1. */
+ * start, relative to the node, and the slope at the start; it has no v1. */
 typedef struct
 {
   bool lines;

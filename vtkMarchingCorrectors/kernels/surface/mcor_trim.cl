@@ -20,7 +20,7 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of the batch, and how
- * often its triangles' edges are cut. */
+ * many cuts the edges of its triangles have. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {

@@ -414,7 +414,7 @@ class Model:
         return grown - self.each
 
     def surface(self):
-        """Returns a rank's part of the area."""
+        """Returns a rank's part of the whole box's surface area."""
         x, y, z = self.whole
         return 2 * (x * y + y * z + z * x) / self.ranks
 

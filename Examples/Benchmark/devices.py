@@ -36,8 +36,8 @@ def make_tank(count):
 
 
 def show_profile(path, call):
-    """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase is what it spends outside OpenCL's
-    calls; reads and writes wait, too. Times of kernels and transfers are the device's."""
+    """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase leaves out OpenCL's calls, because
+    reads and writes wait in them. Times of kernels and transfers are the device's."""
     totals = collections.defaultdict(lambda: collections.Counter(dict.fromkeys(("phase", "build"), 0)))
     kernels = collections.Counter()
     with open(path, newline="") as file:

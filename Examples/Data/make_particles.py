@@ -57,8 +57,8 @@ def dam_break(count, ratio=1.28):
         return x, spacing * (1 + grading * (1 - x / extent))
 
     def lattice(spacing):
-        """Returns positions and spacings of the lattice points in the water. By Ritter (1892), a rarefaction runs back into the column and a tongue
-        forth from it."""
+        """Returns positions and spacings of the lattice points in the water. By Ritter (1892), a rarefaction runs back into the column, and a
+        tongue of water runs out of it."""
         (x, dx), (y, dy), (z, dz) = (axis(extent, spacing) for extent in (length + 2 * time * wave, width, height))
         z, dz = height - z[::-1], dz[::-1]  # The lattice is finest at the bottom.
         depth = (2 * wave - np.clip((x - length) / time, -wave, 2 * wave)) ** 2 / (9 * GRAVITY)

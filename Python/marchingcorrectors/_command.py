@@ -110,7 +110,8 @@ class Once(argparse.Action):
 
 
 def reader_of(option, argument):
-    """Returns the function that reads the option's value, and says what it must be. argument: the value's name in the program's help."""
+    """Returns the function that reads the option's value; its error says what the value must be. argument: the value's name in the
+    program's help."""
     letters = len(re.sub("[^A-Z]", "", argument))
     read = READERS.get(option, int if argument in ("N", "MIB") else numbers if "," in argument else float if letters < 3 else str)
     wanted = {int: "a whole number", float: "a number"}.get(read, argument)

@@ -92,7 +92,7 @@ class Context:
             self.close()
 
     def run(self, call, options, progress):
-        """Runs call(handle) while no other thread uses the context. Raises the error, also an exception of the callback, or
+        """Runs call(handle) while no other thread uses the context. Raises the core's error, the callback's exception, or
         KeyboardInterrupt."""
         start()
         with self._alone(), callback_of(progress) as callback, Watch(callback) as watch:

@@ -95,7 +95,7 @@ class Found:
         return None if index < 0 else index
 
     def name(self, role):
-        """Returns the name of the role's array, also of one that is not used; "" if there is none."""
+        """Returns the name of the role's array, even if the array is not used; "" if there is none."""
         return (self.found.views[ROLES[role]].name or b"").decode(errors="replace")
 
     def attributes(self):

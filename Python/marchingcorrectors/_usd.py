@@ -174,7 +174,7 @@ class Film:
                         **self._common(arrays, velocities)}
 
     def _lines_of(self, surface, arrays, velocities):
-        """Makes curves, half as wide as the median of their pieces is long."""
+        """Makes curves. Their width is half the median length of their pieces."""
         at = surface.line_points
         points, counts = surface.points[at], np.diff(surface.line_offsets)
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)[np.setdiff1d(

@@ -50,7 +50,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns the list of cells that has the vertices, and the types of all cells. The list's cells have the first numbers."""
+    """Returns the list of cells that has the vertices, and the types of all cells. The cells of this list are numbered
+    first."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -63,7 +64,8 @@ def cells_of(points):
 
 
 def add_values(data, count, chosen, made):
-    """Adds the arrays that have `count` values, unless an array of the same name exists."""
+    """Adds the arrays that have `count` values, with the values `chosen`, unless `made` has an array of the same
+    name."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
             add_nearest(made, name_of(array), array, chosen)

@@ -98,7 +98,7 @@ class Request(NamedTuple):
 
 
 def request_of(algorithm, index, points):
-    """Returns the request that SetInputArrayToProcess makes."""
+    """Returns the request that the user has made by SetInputArrayToProcess()."""
     info, kind, data = algorithm.GetInputArrayInformation(index), vtkDataObject.FIELD_ATTRIBUTE_TYPE(), points.GetPointData()
     name = info.Get(vtkDataObject.FIELD_NAME()) or ""
     is_chosen, is_active = name not in ("", "(automatic)"), not name and info.Has(kind)
@@ -203,7 +203,8 @@ class Particles(Found):
         return result
 
     def has_free_surface(self):
-        """Whether the free surface is the thing to see first. A density tells of a liquid even if volumes are not made of it."""
+        """Whether the free surface is what a user sees first. A density is a sign of a liquid, even if volumes are not made of
+        it."""
         given = c.mcor_input.from_buffer_copy(self.arguments().input)
         given.density = self.found.views[ROLES["density"]]
         return lib.mcor_has_free_surface(ctypes.byref(given), None)

@@ -57,8 +57,8 @@ struct CollectionEntry
   std::string Part; ///< the part's name in the list; empty: none
 };
 
-/// Reads the entries in the order of time; entries of the same time keep the order of the file. A file counts once. If
-/// a part occurs twice, its last entry counts. `warnings` gets sentences.
+/// Reads the entries in the order of time; entries of the same time keep the order of the file. If a .pvd file lists a
+/// file, or a part, twice at one time, the last entry counts. `warnings` gets sentences.
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings);
 
@@ -68,6 +68,7 @@ std::vector<std::string> ReadPieces(const std::string& file);
 /// Reads particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between blanks with
 /// comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Columns that share a name and end in :0, :1, :2, or _x,
 /// _y, _z, ... are one vector. If a file tells no times, steps have the times 0, 1, ...; a table has none.
+///@{
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
 std::vector<double> ListTimesInText(const std::string& file);
 ///@}
@@ -78,6 +79,7 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);
 /// The functions below read snapshots in GADGET's binary formats 1 and 2, with files of any name. They return, in this
 /// order, whether a file begins like a snapshot, all files of its snapshot, its time, and the gas in this one file.
 /// GADGET's smoothing length is the support radius; the array SmoothingLength is half of it.
+///@{
 bool IsGadget(const std::string& file);
 std::vector<std::string> ListGadget(const std::string& file);
 std::vector<double> ListTimesOfGadget(const std::string& file);

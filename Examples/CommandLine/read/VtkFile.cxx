@@ -250,9 +250,10 @@ void CheckLegacy(const std::string& file, View text)
 
 // Reading.
 
-/// Expat delays the parsing of a token that may be incomplete, since version 2.6 and in security
-/// updates of older versions. A VTK that does not know this yet (ParaView 5.11 of Debian 12) then
-/// overlooks the place where XML ends and appended data begin, and cannot read such files.
+/// A parser that turns a delay off. Since version 2.6, and in security updates of older versions,
+/// Expat waits before it parses a token that may be incomplete. A VTK that does not know this yet
+/// (ParaView 5.11 of Debian 12) then overlooks the place where XML ends and appended data begin,
+/// and cannot read the file.
 class PromptParser : public vtkXMLDataParser
 {
 public:

@@ -226,8 +226,8 @@ void PrepareForEnding()
   std::signal(SIGXFSZ, SIG_IGN);
   KeepWatchOfCrashes();
   // All later threads leave these signals to one thread that waits for them: it may lock and
-  // allocate. Ignored signals are blocked, too, and never awaited: LLVM, which PoCL brings, handles
-  // them, and its handler unblocks all other signals.
+  // allocate. Ignored signals are blocked, too, but never awaited. Otherwise LLVM, which PoCL
+  // brings, would handle them, and its handler unblocks all other signals.
   pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try
   {

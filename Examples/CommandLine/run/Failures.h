@@ -24,8 +24,8 @@ struct KeptMessages
   void Check(const std::string& error = "") const;
 };
 
-/// Returns the messages since they were last emptied. VTK has one window for all objects: after the
-/// first call of this, all messages come here.
+/// Returns the messages since they were last emptied. The first call makes all messages come here:
+/// VTK has one window for all objects.
 KeptMessages& Messages();
 
 /// Must be called before any thread starts. From then on the program prints a sentence if it

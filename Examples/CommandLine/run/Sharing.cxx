@@ -24,7 +24,7 @@ namespace
 {
 
 #if MCOR_HAS_RANKS
-/// MPI, from begin to end, and the processes of mpirun that share a job. There is one object per
+/// Begins and ends MPI, for the processes of mpirun that share a job. There is one object per
 /// process. All processes read pieces of a file; the first reads a file without pieces. Each writes
 /// its piece of a surface to a .pvtp file; the first writes the whole surface to any other file.
 class RankSession : public Sharing
@@ -134,8 +134,9 @@ public:
   }
 
 private:
-  /// Part() returns the particles that this process reads from a file; Share() those that the first
-  /// process makes. mayBeEmpty: whether all processes together may have none.
+  /// Part() returns the particles that this process reads from a file. Share() returns all
+  /// particles that make() gives on the first process, and none on others. mayBeEmpty: whether all
+  /// processes together may have none.
   Particles Part(const std::string& file, bool mayBeEmpty)
   {
     Particles particles;

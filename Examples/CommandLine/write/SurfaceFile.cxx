@@ -182,8 +182,8 @@ PlyType FindPlyType(vtkAbstractArray* array)
   return found == types.end() ? MakePlyType<double>("double") : found->second;
 }
 
-/// Writes .ply, with a property for each component of each array of numbers, which VTK's writer
-/// leaves out. A vector has NAME_x, NAME_y and NAME_z, as Blender and splashsurf name them.
+/// Writes .ply, with a property for each component of each array of numbers. VTK's writer leaves
+/// out such arrays. A vector has NAME_x, NAME_y and NAME_z, as Blender and splashsurf name them.
 void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
   const char* const axes[] = { "x", "y", "z" };
@@ -316,7 +316,8 @@ void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& na
        << array->GetNumberOfComponents() << "\"/>\n";
 }
 
-/// Describes the arrays, and says which are the normals, and so on, as VTK's writers do in a file.
+/// Describes the arrays, and names those with a role, such as the normals, as VTK's writers do in a
+/// file.
 void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* arrays)
 {
   text << "    <" << element;

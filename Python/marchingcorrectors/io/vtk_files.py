@@ -22,7 +22,7 @@ VERTICES = (1, 2)  # VTK's types of cells that are points
 
 
 def offsets_of(cells, count):
-    """cells: each cell's number of points, then its points. Returns where cells begin, and the list without these numbers."""
+    """Returns where cells begin, and their points alone. cells: each cell's number of points, then its points."""
     width = len(cells) // count if count else 0
     if count and width * count == len(cells) and (cells[::width] == width - 1).all():
         return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()

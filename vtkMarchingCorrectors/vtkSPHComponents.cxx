@@ -55,8 +55,8 @@ vtkDataArray* FindArray(
 }
 
 /**
- * Adds the ids of the pieces that stay, as active scalars if there are several: most users want to
- * tell pieces apart by colour. Returns the ids.
+ * Adds the id of its piece to each element that stays. The ids become active scalars if there are
+ * several pieces: most users want to tell pieces apart by colour. Returns the ids.
  */
 vtkSmartPointer<vtkIdTypeArray> AddIds(
   vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers, size_t pieces)

@@ -184,7 +184,7 @@ bool vtkSPHAlgorithm::vtkRun::Call(
   return this->Agree(message) && status == MCOR_OK;
 }
 
-// A progress observer may change this filter's settings, so they are copied first.
+// A progress observer may change KeepDeviceData during the call, so it is read first.
 int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
   const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
 {

@@ -41,10 +41,12 @@ public:
    */
   std::string Prepare(const std::string& device, int place, int count);
 
-  /** Forgets the data on the device, and the device itself, after a failure. */
+  /** Forgets the data on the device after a failure, and the device itself after a device error. */
   void Forget(mcor_status status);
 
-  /** Gives memory back; between BeginRun() and EndRun(), which use it, leaves this to EndRun(). */
+  /**
+   * Gives memory back. Between BeginRun() and EndRun() the memory is in use, so EndRun() does it.
+   */
   void Release();
   void BeginRun()
   {
@@ -74,7 +76,7 @@ public:
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
-    /** Keeps this value. Returns whether it differs from the kept one. */
+    /** Keeps this value. Returns whether it differs from the value before. */
     bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false)
     {
       isOther = isOther || signature != this->Signature;

@@ -73,7 +73,10 @@ std::vector<double> TimesOf(vtkInformation* info)
                : std::vector<double>();
 }
 
-/** Finds the stored time, or the two around the requested one. */
+/**
+ * Returns the stored time that equals the requested one; the first or last time if that is outside
+ * the range; else the two stored times around it.
+ */
 std::vector<double> StepsAround(const std::vector<double>& times, double time)
 {
   const auto after = std::lower_bound(times.begin(), times.end(), time);

@@ -102,7 +102,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision, 
       vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
     }
   };
-  // With normals, VTK would draw lines dark.
+  // VTK would draw lines with active normals dark.
   const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
 #define ADD(bit, member, components, name, flag) add(name, s.member, components);
   vtkMarchingCorrectorsArrays(ADD)

@@ -295,7 +295,8 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-// Warns if the particles moved along their mean velocities, but much less or more than these say.
+// Warns if the particles' motion along their mean velocities is much less or more than the
+// velocities say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

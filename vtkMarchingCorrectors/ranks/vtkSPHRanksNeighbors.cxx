@@ -52,7 +52,7 @@ using Point = std::pair<std::array<double, 3>, vtkIdType>;
 /**
  * Finds points within spheres. Points are sorted as a tree: the middle point of a range divides the
  * others along one axis, and both halves are divided along the next axis. Points far away do not
- * slow this down, as they would a locator with buckets of one size.
+ * slow the tree down, but would slow down a locator with buckets of one size.
  */
 class PointTree
 {
@@ -111,7 +111,10 @@ private:
   std::vector<Point> Points;
 };
 
-/** Lists the points of the tree, of `count` points, that lie in a sphere, or in an image of one. */
+/**
+ * Lists the numbers, below `count`, of the tree's points that lie in a sphere, or in an image of
+ * one.
+ */
 std::vector<vtkIdType> ListWithin(const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres,
   const PointTree& tree, vtkIdType count)
 {

@@ -286,7 +286,10 @@ std::vector<std::string> LabelsOf(vtkAbstractArray* array)
   return labels;
 }
 
-/** Lists the point arrays with a name and a value for each point, except vtkGhostType. */
+/**
+ * Lists the positions, then the point arrays with a name and a value for each point, except
+ * vtkGhostType.
+ */
 Layout Describe(vtkPolyData* particles)
 {
   vtkDataArray* positions = particles->GetPoints()->GetData();
@@ -311,7 +314,7 @@ Layout Describe(vtkPolyData* particles)
 
 /**
  * Lists the arrays that all ranks with points have, in the order of the first such rank. If there
- * are no points at all, lists the arrays of the rank that has most. Collective.
+ * are no points at all, lists the arrays of the rank that has most arrays. Collective.
  */
 Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
 {

@@ -92,8 +92,8 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
- * particles, and may be used afterwards. A `coarse` cube may count as certain though a part of it
- * is void, and as undecided though a bound could decide. */
+ * particles, and may be used afterwards. If part of a `coarse` cube is void, the cube may still
+ * count as certain. It may count as undecided though a bound could decide. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {

@@ -168,7 +168,7 @@ fixv mcor_trim_normalize(mcor_quantity* q)
 
 /* Finds Newton's step of least norm towards both field = iso and weight = threshold: -J^T (J
  * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes without
- * a step, because the gradients are parallel. */
+ * a step: a gradient is 0, or both are parallel. */
 fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 {
   const fixv flat = mcor_trim_normalize(&f) || mcor_trim_normalize(&w);

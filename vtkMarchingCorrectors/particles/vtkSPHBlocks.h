@@ -60,8 +60,8 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
- * Gives each block the point arrays that `joined`, made by vtkSPHJoinBlocks(), has and `before`
- * lacks.
+ * Gives each block of `output` its part of the point arrays that a filter has made: the arrays of
+ * `joined` that are not in `before`, the particles that vtkSPHJoinBlocks() made of `tree`.
  */
 void vtkSPHSplitBlocks(
   vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output);

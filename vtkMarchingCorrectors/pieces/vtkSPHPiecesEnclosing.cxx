@@ -18,7 +18,7 @@ using Triple = std::array<double, 3>;
 using Face = vtkSPHPieces::Face;
 
 /**
- * Whether the edge between two corners passes y, and the point (y, z) lies below it there. The
+ * Whether the edge between two corners passes y, and the point (y, z) lies below the edge. The
  * result is the same for both triangles at an edge, so no ray slips between them.
  */
 bool IsBelow(const double* a, const double* b, double y, double z)

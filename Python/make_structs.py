@@ -88,7 +88,7 @@ class Header:
         return shapes
 
     def parameter_type(self, text):
-        """Returns the type as ctype() does, but a text that the caller must free keeps its address."""
+        """Returns the type as ctype() does. A text that the caller must free, or a handle, is a c_void_p."""
         base, stars = re.match(r"(?:const )?(\w+)((?: \*)*)", text).groups()
         pointers = stars.count("*") + ("[" in text)
         if (base, pointers) == ("void", 0):

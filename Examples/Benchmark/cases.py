@@ -130,7 +130,7 @@ def plane(benchmark):
 
 
 def make_image(bounds, *dimensions):
-    """Returns an image over the particles' bounds. If it is one point thick, the last axis is in the middle."""
+    """Returns an image over the particles' bounds. An axis with a single point has it in the middle of the bounds."""
     image = vtk.vtkImageData()
     image.SetDimensions(*dimensions)
     pairs = list(zip(bounds[::2], bounds[1::2], dimensions))

@@ -176,7 +176,7 @@ def need_surface(result, what):
 
 
 def lattice(particles, cube, dimension):
-    """Returns an image whose points are whole multiples of the cube size around the particles; in two dimensions it lies in the plane z = 0."""
+    """Returns an image around the particles. Its points are whole multiples of the cube size; in two dimensions they lie in the plane z = 0."""
     low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
     high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
     image = vtk.vtkImageData()
@@ -279,8 +279,9 @@ def available_bytes():
 
 
 def compete(name, path, count, runs, limit, smaller=None, arguments=()):
-    """Returns medians of a competitor's runs, each in its own process, or why there are none. Reading particles is not timed. smaller: its seconds
-    for fewer particles, or None. A set that would take longer than `limit` seconds, or more memory than there is, is left out."""
+    """Returns medians of a competitor's runs, each in its own process, or why there are none. Reading particles is not timed. smaller: the
+    competitor's result for fewer particles, or None. A set that would take longer than `limit` seconds, or more memory than there is, is left
+    out."""
     if smaller:
         factor = count / smaller["particles"]
         seconds, size = factor * smaller["seconds"], factor * smaller["bytes"]

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""SPH particles as a live surface in Blender: an object whose mesh is that of the step shown, made when the frame changes."""
+"""Shows SPH particles as a live surface in Blender: an object whose mesh is made for the shown step when the frame
+changes."""
 import json
 import math
 import os

@@ -114,7 +114,8 @@ class Context:
 
 
 class TextBar:
-    """The bar if there is no tqdm: one line on stderr, which is overwritten; in a file, a line per phase."""
+    """Shows progress if there is no tqdm: by one line on stderr, which is overwritten; in a file, by a line per
+    phase."""
 
     def __init__(self):
         self.state = None

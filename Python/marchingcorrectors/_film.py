@@ -32,7 +32,7 @@ def add_options(parser):
 
 
 def refuse_options(given):
-    """Refuses options of films for a single surface, whose output is not a USD file."""
+    """Refuses options of films if the output is a single surface, not a USD file."""
     for word in (*(option[0] for option in OPTIONS), "--spray", "--times"):
         if getattr(given, word[2:].replace("-", "_"), None) is not None:
             raise InvalidArgument(f"{word} is for films: give an output that ends in .usdc, .usda or .usd.")
@@ -241,7 +241,8 @@ def convert(given):
 
 
 def read_surface(paths):
-    """Reads VTK's XML poly data: returns their time, None if there is none, and the surface of all pieces together."""
+    """Reads .vtp files that are pieces of one surface. Returns their time, or None if they have no time, and the whole
+    surface."""
     time, points, triangles, line_points, lengths, arrays, count = None, [], [], [], [], {}, 0
     for path in [piece for path in paths for piece in (list_pieces(path) if path.suffix.lower() == ".pvtp" else [path])]:
         if path.suffix.lower() != ".vtp" or not path.is_file():

@@ -231,8 +231,8 @@ def _extent(points, more=0.0):
 
 
 class _Part:
-    """A prim whose attributes all have a value at each time code. Attributes that a step lacks are blocked there; otherwise the previous step's
-    values would stay."""
+    """A prim with attributes that all have a value at each time code. An attribute that a step lacks is blocked at the step's time; otherwise
+    the previous step's value would stay."""
 
     def __init__(self, stage, kind, name):
         from pxr import UsdGeom

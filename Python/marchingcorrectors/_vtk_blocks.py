@@ -45,7 +45,7 @@ def copy_of(data):
 
 
 def sets_of(data):
-    """Lists the data set itself, or its blocks; only point sets with points."""
+    """Lists the point sets that have points: the data set itself, or its blocks."""
     return [each for each in list_all(data) if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
 
 

@@ -183,7 +183,8 @@ class Particles(Found):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def _sum(self, options, name, function, take, *more):
-        """Returns the array of this name with sums over neighbours; if the last run had the same particles, its array."""
+        """Returns the array of this name with sums over neighbours. Takes the last run's array if that run had the same
+        particles."""
         given = self.arguments()
         given.options = options
         key = (*self.signatures()[0], options.sph_kernel, options.dimension, *options.periodic, *more)

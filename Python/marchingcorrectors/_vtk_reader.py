@@ -13,7 +13,8 @@ from . import io
 from .io.bodies import LISTS
 from .io.convert import to_vtk
 
-# ParaView reads VTK's own files itself. Its readers of tables and molecules make no particles, so it asks which reader to use.
+# ParaView reads VTK's own files itself. Its readers of tables and molecules make no particles; for their endings ParaView asks
+# which reader to use.
 ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *LISTS)] + ["gadget"]
 
 

@@ -26,8 +26,8 @@ using Picture = std::function<std::string(const std::string& file, vtkDataSet* d
 /// takes longer than a small run, so the functions are in a library of their own.
 struct Extra
 {
-  /// Throws std::runtime_error with one sentence if this VTK renders through an X server and there is
-  /// none: VTK itself would abort.
+  /// Makes the function that draws. Throws std::runtime_error with one sentence if this VTK renders through an X server
+  /// and finds none: VTK itself would abort.
   Picture (*NewPicture)(const PictureOptions& options);
 
   /// Reads the points of one step of a .vtkhdf file, or lists the times of its steps. Throws

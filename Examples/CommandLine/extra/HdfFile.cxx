@@ -72,7 +72,7 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
   return sentence.empty() ? 0 : 1; // this ends the visit
 }
 
-/// Refuses a file that links to other files, because the user has not named these. Throws
+/// Refuses a file that links to other files, which the user has not named. Throws
 /// std::runtime_error.
 void RefuseLinks(const std::string& file)
 {

@@ -269,7 +269,7 @@ int ToCount(Text option, Text text, int smallest, int largest)
 
 std::string NearestOf(Text text, const std::vector<std::string>& names)
 {
-  // Compares small letters only, without - and _. A name that begins with the text is as near as a
+  // Compares in small letters, without - and _. A name that begins with the text is as near as a
   // name with one wrong letter.
   const auto lettersOf = [](std::string word)
   {

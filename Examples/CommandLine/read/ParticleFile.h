@@ -46,7 +46,8 @@ std::vector<double> ListTimes(const std::string& name);
 /// Returns the time between steps that these files store as `dt`; 0: a file has none, or they differ.
 double StoredTimeStep(const std::vector<std::string>& files);
 
-/// Reads the particles that --walls names, as one set; null: none. Throws std::runtime_error.
+/// Reads the particles that --walls names, as one set; null if there are none. Throws
+/// std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
 /// Opens these files, and the files of their parts, before they are read, so that IsSource() knows

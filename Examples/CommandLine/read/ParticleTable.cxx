@@ -473,7 +473,8 @@ std::vector<double> ListTimesInText(const std::string& file)
     {
       throw;
     }
-    // The steps before this one are good; its error is reported when the step is read.
+    // The steps before a damaged one are good. The damaged step is listed, too: reading it reports
+    // the error.
     times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
   // A file of one step does not stay mapped into memory: a film may have more files than a process may map.

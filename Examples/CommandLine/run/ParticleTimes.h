@@ -87,7 +87,7 @@ protected:
     std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
   /// Notes that a step failed. If there is only one step, its error is the program's.
   virtual void Miss(std::size_t i, const std::string& error);
-  /// Whether results contain the times, which else only order the steps.
+  /// Whether results contain the times. If not, times only order the steps.
   virtual bool IsOfTimes() const { return true; }
   /// Returns the words in front of a step's line of progress.
   std::string Progress(std::size_t i) const;

@@ -15,7 +15,7 @@
 class ParticleTimes;
 struct Job;
 
-/// A job. Hides whether processes share the work; this base class is for one process alone. If one
+/// A job, and how processes share its work; this base class is for one process alone. If one
 /// process throws, all throw.
 class Sharing
 {
@@ -44,7 +44,7 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// Returns this process's part of the particles: of the only input, with its walls, or at a time.
+  /// Returns this process's part of the particles and walls: of the only input, or at a time.
   virtual Particles Read();
   virtual Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
@@ -64,7 +64,8 @@ int LaunchedCount();
 int LaunchedRank();
 ///@}
 
-/// Begins MPI for a job that processes share; the object's end is MPI's. Call it once in a process.
+/// Begins MPI for a job that processes share; MPI ends with the object. Call this once in a
+/// process.
 std::unique_ptr<Sharing> NewRankSession(Job& job);
 
 #endif

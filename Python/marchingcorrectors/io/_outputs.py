@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes output files by the program's rules: beside their targets; at the end, all replace their targets together."""
+"""Writes output files by the program's rules: each beside its target; at the end, all of them replace their targets."""
 import contextlib
 import os
 import secrets

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads VTK's files, as of SPHinXsys, PartVTK and SPlisHSPlasH, and tables: several bodies become one set, with walls marked."""
+"""Reads VTK's files, such as those of SPHinXsys, PartVTK and SPlisHSPlasH, and tables. Several bodies become one set, with walls
+marked."""
 import re
 from importlib import import_module
 

@@ -351,7 +351,7 @@ def integers(group, place):
 
 def read_vtkhdf(path, step):
     """Reads points of poly data or an unstructured grid, and their arrays. An array has its steps one after the other. Steps tells where each
-    step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and, if this differs, an array's values (PointDataOffsets)."""
+    step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and arrays that begin elsewhere (PointDataOffsets)."""
     with h5py.File(path, "r") as file:
         root = get(file, "VTKHDF")
         kind = text(root.attrs.get("Type", ""))

@@ -138,8 +138,11 @@ public:
    * `first` the array to contour, if none was named.
    */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
-  /** Collects the particles, if there are any, notes which arrays were found, and warns about the
-   * fluid. */
+  /**
+   * Collects the particles, if there are any, and notes which arrays were found. Warns if there is
+   * no fluid, or if an array or setting has no effect. Returns false, after an error, if an array
+   * is not usable.
+   */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**
    * Finds the period and, for many processes, everything global. forSamples: for mcor_probe and
@@ -161,7 +164,10 @@ public:
   virtual const std::uint8_t* MarkOwned() { return nullptr; }
   /** Calls the core: `call` gets a context for the device, and returns the core's status. */
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
-  /** Calls a function of the core that needs no context; `call` returns false if this failed. */
+  /**
+   * Calls a function of the core that needs no context; `call` returns false if the function
+   * failed.
+   */
   virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
   /** Does the same with a function that cannot fail, and returns its result. */
   template <typename CallT>

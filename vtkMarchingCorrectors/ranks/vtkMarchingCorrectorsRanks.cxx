@@ -120,7 +120,10 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
   return ends;
 }
 
-/** Returns how many numbers a key takes. */
+/**
+ * Returns how many successive numbers a key takes: 1 for a point, for a cell the number of its
+ * triangles.
+ */
 using Weight = std::int64_t (*)(const Key& key);
 
 /**

@@ -68,7 +68,7 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
   const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken = nullptr);
 
-/** Keeps only the arrays that describe the particles or are interpolated. */
+/** Returns the particles with only the arrays that describe them or are interpolated. */
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used);
 
 /**

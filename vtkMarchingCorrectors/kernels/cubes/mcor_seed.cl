@@ -134,7 +134,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* Return the number of a region's first brick, and how much larger the number of its brick b is. */
+/* Return the number of a region's first brick, and what to add to it for the number of brick b of
+ * the region. */
 int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;

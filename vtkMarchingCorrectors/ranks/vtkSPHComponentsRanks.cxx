@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Finds the pieces of a surface that ranks share. The first rank joins the surface by the numbers
-// of its points and triangles, just as one process would have it, and sends each rank the numbers
-// of its pieces.
+// of its points and triangles, just as one process would have it. Each rank asks the first one for
+// the pieces of its own points and triangles.
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
@@ -79,8 +79,9 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 
 /**
  * Returns the piece of each element of this rank; below 0, the element is dropped. pieces: of all
- * elements, on the first rank, which the others ask, since only one rank must hold them all. Adds to
- * `numbers`, for each element of this rank that stays, its number among all that stay. Collective.
+ * elements, on the first rank. Each rank asks the first one for its own elements, so that only one
+ * rank must hold all of them. Adds to `numbers`, for each element of this rank that stays, its
+ * number among all that stay. Collective.
  */
 Ids Return(
   vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)

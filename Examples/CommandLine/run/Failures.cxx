@@ -99,6 +99,7 @@ void EndByCrash(int number)
          number == SIGXCPU ? "it took too much processor time" : "the program crashed there",
          number == SIGSEGV     ? " (Segmentation fault)"
            : number == SIGABRT ? " (Aborted)"
+           : number == SIGBUS  ? " (Bus error, as when a file becomes shorter while it is read)"
                                : "",
          "; ", Hint, "\n" })
   {

@@ -190,7 +190,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     form->addRow(QString::fromUtf8(property->GetXMLLabel()) + ":", value);
     this->Rows << qMakePair(property, value);
   }
-  // The call is queued, because at the first update ParaView still calls the filter new.
+  // The call is queued, because during the first update ParaView still treats the filter as new.
   pqCoreUtilities::connect(
     proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()), Qt::QueuedConnection);
   for (const char* name : { "FluidArray", "SelectInputScalars" })

@@ -151,7 +151,7 @@ def make_probe(particles, image, *arrays, keep=True):
 
 
 def seconds_of_update(filter_):
-    """Returns seconds by the clock, and of the processors."""
+    """Runs the filter. Returns seconds by the clock, and of the processors."""
     filter_.Modified()
     begin = time.perf_counter(), time.process_time()
     filter_.Update()
@@ -374,7 +374,7 @@ def walls(benchmark):
             out.text("  " + " ".join(what))
             for name, choice in WALL_CHOICES.items():
                 if "measured" in name and "--free-surface" in what:
-                    continue  # 0.5 there
+                    continue  # The free surface has the share 0.5.
                 benchmark.program.start(path, [*what, "--fluid", "ParticleType=0", *choice], 0)
                 surface = read(benchmark.program.surface)
                 edges.SetInputData(surface)

@@ -38,7 +38,7 @@ SETS = {
     "vortex-rings": ("vortex_rings", ("--keep-all",),
                      ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0)),
     "plane": ("plane", (), ()),
-    # Smoothing lengths 1:10, 1:100, 1:1000.
+    # Smoothing lengths vary by 1:10, 1:100 or 1:1000.
     **{f"graded-{ratio}": ("graded", ("--ratio", str(ratio)), ()) for ratio in (10, 100, 1000)},
 }
 

@@ -135,7 +135,7 @@ def extraction(result):
 
 
 def print_times(out, data, columns):
-    """Table I, II or III."""
+    """Prints Table I, II or III."""
     first = columns[0]["corrected"]["statistics"]
     iso = columns[0]["corrected"]["parameters"]["iso_values"][0]
     h = first["smoothing_length_range"]

@@ -26,7 +26,7 @@ namespace
 
 const long DeepestGroup = 64; ///< a damaged file may have a circle of groups
 
-/// Closes an object of HDF5.
+/// Holds an object of HDF5, and closes it.
 class Handle
 {
 public:

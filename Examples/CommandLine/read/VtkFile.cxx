@@ -248,7 +248,7 @@ void CheckLegacy(const std::string& file, View text)
   }
 }
 
-// Reading.
+// ---- Reading ----
 
 /// A parser that turns a delay off. Since version 2.6, and in security updates of older versions,
 /// Expat waits before it parses a token that may be incomplete. A VTK that does not know this yet
@@ -306,7 +306,7 @@ const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = 
   { ".vts", PromptReader<vtkXMLStructuredGridReader>::New },
 };
 
-// Times.
+// ---- Times ----
 
 /// Returns the text of an empty data set that has the field data of a file's beginning, in the
 /// file's own format, so that VTK's reader can read the field data alone.
@@ -435,7 +435,7 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
   };
   if (!text.empty())
   {
-    FailureOf([&] { ReadWithCare(file, read); }); // it is reported when the whole file is read
+    FailureOf([&] { ReadWithCare(file, read); }); // an error is reported when the whole file is read
   }
   Messages() = {};
   // If an XML file has field data at its end, a tag at its beginning has the least value of each

@@ -283,7 +283,7 @@ private:
   }
 
   static constexpr const char* MaskName = "vtkValidPointMask";
-  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< others have none
+  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< empty on others
   std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
 };
 
@@ -300,7 +300,7 @@ bool MakeField(Sharing& sharing)
   const bool isProbe = job.Mode() & POINTS;
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // empty on others
   sharing.OnFirst(
     [&]
     {

@@ -212,8 +212,8 @@ std::string ReasonForNoSurface(vtkFieldData* run)
                            "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
-/// Shows a run's progress line. If no line is shown, tells once that the driver still compiles
-/// after a few seconds.
+/// Shows a run's progress line. If no line is shown, says once that the driver compiles, if this
+/// takes more than a few seconds.
 class Progress
 {
 public:

@@ -19,8 +19,8 @@
 namespace
 {
 
-/// From blue over green to a pale yellow: evenly brighter, also in grey, and light enough to show
-/// shading at low values.
+/// The colours go from blue over green to a pale yellow. They become evenly brighter, also in grey,
+/// and low values are light enough to show shading.
 constexpr int StopCount = 9;
 const double Stops[StopCount][3] = { { 0.200, 0.330, 0.620 }, { 0.200, 0.430, 0.690 },
   { 0.210, 0.530, 0.740 }, { 0.270, 0.620, 0.760 }, { 0.370, 0.710, 0.740 },

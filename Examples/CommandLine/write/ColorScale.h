@@ -39,7 +39,7 @@ public:
   void SetName(const std::string& name) { this->Name = name; }
   vtkLookupTable* GetTable() const { return this->Table; }
 
-  /// Returns red, green and blue of the array's values.
+  /// Returns red, green and blue for each of the array's values.
   std::vector<unsigned char> Map(vtkDataArray* array) const;
 
 private:

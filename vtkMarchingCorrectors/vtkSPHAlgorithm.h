@@ -308,8 +308,9 @@ public:
 
   ///@{
   /**
-   * Leave out particles whose value in this point array is not from `low` to `high`, in the same
-   * way. A particle must pass for each array, by one of the array's ranges. None by default.
+   * Leave out particles whose value in this point array is not from `low` to `high`, as if they
+   * were not there. An array may have several ranges: a value in any one of them passes. A particle
+   * must pass for each array. None by default.
    */
   void AddOnly(const char* name, double low, double high)
   {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The programs that a driver of a GPU compiles: their kernels, and the lines of code (PTX) that they become, by clang and LLVM's back end for
-NVIDIA's cards. LATTICE and FIELD are whole programs; all others are parts of these two.
+"""Prints, for each program that a driver of a GPU compiles, how many kernels it has, and how many lines of PTX clang and LLVM's back end for
+NVIDIA's cards make of it. LATTICE and FIELD are whole programs; all others are parts of these two.
 
   programs.py [VERSION]     of clang, opt and llc; default: 14. Debian: apt install clang-14 llvm-14
 """

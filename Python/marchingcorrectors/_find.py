@@ -27,7 +27,7 @@ def copy_at(address, kind, shape):
 
 
 def list_named(arrays):
-    """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers has only a shape there."""
+    """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers is listed with its shape alone."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
     named = (c.mcor_named * max(len(pairs), 1))()
     for each, (name, array) in zip(named, pairs):

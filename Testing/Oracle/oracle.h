@@ -47,7 +47,7 @@ extern "C"
   /* Returns the support radius in smoothing lengths; for M'4 it holds along each axis. */
   double oracle_support(oracle_kernel kernel);
 
-  /* Returns W(offset, h); its gradient with respect to the offset if gradient is not NULL. */
+  /* Returns W(offset, h). Writes its gradient with respect to the offset to `gradient` unless this is NULL. */
   double oracle_kernel_value(
     oracle_kernel kernel, double h, const double offset[3], double gradient[3]);
 

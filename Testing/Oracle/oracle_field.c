@@ -223,7 +223,7 @@ static void oracle_visit(const oracle_field* field, const double point[3], doubl
   const double distance = radius > 0.0 ? radius : node->reach;
   for (int axis = 0; axis < 3; ++axis)
   {
-    /* With this margin rounding can only visit too many particles, for which the kernel is 0. */
+    /* Because of the margin, rounding leaves out no particle. It may add particles that are just out of reach. */
     if (point[axis] - node->high[axis] > distance * (1.0 + 1e-12) ||
       node->low[axis] - point[axis] > distance * (1.0 + 1e-12))
     {

@@ -164,7 +164,7 @@ class Test(unittest.TestCase):
         return done.stdout
 
     def test_found(self):
-        """All that is found where nothing is given: by the filters of both languages, and by the program."""
+        """If no option names them, the filters of both languages and the program find the same fluid, arrays and dimension."""
         sets = make_found(self.folder)
         cases = [[file, "", None, {"DetectFluid": detects, "FreeSurface": free}] for file, _ in sets.values()
                  for detects, free in ((1, 0), (0, 1))]

@@ -67,7 +67,7 @@ HOLDS = {("accessor", "isosurface", "seeds")}  # Pairs miss nothing of this surf
 
 
 def names_as_arrays(words):
-    """Returns the words of a call for NumPy arrays."""
+    """Returns the keywords of a call, with NumPy arrays in place of the names of arrays."""
     named = {name: ARRAYS[value] if isinstance(value, str) and value in ARRAYS and name in ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", "volume")
              else {each: ARRAYS[each] for each in value} if name == "attributes" else value for name, value in words.items()}
     return {"smoothing_length": ARRAYS["SmoothingLength"], "mass": ARRAYS["Mass"], "density": ARRAYS["Density"], **named}

@@ -317,7 +317,8 @@ extern "C"
     mcor_boundary_detection boundary_detection;
     /* Triangles are trimmed where the weight (or the boundary eigenvalue) is below this; default
      * 0.5. With MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001,
-     * or below 0.05 with M'4, whose negative lobes give the mean poles. */
+     * or below 0.05 with M'4, whose negative lobes may cancel the weight that the mean divides
+     * by. */
     double vertex_threshold;
     /* Above 0: any surface, even a free surface, also ends where the solids' share of the weight
      * exceeds this, unless solids are ignored; 0.5: where solids weigh more than the fluid. 0: the
@@ -478,8 +479,8 @@ extern "C"
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    /* Loops of triangles that lie in one side of a cell beside finer cells: the cell cuts off a
-     * part of the surface that the finer cells resolve. */
+    /* Polygons of the surface that lie in one face of a cell beside finer cells: there the cell
+     * cuts off a part of the surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso

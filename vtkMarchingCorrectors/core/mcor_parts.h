@@ -124,7 +124,7 @@ extern "C"
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
-  /* Returns the distance, L, by which a particle's support may miss a box that still needs the
+  /* Returns the distance (unit L) by which a particle's support may miss a box that still needs the
    * particle; see mcor_options.globals. */
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);

@@ -77,7 +77,8 @@ vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
   return line;
 }
 
-/// Makes the points of a line, or of a slice, which spans the bounds of all particles.
+/// Makes the points of --line or --slice. A slice spans the bounds of the particles, walls included; finite sides of
+/// --box take their place.
 vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
   if (job.Slice.Axis < 0)

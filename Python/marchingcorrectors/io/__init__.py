@@ -23,13 +23,13 @@ __all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read", "read_ste
 
 def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, int, Sequence[Union[str, int]]] = None,
          walls: Sequence[PathName] = (), step: int = 0) -> Particles:
-    """Particles of one time.
+    """Returns the particles of one time.
 
     path: a file, or a list of files of bodies (VTK's, tables) that are one set.
-    types: of GADGET-like files, names as "gas", "dark_matter", "stars", or numbers; by default gas.
-    walls: those of the listed files that hold walls; by default names tell (Wall, Boundary, ...).
-    step: which of those that a file holds (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part, lists); -1 is the last one. Times are in
-        the result's times.
+    types: for GADGET-like files: names, such as "gas", "dark_matter", "stars", or numbers; by default gas.
+    walls: the listed files that hold walls; by default their names tell (Wall, Boundary, ...).
+    step: the number of a step in a file of several (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part, lists); -1 is the last one. The
+        result's `times` are the times of all steps.
 
     Raises FileError. No code that a file may hold is run.
     """

@@ -110,8 +110,8 @@ class BinaryFile:
             begin += size + 8
 
     def read_arrays(self, blocks, with_masses):
-        """Yields (label, RawArray) of each array whose size fits. If a size does not fit, MASS and arrays of all types are an error, and other
-        arrays are skipped."""
+        """Yields (label, RawArray) of each array whose size fits. Raises FileError if the size of MASS, or of an array that all types have, does
+        not fit. Skips other arrays."""
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), sum(self.counts)), "MASS": with_masses}
         for label, (begin, size) in blocks:
             count, columns = counts.get(label, self.counts[0]), 3 if label in VECTORS else 1
@@ -136,7 +136,7 @@ class BinaryFile:
         return self.arrays[label].rows(begin, self.counts[kind]).load()
 
     def labels_of(self, kind):
-        """Returns the arrays that particles of a type have."""
+        """Returns the labels of the arrays that particles of type `kind` have."""
         return [label for label in self.arrays if label == "MASS" or self.holds(label, kind)]
 
 

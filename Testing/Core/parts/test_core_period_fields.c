@@ -29,7 +29,8 @@ static void check_equal(const double* values, const double* expected, int count,
   }
 }
 
-/* Compares the field at points with the field at their places in the period, with all images as particles. */
+/* Compares the field at points with the field of the particles and all their images without a period, and with the
+ * field at the same points moved by whole periods. */
 static void check_points(
   mcor_context* context, const particle_set* set, mcor_options* options, uint64_t version)
 {

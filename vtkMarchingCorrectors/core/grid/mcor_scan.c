@@ -122,7 +122,7 @@ mcor_status mcor_sort(
   return MCOR_OK;
 }
 
-/* Flags the first key of each run of equal keys, which are sorted, and numbers the runs. */
+/* Flags the first key of each run of equal keys, and numbers the runs. `keys` are sorted. */
 static mcor_status mcor_number_runs(
   mcor_context* context, const mcor_buffer* keys, int count, int* distinct_count)
 {

@@ -19,8 +19,8 @@ typedef struct mcor_spread_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_spread_job;
 
-/* Measures an axis only until the fluid is not flat along it: its exact extent does not matter
- * then. */
+/* Measures each axis only until two values along it differ: the fluid is then not flat along this
+ * axis, and its exact extent does not matter. */
 static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;

@@ -44,8 +44,8 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
     return 0.0;
   }
   const bool is_plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
-  /* Sums h^3 (in a plane h^2) over the fluid in the box. h: the smoothing length or support radius
-   * of the input, halved once for each level of its cubes. */
+  /* Sums h^3 (in a plane h^2) over the fluid in the box. h: a particle's smoothing length or
+   * support radius, halved once for each level of the particle's cubes. */
   const bool has_box = mcor_has_box(options) != 0;
   const mcor_array positions = mcor_positions_of(input);
   const bool one_for_all =

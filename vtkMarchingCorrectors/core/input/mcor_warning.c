@@ -312,8 +312,9 @@ static mcor_message mcor_warn_precision(const mcor_suspicion* s)
 /* Bounds the rounding error of the field in single precision, as a share of the scalar's range. */
 #define MCOR_ROUNDED 1e-5
 
-/* Counts the vertices that the correction could not bring to the iso value (a preview does not
- * try). Rounding alone is worth a warning only if a tolerance asks for more. */
+/* Warns of vertices that the correction could not bring to the iso value (a preview does not try).
+ * If all their errors may be rounding, warns only if the tolerance is at most 5 % of
+ * MCOR_ROUNDED. */
 static mcor_message mcor_warn_tolerance(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;

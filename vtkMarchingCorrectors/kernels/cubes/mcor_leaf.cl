@@ -196,9 +196,9 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* One work-item = one leaf. Writes to its slot which of its cells are plain, and the leaf's number.
- * If the leaf is mixed, reads its nodes' masks, and writes all its cells if any cell is valid at
- * all nodes and has nodes on both sides, else no cells. */
+/* One work-item = one leaf. Writes to its slot which of its cells are plain (no finer brick touches
+ * them), and the leaf's number. If the leaf is mixed, reads its nodes' masks, and writes all its
+ * cells if any cell is valid at all nodes and has nodes on both sides, else no cells. */
 __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global ulong* cells,
   __global ulong* plain, __global int* leaf_of)
 {

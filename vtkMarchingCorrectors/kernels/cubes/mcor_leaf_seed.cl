@@ -63,8 +63,9 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* Returns the sides of the nodes of brick m that also belong to another leaf: the one that is d
- * (bits x, y, z) down from the brick. With d = 0, returns the sides of all nodes of the brick. */
+/* Returns on which sides of the iso value nodes of brick m lie: with d = 0 all its nodes, else the
+ * nodes that it shares with the leaf that is d (bits x, y, z) down from it. If the brick is no
+ * leaf, returns MCOR_EXAMINE. */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))

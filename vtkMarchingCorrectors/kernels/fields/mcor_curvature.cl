@@ -113,8 +113,8 @@ void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
   *gauss = most > 0 && !plane ? *gauss : (realv)0;
 }
 
-/* One work-item = one group of points. Writes two curvatures of each point, per cube. iso: relative
- * to A0 for the Shepard mean. */
+/* One work-item = one group of points. Writes the mean and the Gaussian curvature at each point;
+ * the unit of length is a cube. iso: relative to A0 for the Shepard mean. */
 __kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* offset,
   const real iso, const int plane, __global real* curvature)
 {

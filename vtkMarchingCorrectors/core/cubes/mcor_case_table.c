@@ -139,22 +139,26 @@ static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
 /* Gives corners the same number in `region` if the cell's surface connects them on their side. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
 {
+  int pairs[24][2], count = 0;
+  for (int i = 0; i < 24; ++i)
+  {
+    const int face = i / 4, ambiguous = mcor_face_ambiguous(cube_case, face);
+    const int a = mcor_face_corner(face, i), b = mcor_face_corner(face, i + 1 + ambiguous);
+    const int above = mcor_corner_above(cube_case, a);
+    if (ambiguous ? above == (joined >> face & 1) : above == mcor_corner_above(cube_case, b))
+    {
+      pairs[count][0] = a;
+      pairs[count++][1] = b;
+    }
+  }
   for (int c = 0; c < 8; ++c)
   {
     region[c] = c;
   }
-  for (int round = 0; round < 8; ++round)
+  for (int i = 0; i < 8 * count; ++i)
   {
-    for (int i = 0; i < 24; ++i)
-    {
-      const int face = i / 4, ambiguous = mcor_face_ambiguous(cube_case, face);
-      const int a = mcor_face_corner(face, i), b = mcor_face_corner(face, i + 1 + ambiguous);
-      const int above = mcor_corner_above(cube_case, a);
-      if (ambiguous ? above == (joined >> face & 1) : above == mcor_corner_above(cube_case, b))
-      {
-        region[a] = region[b] = region[a] < region[b] ? region[a] : region[b];
-      }
-    }
+    int *a = &region[pairs[i % count][0]], *b = &region[pairs[i % count][1]];
+    *a = *b = *a < *b ? *a : *b;
   }
 }
 

@@ -294,6 +294,9 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift);
 
+/* mcor_box.c. Whether there are bounds: all zeros, -0 too, mean none. */
+bool mcor_has_sides(const double sides[6]);
+
 /* mcor_extract.c. Whether a surface's programs read solids, even if this part has none. */
 bool mcor_has_solids(const mcor_input* input, const mcor_options* options);
 /* Returns the programs that a surface needs, for the plane that was found. */

@@ -55,7 +55,6 @@ static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
     ALL = 0,
     KEEPS = 1
   };
-  const double none[6] = { 0 };
   bool same = !a->ranks == !b->ranks;
 #define OPTION(member, usual, legal, words, scope, property)                                       \
   same = same && ((scope) == KEEPS || a->member == b->member);
@@ -63,7 +62,7 @@ static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 #include "mcor_options.def"
   /* With a box or a period, seeds and nearest particles decide which particles and images around it
    * are needed. */
-  const bool part = mcor_has_box(a) || !mcor_same_bounds(a->periodic, none);
+  const bool part = mcor_has_box(a) || mcor_has_sides(a->periodic);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
 }

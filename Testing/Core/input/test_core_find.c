@@ -221,6 +221,10 @@ static void test_fluid(void** state)
   request.only_count = 3;
   find(&request, arrays, 4, &found);
   assert_true(found.fluid_count == 3 && found.input.solid[1] == MCOR_ABSENT);
+  request.within[0] = -0.0; /* is no bound */
+  find(&request, arrays, 4, &found);
+  assert_int_equal(found.fluid_count, 3);
+  request.within[0] = 0;
   request.within[1] = 0.5;
   request.within[4] = -1;
   request.within[5] = 1;

@@ -123,17 +123,14 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   const double* periodic = context->run.options->periodic;
   const int w = mcor_plane_axis(&context->plane, 2);
   const double support = mcor_support_factor(context->run.options->sph_kernel);
-  bool is_bounded = false, is_given = false;
+  bool is_bounded = false;
+  const bool is_given = mcor_has_sides(job->view->box);
   int slices;
   MCOR_TRY(mcor_parallel_run(
     context, job->input->count, MCOR_HEAVY_GRAIN, mcor_range_slice, job, &slices));
   mcor_findings found = mcor_merge_findings(job->slices, slices);
   const double *low = found.least, *high = found.most;
   MCOR_TRY(mcor_reduce_findings(context, &found));
-  for (int i = 0; i < 6; ++i)
-  {
-    is_given = is_given || job->view->box[i] != 0;
-  }
   for (int a = 0; a < 3; ++a)
   {
     const int axis = mcor_plane_axis(&context->plane, a);

@@ -194,19 +194,13 @@ void mcor_find_fluid(mcor_finder* f)
   }
 }
 
-static bool mcor_has_within(const mcor_request* request)
-{
-  static const double none[6];
-  return memcmp(request->within, none, sizeof none) != 0;
-}
-
 /* Marks particles that Within and Only leave out. */
 static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
 {
   const mcor_request* request = f->request;
   const mcor_only* only = request->only;
   const double* b = request->within;
-  const bool has_within = mcor_has_within(request);
+  const bool has_within = mcor_has_sides(request->within);
   const int64_t count = f->positions->tuples;
   const int ranges = count > 0 ? request->only_count : 0;
   int* of = mcor_find_memory(f, (size_t)ranges * sizeof *of); /* the array of each range */
@@ -245,7 +239,7 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
 static char* mcor_describe_choice(const mcor_finder* f)
 {
   const mcor_request* request = f->request;
-  const bool has = mcor_has_within(request);
+  const bool has = mcor_has_sides(request->within);
   double b[6];
   for (int side = 0; side < 6;
        ++side) /* a tiny side stands for 0, because six zeros would choose no box */
@@ -277,7 +271,7 @@ void mcor_mark_particles(mcor_finder* f)
   {
     fluid = found->which[MCOR_ROLE_FLUID] = mcor_find_given(f, "fluid", name, 1);
   }
-  const bool is_chosen = mcor_has_within(request) || request->only_count > 0;
+  const bool is_chosen = mcor_has_sides(request->within) || request->only_count > 0;
   if (fluid < 0 && (name || !is_chosen))
   {
     return;

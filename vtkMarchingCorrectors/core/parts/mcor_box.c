@@ -24,26 +24,25 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Whether there is a box: all zeros mean no box. */
-static bool mcor_is_box(const double sides[6])
+bool mcor_has_sides(const double sides[6])
 {
-  bool is_box = false;
+  bool has = false;
   for (int i = 0; i < 6; ++i)
   {
-    is_box = is_box || sides[i] != 0;
+    has = has || sides[i] != 0;
   }
-  return is_box;
+  return has;
 }
 
 int mcor_has_box(const mcor_options* options)
 {
-  return mcor_is_box(options->box);
+  return mcor_has_sides(options->box);
 }
 
 void mcor_move_period(mcor_options* options)
 {
   const double* box = options->ranks ? options->ranks->whole_box : options->box;
-  for (int a = 0; a < 3 && mcor_is_box(box); ++a)
+  for (int a = 0; a < 3 && mcor_has_sides(box); ++a)
   {
     double* period = options->periodic + 2 * a;
     const double length = period[1] - period[0], side = box[2 * a + 1] - box[2 * a];
@@ -166,7 +165,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
     /* Finds the cells that any rank owns; all cells, if the whole surface has no box. */
     const double* whole =
-      options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
+      options->ranks && mcor_has_sides(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
     double all[2] = { first, last };
     if (whole)
     {

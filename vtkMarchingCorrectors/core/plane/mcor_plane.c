@@ -53,14 +53,12 @@ static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t las
 
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6])
 {
-  bool has = false;
   double sides[6];
   for (int i = 0; i < 6; ++i)
   {
-    has = has || from[i] != 0;
     sides[i] = from[2 * mcor_plane_axis(plane, i / 2) + i % 2];
   }
-  if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
+  if (mcor_has_sides(from) && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
   {
     /* A flat box contains the plane in which it lies. */
     const bool inside = sides[4] <= plane->at && (plane->at < sides[5] || plane->at == sides[4]);

@@ -39,7 +39,9 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
         continue;
       }
       mcor_read_array(&input->positions, begin, count, a, x);
-      for (int i = 0; i < count; ++i)
+      const bool same =
+        !input->solid && mcor_is_all_within(x, count, spread.least[a], spread.most[a]);
+      for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (mcor_is_present(input, begin + i) && (finite || !solid))

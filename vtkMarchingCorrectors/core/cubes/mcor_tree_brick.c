@@ -5,7 +5,6 @@
 
 #include "mcor_tree.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 int mcor_tree_level_of(double h, double h_min, int top)

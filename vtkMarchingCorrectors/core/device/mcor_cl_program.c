@@ -6,9 +6,7 @@
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 void mcor_drop_programs(mcor_cl* cl, int programs)
 {

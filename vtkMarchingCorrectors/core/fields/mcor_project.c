@@ -9,7 +9,6 @@
 #include "mcor_probe.h"
 #include "mcor_widen.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 

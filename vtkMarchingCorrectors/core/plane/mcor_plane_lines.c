@@ -21,27 +21,9 @@ typedef struct mcor_line_ends
 /* The lines, found by their points. */
 typedef struct mcor_joining
 {
-  int64_t count, points; /* numbers of lines and points */
-  mcor_line_ends* at;    /* [points] */
+  int64_t count;
+  mcor_line_ends* at; /* [point_count] */
 } mcor_joining;
-
-/* Returns false if memory ran out. There are no lines at first. */
-static bool mcor_create_joining(int64_t points, mcor_joining* j)
-{
-  *j = (mcor_joining){ .points = points, .at = malloc((size_t)points * sizeof *j->at + 1) };
-  for (int64_t i = 0; i < points && j->at; ++i)
-  {
-    j->at[i] = (mcor_line_ends){ -1, -1, false };
-  }
-  return j->at != NULL;
-}
-
-static void mcor_join_line(mcor_joining* j, int32_t from, int32_t to)
-{
-  ++j->count;
-  j->at[from].next = to;
-  j->at[to].last = from;
-}
 
 /* Whether a triangle stands for a line: two of its corners are the same. Other triangles are
  * filled. */
@@ -55,14 +37,22 @@ static bool mcor_is_line(const int32_t* t)
 static mcor_status mcor_read_joining(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
 {
-  MCOR_TRY(mcor_allocated(context, mcor_create_joining(surface->point_count, j)));
+  *j = (mcor_joining){ .at = malloc((size_t)surface->point_count * sizeof *j->at + 1) };
+  MCOR_TRY(mcor_allocated(context, j->at));
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    j->at[i] = (mcor_line_ends){ -1, -1, false };
+  }
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
     if (t[0] != t[2] && mcor_is_line(t)) /* skips the second half of a quad that stands for a
                                           * line */
     {
-      mcor_join_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
+      const int32_t from = t[1] == t[2] ? t[0] : t[2], to = t[1];
+      ++j->count;
+      j->at[from].next = to;
+      j->at[to].last = from;
     }
   }
   return MCOR_OK;
@@ -73,6 +63,7 @@ static mcor_status mcor_read_joining(
 static bool mcor_join(mcor_joining* j, mcor_surface* surface)
 {
   const size_t lines = (size_t)j->count;
+  const int64_t points = surface->point_count;
   surface->line_points = malloc(2 * lines * sizeof *surface->line_points + 1);
   surface->line_offsets = malloc((lines + 1) * sizeof *surface->line_offsets);
   if (!surface->line_points || !surface->line_offsets)
@@ -80,9 +71,9 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
     return false;
   }
   surface->line_offsets[0] = 0;
-  for (int64_t n = 0; n < 2 * j->points; ++n)
+  for (int64_t n = 0; n < 2 * points; ++n)
   {
-    const int32_t first = (int32_t)(n % j->points), closed = n >= j->points;
+    const int32_t first = (int32_t)(n % points), closed = n >= points;
     const mcor_line_ends* ends = &j->at[first];
     if (ends->next < 0 || ends->done || (!closed && ends->last >= 0))
     {

@@ -68,10 +68,12 @@ typedef struct mcor_splitter
   int level, first[3], last[3];
 } mcor_splitter;
 
-/* Returns the bricks of a cluster that a particle reaches. */
+/* Returns which of the given bricks of a cluster a particle reaches. Most are farther away along one
+ * axis alone. */
 static uint64_t mcor_reached_bricks(
-  const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3])
+  const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3], uint64_t bricks)
 {
+  const double most = p->reach * p->reach;
   double square[3][MCOR_CLUSTER];
   for (int i = 0; i < 3 * MCOR_CLUSTER; ++i)
   {
@@ -80,14 +82,15 @@ static uint64_t mcor_reached_bricks(
     const double above = p->x[a] - (cluster[a] + layer + 1) * edge;
     const double d = below > 0 ? below : above > 0 ? above : 0;
     square[a][layer] = d * d;
+    bricks &= d * d <= most ? UINT64_MAX : ~(mcor_layers(a, 1) << (layer << 2 * a));
   }
-  uint64_t bricks = 0;
-  for (int i = 0; i < 64; ++i)
+  uint64_t reached = 0;
+  for (uint64_t rest = bricks, i = 0; rest; rest >>= 1, ++i)
   {
     const double distance = square[0][i & 3] + square[1][i >> 2 & 3] + square[2][i >> 4];
-    bricks |= (uint64_t)(distance <= p->reach * p->reach) << i;
+    reached |= (rest & (distance <= most)) << i;
   }
-  return bricks;
+  return reached;
 }
 
 /* Adds to the set the bricks that a particle reaches. *all: whether all bricks that the particle may
@@ -110,7 +113,7 @@ static bool mcor_split_reached(
         uint64_t bricks = mcor_bricks_between(p->first, p->last, c);
         bricks &= stored ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
         *all = *all && bricks == 0;
-        bricks &= bricks && !job->is_cube ? mcor_reached_bricks(job, p, c) : UINT64_MAX;
+        bricks = bricks && !job->is_cube ? mcor_reached_bricks(job, p, c, bricks) : bricks;
         made = bricks == 0 || mcor_split_cluster(tree, p->level, c, bricks, set);
       }
     }

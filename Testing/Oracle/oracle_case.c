@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 int oracle_begin_suite(oracle_suite* suite, int argc, char** argv)

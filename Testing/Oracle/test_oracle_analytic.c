@@ -9,7 +9,6 @@
 #include "particle_sets.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char* const field_names[3] = { "shepard", "sum", "weight" };

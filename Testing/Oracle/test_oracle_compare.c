@@ -9,7 +9,6 @@
 #include "particle_sets.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct fixture

@@ -9,7 +9,6 @@
 #include "particle_sets.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadratic", "M'4",

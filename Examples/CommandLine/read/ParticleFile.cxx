@@ -28,7 +28,6 @@
 #include <filesystem>
 #include <new>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include <fcntl.h>

@@ -9,7 +9,6 @@
 #include "vtkDataArrayRange.h"
 #include "vtkFieldData.h"
 #include "vtkStringArray.h"
-#include "vtkVariant.h"
 #include "vtkVersion.h"
 
 #include <algorithm>

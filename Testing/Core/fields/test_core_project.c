@@ -6,7 +6,6 @@
 #include "core_ranks.h"
 #include "mcor_plane.h"
 
-#include <float.h>
 
 #define ALLOWED 1e-6 /* relative to the most that a particle adds to a pixel */
 #define PROFILE 8192

@@ -295,10 +295,9 @@ class Flux(Meter):
 class Volumes(CommandLineTest):
     """Tests the level of a block of 10 x 10 x 10 particles around the origin, whose surface is half a spacing beyond the particles."""
 
-    def level(self, *options, arrays=(), points=None):
+    def level(self, *options, arrays=()):
         """Returns the level, in spacings above the uppermost particles, and what the program tells about volumes."""
-        given = points or self.points
-        files.write_vtp(self.input, given, {name: self.arrays[name][:len(given)] for name in arrays})
+        files.write_vtp(self.input, self.points, {name: self.arrays[name] for name in arrays})
         table = self.directory / "levels.csv"
         result = self.run_good(self.input, table, "--gauge", "up=0.02,0,-.1:0.02,0,1", *options, says=".*")
         row, = read_table(table)

@@ -28,9 +28,9 @@ def make_vortex(n):
     return particles_of(places, Velocity=velocity, h=numpy.full(n ** 3, 1.3 / n, numpy.float32))
 
 
-def derive(particles, name="Velocity"):
+def derive(particles):
     filter_ = vtkSPHDerivatives()
-    filter_.SetInputArrayToProcess(0, 0, 0, POINTS, name)
+    filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Velocity")
     return run(filter_, particles)[0]
 
 
@@ -230,13 +230,6 @@ class TestProbe(unittest.TestCase):
         places[::50] *= 4e5
         return places
 
-    def image(self, *extent, spacing, origin=(0, 0, 0)):
-        image = vtkImageData()
-        image.SetExtent(*extent)
-        image.SetOrigin(*origin)
-        image.SetSpacing(spacing, spacing, spacing)
-        return image
-
     def test_bits(self):
         """Bits are the same in any order, for points of any class, with device data kept or not, and for particles in blocks."""
         particles, places = cube(), self.places(5000)
@@ -244,7 +237,9 @@ class TestProbe(unittest.TestCase):
         back = self.probe(particles_of(places[::-1]), particles, KeepDeviceData=0)
         for name in ("Radius", "WeightSum"):
             self.assertEqual(values_of(back, name)[::-1].tobytes(), values_of(expected, name).tobytes())
-        image, grid = self.image(-5, 5, 2, 12, 0, 0, spacing=0.125), vtkRectilinearGrid()
+        image, grid = vtkImageData(), vtkRectilinearGrid()
+        image.SetExtent(-5, 5, 2, 12, 0, 0)
+        image.SetSpacing(0.125, 0.125, 0.125)
         grid.SetExtent(image.GetExtent())
         for axis, values in (("X", range(-5, 6)), ("Y", range(2, 13)), ("Z", [0])):
             getattr(grid, f"Set{axis}Coordinates")(add(vtkPolyData(), x=0.125 * numpy.array(values, float)).GetPointData().GetArray(0))

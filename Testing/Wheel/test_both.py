@@ -31,8 +31,8 @@ def codes_of(sentences):
     return [next((code for code in TEXTS if re.search(says(code), sentence)), sentence) for sentence in sentences]
 
 
-def lattice(*sides, step=0.1):
-    return np.stack(np.meshgrid(*map(np.arange, sides), indexing="ij"), -1).reshape(-1, 3) * step
+def lattice(*sides):
+    return np.stack(np.meshgrid(*map(np.arange, sides), indexing="ij"), -1).reshape(-1, 3) * 0.1
 
 
 def write(folder, name, arrays, fields=(), positions=None, sides=9, kind=np.float32):

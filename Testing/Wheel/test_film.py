@@ -48,14 +48,14 @@ class Films(unittest.TestCase):
     def at(self, name):
         return str(self.folder / name)
 
-    def write_steps(self, times=(0.0, 0.1, 0.2), name="step_{}.vtp", radius=8, **more):
+    def write_steps(self, times=(0.0, 0.1, 0.2), radius=8):
         paths = []
         for i, time in enumerate(times):
-            points, velocities = drop(time, radius, **more)
+            points, velocities = drop(time, radius)
             data = pyvista.PolyData(points)
             data["Velocity"], data["id"], data["Big"] = velocities, np.arange(len(points)), np.full(len(points), 2 ** 40)
             data.field_data["TimeValue"] = [time]
-            paths.append(self.at(name.format(i + 9)))  # step_10 comes after step_9
+            paths.append(self.at(f"step_{i + 9}.vtp"))  # step_10 comes after step_9
             data.save(paths[-1])
         return paths
 

@@ -21,7 +21,6 @@ ARRAYS = {"Radius": np.linalg.norm(X, axis=1), "Noise": np.sin(12.9898 * np.aran
           "Kind": (X[:, 0] > 0.2).astype(np.int32), "SmoothingLength": np.where(X[:, 0] < 0.1, 0.13, 0.27),
           "Mass": np.full(COUNT, 1.0), "Density": 1000 + 50 * X[:, 1], "Space": np.full(COUNT, 0.0008)}
 ARRAYS["Blob"] = 1e-6 + 0.0016 * np.abs(ARRAYS["Noise"])
-SIZES = ("SmoothingLength", "Mass", "Density")
 LINES, SECTIONS = {"a": ((-1, 0.01, 0), (1, 0.01, 0))}, {"a": ("disc", (0.17, 0, 0), (1, 0, 0), 0.6)}
 POINTS = np.stack([0.04 * np.arange(20) - 0.3, 0.02 + 0 * np.arange(20), 0.03 + 0 * np.arange(20)], axis=1)
 # These are the positional arguments of each function, with names in place of arrays.

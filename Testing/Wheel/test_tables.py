@@ -22,9 +22,9 @@ from test_files import Case, quietly, says
 WORDS = ("O", "H2", "Ar")
 
 
-def random_rows(random, columns, least=1):
+def random_rows(random, columns):
     """Returns a table of random numbers as programs write them."""
-    count = random.integers(least, 60)
+    count = random.integers(1, 60)
     form = random.choice(["%.17g", "%.6e", "%12.5f"])
     values = random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))
     return [[form % value for value in row] for row in values]

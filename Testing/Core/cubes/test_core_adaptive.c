@@ -7,10 +7,9 @@
 
 #include "core_fixture.h"
 
-static mcor_options adaptive_options(const double* iso, mcor_field field)
+static mcor_options adaptive_options(const double* iso)
 {
   mcor_options options = core_options(iso);
-  options.field = field;
   options.level_limit = MCOR_CUBE_LEVELS - 1;
   return options;
 }
@@ -20,7 +19,7 @@ static void one_level_is_uniform(void** state)
   static const double iso = 0;
   CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
   const mcor_input input = core_input(&set);
-  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso);
   CORE_SURFACE adaptive = core_extract(*state, &input, &options);
   options.level_limit = 0;
   CORE_SURFACE uniform = core_extract(*state, &input, &options);
@@ -39,7 +38,7 @@ static void few_nodes_are_evaluated(void** state)
     set.scalar[i] = set.position[3 * i + 2] > 0.3 ? 1 : -1;
   }
   const mcor_input input = core_input(&set);
-  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso);
   CORE_SURFACE surface = core_extract(context, &input, &options);
   const int64_t nodes = surface.statistics.nodes_evaluated;
   assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* a leaf has 64 nodes */

@@ -81,13 +81,13 @@ static int on_progress(void* user, double fraction, const char* phase)
 
 /* Extracts in a new context, which then must have exactly the programs that would have been built ahead. Only the
  * program for trimming may be missing, because the surface may have no border. */
-static void check_programs(const mcor_input* input, const mcor_options* options, bool has_solids)
+static void check_programs(const mcor_input* input, const mcor_options* options)
 {
   CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context("pocl", &context));
   CORE_SURFACE surface = core_extract(context, input, options);
   assert_true(surface.triangle_count > 20);
-  const int wanted = mcor_list_programs(context, input, options, has_solids);
+  const int wanted = mcor_list_programs(context, input, options, false);
   int built = 1 << MCOR_PROGRAM_TRIM;
   for (int p = 0; p < MCOR_PROGRAM_COUNT; ++p)
   {
@@ -107,18 +107,18 @@ static void test_programs_of_runs(void** state)
   setenv("MCOR_THREADS", "1", 1); /* nothing is built ahead, so only what is used is built */
   options.seeds = MCOR_PAIRS;
   options.level_limit = 0;
-  check_programs(&input, &options, false);
+  check_programs(&input, &options);
   options = plain;
   for (int a = 0; a < 6; ++a)
   {
     options.box[a] = a % 2 ? 4 : a == 4 ? 0 : -4;
   }
-  check_programs(&input, &options, false);
+  check_programs(&input, &options);
   set.smoothing_length[0] *= 2;
   const mcor_input adaptive = core_input(&set);
   options = plain;
   options.outputs |= MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_NEAREST_PARTICLE;
-  check_programs(&adaptive, &options, false);
+  check_programs(&adaptive, &options);
   unsetenv("MCOR_THREADS");
 }
 

@@ -67,11 +67,16 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   mcor_context* context = bunches->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  mcor_point* points = realloc(bunches->points, n * sizeof *points);
-  MCOR_TRY(mcor_allocated(context, points));
-  bunches->points = points;
-  mcor_use_large_pages(
-    points + bunches->point_count, (n - (size_t)bunches->point_count) * sizeof *points);
+  if (n > bunches->point_room)
+  {
+    /* Merged vertices, half of the vertices at most, find room without a copy. */
+    bunches->point_room = n + n / 2;
+    const size_t bytes = bunches->point_room * sizeof *bunches->points;
+    mcor_point* points = realloc(bunches->points, bytes);
+    MCOR_TRY(mcor_allocated(context, points));
+    bunches->points = points;
+    mcor_use_large_pages(points, bytes);
+  }
   mcor_reading from = { .bunches = bunches };
   const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &from.node },
     { &mesh->offset, 4 * n * real, &from.offset }, { &mesh->linear, n * real, &from.linear },

@@ -81,7 +81,8 @@ typedef struct mcor_bunches
   int32_t*
     before; /* [triangle_count][3]: from a corner to a corner of the triangle that comes before
                     * it in its bunch's list of triangles, or -1 */
-  mcor_point* points; /* [point_count]: the mesh's vertices */
+  mcor_point* points; /* [point_room], of which point_count are the mesh's vertices */
+  size_t point_room;
   int point_count;
   MCOR_LIST(mcor_start) starts;
 } mcor_bunches;

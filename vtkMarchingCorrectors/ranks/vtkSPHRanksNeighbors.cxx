@@ -52,7 +52,8 @@ using Point = std::pair<std::array<double, 3>, vtkIdType>;
 /**
  * Finds points within spheres. Points are sorted as a tree: the middle point of a range divides the
  * others along one axis, and both halves are divided along the next axis. Points far away do not
- * slow the tree down, but would slow down a locator with buckets of one size.
+ * slow the tree down, but would slow down a locator with buckets of one size. VTK's trees keep
+ * places in single precision, so they would miss neighbours far from the origin.
  */
 class PointTree
 {

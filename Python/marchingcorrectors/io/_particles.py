@@ -11,7 +11,7 @@ import numpy as np
 from .. import _structs as c
 from .._find import Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
-from .._options import BOUNDS, did_you_mean, words_of
+from .._options import BOUNDS, did_you_mean
 
 # A solver's name for its kernel, with only its letters and digits, begins with one of these keys; the first that fits counts. PySPH calls
 # Wendland C2 WendlandQuintic.

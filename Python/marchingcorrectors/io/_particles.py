@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .. import _structs as c
+from .._arrays import QUANTITIES
 from .._find import Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean
@@ -211,7 +212,7 @@ def usual(names, quantity):
 
 
 def usual_quantities(names):
-    return {quantity: usual(names, quantity) for quantity in ("smoothing_length", "volume", "mass", "density")}
+    return {quantity: usual(names, quantity) for quantity in QUANTITIES}
 
 
 def add_velocity(read, names):

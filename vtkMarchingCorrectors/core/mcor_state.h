@@ -148,7 +148,7 @@ typedef struct mcor_mesh
 } mcor_mesh;
 
 /* A set of bricks of one level of adaptive cubes. clusters: for each cluster of 4^3 bricks, aligned
- * to multiples of 4, by its number (mcor_cluster_key), a mask: bit x + 4 y + 16 z is a brick. */
+ * to multiples of 4, by its first brick's key, a mask: bit x + 4 y + 16 z is a brick. */
 typedef struct mcor_brick_set
 {
   mcor_table clusters;

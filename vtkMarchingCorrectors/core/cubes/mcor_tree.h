@@ -17,27 +17,23 @@
 
 /* mcor_tree_brick.c. Returns the number of bits that are set. */
 int mcor_bit_count(uint64_t bits);
-/* Add bricks of a cluster to a set. They return false if memory ran out, or, before the sets take
- * much memory, if the leaves would become too many. */
+/* Adds bricks of a cluster, which has the key of its first brick, to a set. Returns false if memory
+ * ran out, or, before the sets take much memory, if the leaves would become too many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
-bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3]);
 /* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
 
 /* Number of bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
-/* Return the key of a brick's cluster among the clusters of its level, and the brick's bit in the
- * cluster. */
-static inline uint64_t mcor_cluster_key(const mcor_rung* rung, const int brick[3])
+/* Return, from a brick's key, the key of its cluster, and the brick's bit there. */
+static inline uint64_t mcor_cluster_of(uint64_t key)
 {
-  const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
-  return ((uint64_t)(brick[2] / MCOR_CLUSTER) * ny + (uint64_t)(brick[1] / MCOR_CLUSTER)) * nx +
-    (uint64_t)(brick[0] / MCOR_CLUSTER);
+  return key & ~UINT64_C(0xdb); /* x, y and z have three bits each */
 }
-static inline int mcor_cluster_bit(const int brick[3])
+static inline int mcor_cluster_bit(uint64_t key)
 {
-  return (brick[0] & 3) | (brick[1] & 3) << 2 | (brick[2] & 3) << 4;
+  return (int)((key & 3) | (key >> 3 & 3) << 2 | (key >> 6 & 3) << 4);
 }
 
 /* Returns the mask of the first `count` of a cluster's four layers across an axis. */
@@ -64,15 +60,6 @@ static inline uint64_t mcor_bricks_between(
   return bricks;
 }
 
-/* Finds the first brick of the cluster with a key. */
-static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, int brick[3])
-{
-  const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
-  brick[0] = MCOR_CLUSTER * (int)(key % nx);
-  brick[1] = MCOR_CLUSTER * (int)(key / nx % ny);
-  brick[2] = MCOR_CLUSTER * (int)(key / nx / ny);
-}
-
 /* Returns the level of a particle: the largest level L up to `top` with 2^L h_min <= h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
@@ -92,8 +79,11 @@ static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 /* Whether all bricks of a cluster are on the lattice, or in its first period. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
-/* Fails, because the leaves are too many, or memory for them ran out. */
-mcor_status mcor_fail_leaves(mcor_context* context);
+/* Adds a brick, or its image in the first period, to a set as mcor_set_add does; a brick off the
+ * lattice is left out. */
+bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set);
+/* Fails unless all leaves fit: they may be too many, or memory for them ran out. */
+mcor_status mcor_leaves_fit(mcor_context* context, bool fit);
 
 /* mcor_tree_split.c. Finds all bricks that the particles of all ranks split. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);

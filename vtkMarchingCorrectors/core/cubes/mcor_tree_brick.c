@@ -80,10 +80,11 @@ bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
   return within;
 }
 
-mcor_status mcor_fail_leaves(mcor_context* context)
+mcor_status mcor_leaves_fit(mcor_context* context, bool fit)
 {
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEAVES_TOO_MANY), context->lattice.cube,
-    MCOR_LEAF_LIMIT);
+  MCOR_FAIL_IF(!fit, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(LEAVES_TOO_MANY),
+    context->lattice.cube, MCOR_LEAF_LIMIT);
+  return MCOR_OK;
 }
 
 /* ---- Sets of bricks ---- */
@@ -113,9 +114,15 @@ bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
   return cluster != NULL;
 }
 
-bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3])
+bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set)
 {
-  return mcor_set_add(set, mcor_cluster_key(rung, brick), UINT64_C(1) << mcor_cluster_bit(brick));
+  int placed[3];
+  if (!mcor_place_brick(tree, level, brick, placed))
+  {
+    return true;
+  }
+  const uint64_t key = mcor_brick_key(&tree->lattice->rungs[level], placed);
+  return mcor_set_add(set, mcor_cluster_of(key), UINT64_C(1) << mcor_cluster_bit(key));
 }
 
 bool mcor_are_too_many(const mcor_brick_set* levels)
@@ -144,18 +151,14 @@ mcor_status mcor_list_splits(
   for (int l = 0; l <= tree->top + 1; ++l)
   {
     const mcor_table* clusters = &tree->split[l].clusters;
-    const mcor_rung* rung = &tree->lattice->rungs[l];
     for (size_t i = 0; i < clusters->capacity; ++i)
     {
-      int first[3];
-      mcor_first_of_cluster(rung, clusters->entries[i].key, first);
+      const uint64_t first = clusters->entries[i].key;
       for (uint64_t rest = clusters->entries[i].value, bit = 0; rest; rest >>= 1, ++bit)
       {
-        const int b[3] = { first[0] + (int)(bit & 3), first[1] + (int)(bit >> 2 & 3),
-          first[2] + (int)(bit >> 4) };
         if (rest & 1)
         {
-          (*keys)[(*count)++] = mcor_brick_key(rung, b);
+          (*keys)[(*count)++] = first + (bit & 3) + 8 * (bit >> 2 & 3) + 64 * (bit >> 4);
         }
       }
     }
@@ -188,13 +191,9 @@ mcor_status mcor_take_splits(
     }
     MCOR_FAIL_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context, MCOR_INVALID_ARGUMENT,
       MCOR_SAY(GLOBALS_OF_OTHER_OPTIONS));
-    const mcor_rung* rung = &tree->lattice->rungs[level];
-    int b[3];
-    mcor_brick_of_key(rung, keys[i], b);
-    if (!mcor_set_add_brick(&tree->split[level], rung, b))
-    {
-      MCOR_TRY(mcor_fail_leaves(context));
-    }
+    MCOR_TRY(mcor_leaves_fit(context,
+      mcor_set_add(
+        &tree->split[level], mcor_cluster_of(keys[i]), UINT64_C(1) << mcor_cluster_bit(keys[i]))));
     if (i % MCOR_TREE_STEP == 0)
     {
       MCOR_TRY(mcor_report_launch(context));

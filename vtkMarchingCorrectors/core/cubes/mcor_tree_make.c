@@ -44,10 +44,7 @@ static mcor_status mcor_add_block(
   if (exists)
   {
     uint64_t* value = mcor_table_add(blocks, mcor_brick_key(rung, brick) / MCOR_BLOCK_BRICKS);
-    if (!(value && blocks->count <= MCOR_TREE_BLOCK_LIMIT))
-    {
-      MCOR_TRY(mcor_fail_leaves(context));
-    }
+    MCOR_TRY(mcor_leaves_fit(context, value && blocks->count <= MCOR_TREE_BLOCK_LIMIT));
     *value = 1;
   }
   return MCOR_OK;
@@ -64,8 +61,16 @@ static mcor_status mcor_add_parts(
   {
     const mcor_entry cluster = set->clusters.entries[i];
     int first[3];
-    mcor_first_of_cluster(&tree->lattice->rungs[level + 1], cluster.key, first);
-    for (int image = cluster.value != 0 ? 0 : 27; image < 27; ++image)
+    if (i % MCOR_TREE_STEP == 0)
+    {
+      MCOR_TRY(mcor_report_launch(context));
+    }
+    if (cluster.value == 0)
+    {
+      continue;
+    }
+    mcor_brick_of_key(&tree->lattice->rungs[level + 1], cluster.key, first);
+    for (int image = 0; image < 27; ++image)
     {
       const int by[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
       bool exists = true;
@@ -89,10 +94,6 @@ static mcor_status mcor_add_parts(
         }
       }
     }
-    if (i % MCOR_TREE_STEP == 0)
-    {
-      MCOR_TRY(mcor_report_launch(context));
-    }
   }
   return MCOR_OK;
 }
@@ -104,7 +105,7 @@ static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const in
   const mcor_rung* rung = &tree->lattice->rungs[level];
   if (level == 0 || mcor_has_cluster(tree, level, first))
   {
-    return level == 0 ? 0 : mcor_table_find(clusters, mcor_cluster_key(rung, first));
+    return level == 0 ? 0 : mcor_table_find(clusters, mcor_brick_key(rung, first));
   }
   uint64_t split = 0;
   for (int i = 0; i < 64; ++i)
@@ -113,8 +114,8 @@ static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const in
     int b[3];
     if (mcor_place_brick(tree, level, brick, b))
     {
-      const uint64_t bricks = mcor_table_find(clusters, mcor_cluster_key(rung, b));
-      split |= (bricks >> mcor_cluster_bit(b) & 1) << i;
+      const uint64_t key = mcor_brick_key(rung, b);
+      split |= (mcor_table_find(clusters, mcor_cluster_of(key)) >> mcor_cluster_bit(key) & 1) << i;
     }
   }
   return split;
@@ -194,7 +195,7 @@ static mcor_status mcor_list_blocks(
   {
     tree->first_block[level + 1] = (int)n;
   }
-  return tree->leaf_count > MCOR_LEAF_LIMIT ? mcor_fail_leaves(context) : MCOR_OK;
+  return mcor_leaves_fit(context, tree->leaf_count <= MCOR_LEAF_LIMIT);
 }
 
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)

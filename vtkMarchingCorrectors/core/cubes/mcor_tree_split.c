@@ -21,31 +21,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* ---- Clusters ---- */
-
-/* Adds bricks of a cluster to a set. first: the cluster's first brick, a multiple of 4, which may
- * be off the lattice. Returns false if memory ran out, or the bricks are too many. */
-static bool mcor_split_cluster(
-  const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
-{
-  const mcor_rung* rung = &tree->lattice->rungs[level];
-  if (mcor_has_cluster(tree, level, first))
-  {
-    return mcor_set_add(set, mcor_cluster_key(rung, first), bricks);
-  }
-  bool made = true;
-  for (int bit = 0; bit < 64 && made; ++bit)
-  {
-    const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
-    int b[3];
-    if ((bricks >> bit & 1) && mcor_place_brick(tree, level, brick, b))
-    {
-      made = mcor_set_add_brick(set, rung, b);
-    }
-  }
-  return made;
-}
-
 /* ---- Bricks that particles split ---- */
 
 typedef struct mcor_tree_job
@@ -108,13 +83,18 @@ static bool mcor_split_reached(
     {
       for (c[0] = p->first[0] & ~3; c[0] <= p->last[0] && made; c[0] += MCOR_CLUSTER)
       {
-        const bool stored = mcor_has_cluster(tree, p->level, c);
-        const uint64_t key = mcor_cluster_key(&tree->lattice->rungs[p->level], c);
+        const bool whole = mcor_has_cluster(tree, p->level, c);
+        const uint64_t key = whole ? mcor_brick_key(&tree->lattice->rungs[p->level], c) : 0;
         uint64_t bricks = mcor_bricks_between(p->first, p->last, c);
-        bricks &= stored ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
+        bricks &= whole ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
         *all = *all && bricks == 0;
         bricks = bricks && !job->is_cube ? mcor_reached_bricks(job, p, c, bricks) : bricks;
-        made = bricks == 0 || mcor_split_cluster(tree, p->level, c, bricks, set);
+        made = whole ? mcor_set_add(set, key, bricks) : true;
+        for (int bit = 0; bit < 64 && made && !whole; ++bit)
+        {
+          const int brick[3] = { c[0] + (bit & 3), c[1] + (bit >> 2 & 3), c[2] + (bit >> 4) };
+          made = !(bricks >> bit & 1) || mcor_set_add_brick(tree, p->level, brick, set);
+        }
       }
     }
   }
@@ -224,9 +204,8 @@ static mcor_status mcor_split_by_particles(
         const mcor_entry* entry = &clusters->entries[i];
         made = mcor_set_add(&tree->split[l], entry->key, entry->value);
       }
-      MCOR_THEN(status,
-        made && !mcor_are_too_many(tree->split) ? mcor_report_launch(context)
-                                                : mcor_fail_leaves(context));
+      MCOR_THEN(status, mcor_leaves_fit(context, made && !mcor_are_too_many(tree->split)));
+      MCOR_THEN(status, mcor_report_launch(context));
       mcor_table_free(clusters);
     }
   }
@@ -243,16 +222,24 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
   for (int level = 1; level <= tree->top; ++level)
   {
     const mcor_table* clusters = &tree->split[level].clusters;
-    const mcor_rung* rungs = &tree->lattice->rungs[level];
     for (size_t i = 0; i < clusters->capacity; ++i)
     {
+      const mcor_entry cluster = clusters->entries[i];
       int first[3];
-      mcor_first_of_cluster(rungs, clusters->entries[i].key, first);
+      if (i % MCOR_TREE_STEP == 0)
+      {
+        MCOR_TRY(mcor_report_launch(context));
+      }
+      if (cluster.value == 0)
+      {
+        continue;
+      }
+      mcor_brick_of_key(&tree->lattice->rungs[level], cluster.key, first);
       for (int bit = 0; bit < 64 << context->space.axes; ++bit)
       {
         const int b = bit & 63, d = bit >> 6; /* d: bits x, y, z: beyond a side */
-        int above[3], placed[3];
-        if (!(clusters->entries[i].value >> b & 1))
+        int above[3];
+        if (!(cluster.value >> b & 1))
         {
           continue;
         }
@@ -261,21 +248,11 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
           const int at = first[a] + (b >> 2 * a & 3);
           above[a] = at / 2 + (d >> a & 1) * (at & 1 ? 1 : -1);
         }
-        if (mcor_place_brick(tree, level + 1, above, placed) &&
-          !mcor_set_add_brick(&tree->split[level + 1], rungs + 1, placed))
-        {
-          MCOR_TRY(mcor_fail_leaves(context));
-        }
-      }
-      if (i % MCOR_TREE_STEP == 0)
-      {
-        MCOR_TRY(mcor_report_launch(context));
+        MCOR_TRY(mcor_leaves_fit(
+          context, mcor_set_add_brick(tree, level + 1, above, &tree->split[level + 1])));
       }
     }
-    if (mcor_are_too_many(tree->split))
-    {
-      MCOR_TRY(mcor_fail_leaves(context));
-    }
+    MCOR_TRY(mcor_leaves_fit(context, !mcor_are_too_many(tree->split)));
   }
   return MCOR_OK;
 }

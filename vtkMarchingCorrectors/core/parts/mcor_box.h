@@ -103,7 +103,10 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
 
 /* Output: makes room for the keys and flags of `more` triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
-mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
+/* Sets the key of a triangle of the surface, an iso value's number and a cell or square, and whether
+ * this call owns it. */
+void mcor_keep_cell(
+  mcor_context* context, mcor_surface* surface, int64_t triangle, int number, uint64_t cell);
 mcor_status mcor_crop_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 

@@ -6,7 +6,7 @@
 /* Filling, in two dimensions: makes triangles of the region above the lowest iso value, divided by
  * the lines of the other iso values. See mcor_fill_lines.c. */
 
-#include "mcor_cap_job.h"
+#include "mcor_cap.h"
 
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line

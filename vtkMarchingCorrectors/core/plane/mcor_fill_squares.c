@@ -94,8 +94,7 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
 
 /* ---- Polygons ---- */
 
-static mcor_status mcor_add_fill_fan(
-  void* data, const mcor_cap_corner* corners, int count, bool is_cut)
+static mcor_status mcor_add_fill_fan(void* data, const mcor_cap_corner* corners, int count)
 {
   mcor_fill_job* job = data;
   for (int i = 1; i + 1 < count; ++i)
@@ -104,7 +103,6 @@ static mcor_status mcor_add_fill_fan(
       (mcor_fill_triangle){
         { corners[0].vertex, corners[i].vertex, corners[i + 1].vertex }, job->band, job->square });
   }
-  (void)is_cut;
   return MCOR_OK;
 }
 
@@ -124,26 +122,16 @@ static mcor_status mcor_cut_fill_side(
     cut->vertex = -1 - number;
     return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
   }
-  mcor_cap_job* cap = &fill->cap;
-  const int32_t next = (int32_t)cap->vertices.count;
-  const int32_t index = mcor_table_number(&cap->cuts, mcor_edge_part(p, p->part), next);
-  MCOR_TRY(mcor_allocated(job->context, index >= 0));
-  cut->vertex = (int32_t)fill->nodes.node_count + index;
-  if (index == next)
-  {
-    const bool inside = from->margin > 0;
-    mcor_cap_line line;
-    mcor_begin_cap_line(inside ? from : to, inside ? to : from, &line, cut->at);
-    line.vertex = next;
-    mcor_cap_vertex vertex = { .band = p->band,
-      .number = cut->vertex,
-      .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
-        (uint64_t)p->axis << 32 | (uint32_t)p->part },
-      .flag = 2 };
-    mcor_put_cap_vertex(&vertex, cut->at);
-    MCOR_APPEND(job->context, &cap->lines, line);
-    MCOR_APPEND(job->context, &cap->vertices, vertex);
-  }
+  const bool inside = from->margin > 0;
+  const int32_t nodes = (int32_t)fill->nodes.node_count;
+  const mcor_cap_vertex vertex = { .band = p->band,
+    .number = nodes + (int32_t)fill->cap.vertices.count,
+    .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
+      (uint64_t)p->axis << 32 | (uint32_t)p->part },
+    .flag = 2 };
+  MCOR_TRY(mcor_find_cap_cut(
+    &fill->cap, mcor_edge_part(p, p->part), inside ? from : to, inside ? to : from, vertex, cut));
+  cut->vertex += nodes;
   return MCOR_OK;
 }
 
@@ -336,16 +324,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
       surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : fill->number[ref];
     }
     surface->band_value[t] = fill->lines[from->band - 1].value;
-    if (context->box.kept)
-    {
-      context->box.kept[first + t] = 1;
-    }
-    if (surface->triangle_keys)
-    {
-      uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (first + t);
-      key[0] = (uint64_t)context->run.options->iso_count;
-      key[1] = from->square;
-    }
+    mcor_keep_cell(context, surface, first + t, context->run.options->iso_count, from->square);
   }
   surface->triangle_count += count;
   return MCOR_OK;

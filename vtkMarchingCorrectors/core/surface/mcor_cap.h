@@ -72,29 +72,6 @@ static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
   return v >= context->mesh.cap_first;
 }
 
-/* ---- mcor_cap_square.c: the clipper ---- */
-
-/* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim
- * margin (above 0: it remains). */
-typedef struct mcor_cap_corner
-{
-  int32_t vertex;
-  double at[3], margin;
-} mcor_cap_corner;
-
-/* mcor_clip_side makes the corner where trimming cuts the side from corner p to q; mcor_add_clipped
- * adds a polygon, the rest of a cut polygon or a whole one. */
-typedef mcor_status (*mcor_clip_side)(
-  void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
-typedef mcor_status (*mcor_add_clipped)(
-  void* data, const mcor_cap_corner* corners, int count, bool is_cut);
-/* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
- * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The most
- * corners are a square's nodes and the vertices of the two lines beside a band. */
-#define MCOR_POLYGON_MOST 12
-mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
-  mcor_clip_side cut, mcor_add_clipped add, void* data);
-
 /* ---- mcor_cap_nodes.c: the nodes where caps may be ---- */
 
 /* Corners of a square; side k goes from corner k to the next one. */
@@ -111,10 +88,11 @@ static inline int mcor_corner_v(int k)
  * brick's nodes. */
 typedef struct mcor_cap_brick
 {
-  uint64_t key; /* must be the first member; orders bricks by the side's second axis, then by its
+  uint64_t key;  /* must be the first member; orders bricks by the side's second axis, then by its
                  * first */
-  cl_int at[3]; /* in bricks */
-  int32_t up[8]; /* numbers of this brick and of the bricks up from it, bits x, y, z; 0: none */
+  cl_int at[3];  /* in bricks */
+  int32_t up[4]; /* numbers of this brick and of the bricks up from it, bits: along the side's first
+                  * axis, along the second; 0: none */
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
@@ -159,9 +137,8 @@ static inline void mcor_cap_node(const mcor_cap_nodes* nodes, int64_t at, cl_int
 static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at, int k)
 {
   const int64_t u = (at & 3) + mcor_corner_u(k), v = (at >> 2 & 3) + mcor_corner_v(k);
-  const int up = (int)(u >> 2) << nodes->across[0] | (int)(v >> 2) << nodes->across[1];
-  return (int64_t)nodes->bricks.of[at / MCOR_SIDE_NODES].up[up] * MCOR_SIDE_NODES + (u & 3) +
-    MCOR_BRICK * (v & 3);
+  const int32_t brick = nodes->bricks.of[at / MCOR_SIDE_NODES].up[(u >> 2) | (v >> 2) << 1];
+  return (int64_t)brick * MCOR_SIDE_NODES + (u & 3) + MCOR_BRICK * (v & 3);
 }
 
 /* mcor_cap_points.c. Returns the coordinate, in nodes, of an axis' lower or upper side (with ranks:
@@ -190,5 +167,79 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
+
+/* ---- mcor_cap_make.c: the squares ---- */
+
+/* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim
+ * margin (above 0: it remains). */
+typedef struct mcor_cap_corner
+{
+  int32_t vertex;
+  double at[3], margin;
+} mcor_cap_corner;
+
+/* The line on which a cut moves, from one end (0) to the other (1). */
+typedef struct mcor_cap_line
+{
+  int32_t vertex; /* index among the caps' vertices */
+  double from[3], to[3];
+  double at; /* the cut's place */
+  /* A bracket of the root of the trim margin: its ends, the margins there, and which end moved last
+   * (-1: none). */
+  double end[2], margin[2];
+  int last;
+  int moves; /* how often the cut has moved */
+  bool done;
+} mcor_cap_line;
+
+typedef struct mcor_cap_triangle
+{
+  cl_int corner[3];
+} mcor_cap_triangle;
+
+/* What the host makes of caps, or of a filled region, before it goes to the mesh. */
+typedef struct mcor_cap_job
+{
+  mcor_context* context;
+  mcor_cap_points points;
+  /* The surface's vertices by their lattice edge (lower node and axis); for a pinched edge, its
+   * first vertex. */
+  mcor_table edges[3];
+  mcor_table nodes, cuts; /* indices of vertices */
+  MCOR_LIST(mcor_cap_vertex) vertices;
+  MCOR_LIST(mcor_cap_line) lines; /* cuts in a plane that must be placed exactly */
+  MCOR_LIST(mcor_cap_triangle) triangles;
+  /* The number of each triangle's square, see mcor_triangle_cell.c. */
+  MCOR_LIST(cl_ulong) cells;
+  int64_t owned_count;
+  /* The square that is being cut: its lowest node, its number, and how many vertices it has looked
+   * up. */
+  const mcor_cap_nodes* side;
+  cl_int lowest[3];
+  cl_ulong number;
+  uint64_t lookups;
+  /* Views of the surface's vertices, and of the edges of its cuts, ascending. */
+  void *node, *offset, *quantity, *cut_edges;
+  double threshold;
+} mcor_cap_job;
+
+/* mcor_clip_side makes the corner where trimming cuts the side from corner p to q; mcor_add_clipped
+ * adds a polygon. */
+typedef mcor_status (*mcor_clip_side)(
+  void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
+typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corners, int count);
+/* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
+ * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The most
+ * corners are a square's nodes and the vertices of the two lines beside a band. */
+#define MCOR_POLYGON_MOST 12
+mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
+  mcor_clip_side cut, mcor_add_clipped add, void* data);
+/* Finds the cut with this key, or makes the vertex, where a linear margin would be 0 between two
+ * corners; in a plane, it is to be placed exactly. cut->vertex: its index. */
+mcor_status mcor_find_cap_cut(mcor_cap_job* job, uint64_t key, const mcor_cap_corner* low,
+  const mcor_cap_corner* high, mcor_cap_vertex vertex, mcor_cap_corner* cut);
+/* Moves the cuts to where the trim margin is 0. */
+mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
+void mcor_free_cap_job(mcor_cap_job* job);
 
 #endif

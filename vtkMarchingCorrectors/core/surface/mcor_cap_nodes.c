@@ -207,13 +207,15 @@ static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes*
   }
   for (int32_t i = 1; i < count; ++i)
   {
-    for (int d = 0; d < 8; ++d)
+    const cl_int* at = of[i].at;
+    for (int d = 0; d < 4; ++d)
     {
-      const cl_int up[3] = { of[i].at[0] + (d & 1), of[i].at[1] + (d >> 1 & 1),
-        of[i].at[2] + (d >> 2) };
-      of[i].up[d] = d == 0 ? i : mcor_cap_brick_at(nodes, up);
+      cl_int up[3] = { at[0], at[1], at[2] };
+      up[nodes->across[0]] += d & 1;
+      up[nodes->across[1]] += d >> 1;
+      of[i].up[d] = mcor_cap_brick_at(nodes, up);
     }
-    cl_int inner[3] = { of[i].at[0], of[i].at[1], of[i].at[2] };
+    cl_int inner[3] = { at[0], at[1], at[2] };
     inner[nodes->axis] = nodes->inner / MCOR_BRICK;
     of[i].inner = mcor_cap_brick_at(nodes, inner);
   }
@@ -223,12 +225,8 @@ static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes*
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes)
 {
   const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
-  double low[3], high[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    low[a] = nodes->range[a][0];
-    high[a] = nodes->range[a][1];
-  }
+  const double low[3] = { -INFINITY, -INFINITY, -INFINITY },
+               high[3] = { INFINITY, INFINITY, INFINITY };
   mcor_table clusters = { 0 };
   mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters)
                                       : mcor_add_reached(context, nodes, &clusters);
@@ -256,17 +254,15 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
   {
     const int32_t number = mcor_cap_brick_at(nodes, (const cl_int*)bricks + 4 * slot);
     mcor_cap_brick* brick = &nodes->bricks.of[number];
-    if (number > 0)
+    if (number == 0)
     {
-      brick->used = ((const cl_ulong*)used)[slot];
-      brick->is_known = ((const cl_ulong*)known)[slot] != 0;
+      continue;
     }
-    if (number > 0 && brick->is_known)
-    {
-      brick->above = ((const cl_ulong*)above)[slot];
-      brick->valid = ((const cl_ulong*)valid)[slot];
-    }
-    if (number > 0 && resolved)
+    brick->used = ((const cl_ulong*)used)[slot];
+    brick->is_known = ((const cl_ulong*)known)[slot] != 0;
+    brick->above = brick->is_known ? ((const cl_ulong*)above)[slot] : brick->above;
+    brick->valid = brick->is_known ? ((const cl_ulong*)valid)[slot] : brick->valid;
+    if (resolved)
     {
       memcpy(
         brick->joined, (const cl_ulong*)joined + slot * MCOR_DECISION_MASKS, sizeof brick->joined);

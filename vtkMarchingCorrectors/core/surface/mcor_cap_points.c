@@ -116,10 +116,9 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
   const bool periodic = lattice->period[axis] > 0;
   const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
   const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
-  const int *lower_side = options->ranks ? box->whole_first : box->first,
-            *upper_side = options->ranks ? box->whole_last : box->last;
-  const int side = upper ? upper_side[axis] : lower_side[axis];
-  const int last = (int)(upper ? end : begin);
+  const int* sides = upper ? (options->ranks ? box->whole_last : box->last)
+                           : (options->ranks ? box->whole_first : box->first);
+  const int side = sides[axis], last = (int)(upper ? end : begin);
   if (options->capping == MCOR_CAP_BOX && side != last)
   {
     return side;
@@ -145,14 +144,14 @@ mcor_status mcor_append_cap_vertices(
   {
     return MCOR_OK;
   }
+  MCOR_FAIL_IF(count > MCOR_COUNT_LIMIT - mesh->vertex_count, context, MCOR_OUT_OF_CAPACITY,
+    MCOR_SAY(CAP_VERTICES));
   mcor_end_caps(context);
   cl_int* node = calloc(n, 4 * sizeof *node);
   void* offset = calloc(n, width);
   uint8_t* flag = malloc(n);
-  const bool has_keys = mcor_wants(context, MCOR_OUT_POINT_KEYS);
-  uint64_t* keys = has_keys ? malloc(n * sizeof vertices->key) : NULL;
-  context->mesh.cap_keys = keys;
-  mcor_status status = mcor_allocated(context, node && offset && flag && (keys || !has_keys));
+  uint64_t* keys = mesh->cap_keys = malloc(n * sizeof vertices->key);
+  mcor_status status = mcor_allocated(context, node && offset && flag && keys);
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
     memcpy(node + 4 * i, vertices[i].node, sizeof vertices[i].node);
@@ -161,11 +160,8 @@ mcor_status mcor_append_cap_vertices(
     {
       mcor_put_real(context, offset, (int64_t)(4 * i + a), vertices[i].offset[a]);
     }
-    if (keys)
-    {
-      keys[2 * i] = vertices[i].key[0] & ~MCOR_RING_CELL;
-      keys[2 * i + 1] = vertices[i].key[1];
-    }
+    keys[2 * i] = vertices[i].key[0] & ~MCOR_RING_CELL;
+    keys[2 * i + 1] = vertices[i].key[1];
   }
   const size_t place = 4 * sizeof *node;
   MCOR_THEN(status, mcor_extend_vertices(context, (int)old, (int)(old + n)));

@@ -23,20 +23,17 @@ typedef struct mcor_tally
   double count, sum, squares, correction_max, residual_max;
 } mcor_tally;
 
-#define MCOR_DOWNLOADS 12
-
 /* The vertices of one iso value while they are copied to the surface. */
 typedef struct mcor_download
 {
   mcor_context* context;
-  double iso, sum_rounding;
+  double sum_rounding;
   mcor_surface* surface; /* point_count: index of the first new point */
   /* Views of the mesh's buffers, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest, *curvature, *cuts; /* if the caller wants them */
+  void *triangles, *cells;                       /* cells: if mcor_follows_cells */
   uint8_t* owned;                                /* see mcor_find_counted */
-  mcor_mapping mappings[MCOR_DOWNLOADS];         /* of the views above */
-  int mapped;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 
@@ -46,51 +43,22 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
 {
   mcor_mesh* mesh = &context->mesh;
   const int vertices = mesh->vertex_count;
-  const size_t n = (size_t)vertices + 1;
+  const size_t bytes = ((size_t)vertices + 1) * sizeof(cl_int);
+  MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, bytes));
   if (!all)
   {
-    MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, n * sizeof(cl_int)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
       MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
     return mcor_scan(context, &mesh->scanned, vertices, count);
   }
-  cl_int* scanned = malloc(n * sizeof *scanned);
-  MCOR_FAIL_IF(
-    !scanned, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR), (long long)n, "points");
-  for (size_t v = 0; v < n; ++v)
+  void* scanned;
+  MCOR_TRY(mcor_map(context, &mesh->scanned, bytes, true, &scanned));
+  for (cl_int v = 0; v <= vertices; ++v)
   {
-    scanned[v] = (cl_int)v;
+    ((cl_int*)scanned)[v] = v;
   }
   *count = vertices;
-  const mcor_status status = mcor_write(context, &mesh->scanned, scanned, n * sizeof *scanned);
-  free(scanned);
-  return status;
-}
-
-/* Maps whole buffers of vertices; optional buffers only if the caller wants them. */
-static mcor_status mcor_map_vertices(mcor_download* d)
-{
-  mcor_context* context = d->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const unsigned wanted = context->run.options->outputs,
-                 curved = MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE;
-  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size,
-               cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  const mcor_mapping all[MCOR_DOWNLOADS] = { { &mesh->scanned, (n + 1) * sizeof(cl_int),
-                                               &d->scanned },
-    { &mesh->node, n * 4 * sizeof(cl_int), &d->node }, { &mesh->offset, n * 4 * real, &d->offset },
-    { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
-    { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
-    { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag },
-    { &context->trim.eigenvalue, wanted & MCOR_OUT_BOUNDARY_EIGENVALUE ? n * real : 0,
-      &d->eigenvalue },
-    { &context->attributes.nearest, wanted & MCOR_OUT_NEAREST_PARTICLE ? n * sizeof(cl_int) : 0,
-      &d->nearest },
-    { &mesh->curvature, wanted & curved ? 2 * n * real : 0, &d->curvature },
-    { &mesh->cut_edges, wanted & MCOR_OUT_POINT_KEYS ? cuts * sizeof(cl_ulong) : 0, &d->cuts } };
-  memcpy(d->mappings, all, sizeof all);
-  d->mapped = MCOR_DOWNLOADS;
-  return mcor_map_all(context, d->mappings, MCOR_DOWNLOADS);
+  return mcor_unmap(context, &mesh->scanned, &scanned);
 }
 
 static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
@@ -267,7 +235,7 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   MCOR_STORE(s->correction_length, (float)mcor_correction_of(d, v))
   MCOR_STORE(s->residual, (float)mcor_get_real(context, d->value, v))
   MCOR_STORE(s->boundary_flag, (uint8_t)(flag & MCOR_CAP_FLAG ? MCOR_CAP_FLAG : flag))
-  MCOR_STORE(s->iso_value, d->iso)
+  MCOR_STORE(s->iso_value, context->run.iso.value)
   if (s->point_keys)
   {
     mcor_store_point_key(d, v, s->point_keys + MCOR_POINT_KEY * to);
@@ -323,95 +291,95 @@ static mcor_status mcor_deliver_vertices(mcor_context* context, mcor_download* d
   return MCOR_OK;
 }
 
-typedef struct mcor_corners
+static void mcor_deliver_triangles_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const cl_int *from, *scanned;
-  int32_t* to;
-  int32_t base;
-} mcor_corners;
-
-static void mcor_renumber_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_corners* corners = data;
+  mcor_download* d = data;
+  mcor_surface* s = d->surface;
+  const cl_int *corners = d->triangles, *scanned = d->scanned;
+  const cl_ulong* cells = d->cells;
   for (int64_t i = first; i < last; ++i)
   {
-    corners->to[i] = corners->scanned[corners->from[i]] + corners->base;
+    const int64_t to = s->triangle_count + i;
+    for (int c = 0; c < 3; ++c)
+    {
+      s->triangles[3 * to + c] = (int32_t)s->point_count + scanned[corners[3 * i + c]];
+    }
+    if (cells)
+    {
+      mcor_keep_cell(d->context, s, to, d->context->run.iso.number, cells[i]);
+    }
   }
   (void)slice;
 }
 
-static mcor_status mcor_deliver_triangles(
-  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
+static mcor_status mcor_deliver_triangles(mcor_download* d)
 {
-  mcor_buffer* buffer = &context->mesh.triangles;
-  const int64_t triangles = context->mesh.triangle_count;
-  void* view;
-  MCOR_TRY(mcor_grow(
-    context, (void**)&surface->triangles, surface->triangle_count, triangles, 3 * sizeof(int32_t)));
-  if (triangles == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_map(context, buffer, (size_t)triangles * 3 * sizeof(cl_int), false, &view));
-  mcor_corners corners = { view, scanned, surface->triangles + 3 * surface->triangle_count,
-    (int32_t)surface->point_count };
-  const mcor_status status = mcor_parallel_run(
-    context, 3 * triangles, MCOR_LIGHT_GRAIN, mcor_renumber_slice, &corners, NULL);
-  MCOR_TRY(mcor_unmap(context, buffer, &view));
-  MCOR_TRY(status);
-  mcor_release(context, buffer);
+  mcor_context* context = d->context;
+  mcor_surface* s = d->surface;
+  mcor_buffer *triangles = &context->mesh.triangles, *cells = &context->box.cells;
+  const int64_t count = context->mesh.triangle_count;
+  const mcor_mapping views[] = { { triangles, 3 * (size_t)count * sizeof(cl_int), &d->triangles },
+    { cells, (size_t)count * sizeof(cl_ulong), &d->cells } };
+  const int mapped = count == 0 ? 0 : mcor_follows_cells(context) ? 2 : 1;
+  MCOR_TRY(
+    mcor_grow(context, (void**)&s->triangles, s->triangle_count, count, 3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_extend_kept(context, count, s));
+  mcor_status status = mcor_map_all(context, views, mapped);
+  MCOR_THEN(status,
+    mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_deliver_triangles_slice, d, NULL));
+  MCOR_TRY(mcor_unmap_all(context, views, mapped, status));
+  mcor_release(context, triangles);
   return MCOR_OK;
 }
 
-static mcor_status mcor_append_mesh(
-  mcor_context* context, const mcor_input* input, bool all, mcor_download* download)
+/* Evaluates at the vertices what the caller wants beside the field. */
+static mcor_status mcor_evaluate_outputs(mcor_context* context)
 {
-  mcor_surface* surface = download->surface;
   mcor_mesh* mesh = &context->mesh;
-  mcor_buffer* nearest = &context->attributes.nearest;
-  const unsigned wanted = context->run.options->outputs;
+  mcor_buffer *nearest = &context->attributes.nearest, *eigenvalue = &context->trim.eigenvalue;
   const size_t vertices = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  const int64_t triangles = mesh->triangle_count, base = surface->point_count;
-  int count;
-  MCOR_TRY(mcor_number_vertices(context, all, &count));
+  const bool uniform = context->measure.support_min == context->measure.support_max;
+  if (mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE)) /* trimming had it at other vertices */
+  {
+    MCOR_TRY(mcor_reserve(context, eigenvalue, vertices * real));
+    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
+  }
+  if (mcor_wants(context, MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE))
+  {
+    MCOR_TRY(mcor_reserve(context, &mesh->curvature, 2 * vertices * real));
+    MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_curvature_points",
+      MCOR_BUFFER(&mesh->offset), MCOR_REAL(context->run.iso.relative),
+      MCOR_INT(context->space.flat), MCOR_BUFFER(&mesh->curvature)));
+  }
+  if (mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE))
+  {
+    MCOR_TRY(mcor_reserve(context, nearest, vertices * sizeof(cl_int)));
+    MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_nearest",
+      MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform), MCOR_BUFFER(&context->grid.order),
+      MCOR_BUFFER(nearest)));
+  }
+  return MCOR_OK;
+}
+
+/* Appends `count` points, whose vertices are mapped, and the triangles. */
+static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int count)
+{
+  mcor_context* context = d->context;
+  mcor_surface* surface = d->surface;
+  const int64_t base = surface->point_count;
   MCOR_FAIL_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(POINTS_TOO_MANY),
     (long long)(base + count), INT32_MAX);
-  if (count > 0)
-  {
-    const bool uniform = context->measure.support_min == context->measure.support_max;
-    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming has evaluated it at other vertices */
-    {
-      MCOR_TRY(mcor_reserve(context, &context->trim.eigenvalue, vertices * real));
-      MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, &context->trim.eigenvalue));
-    }
-    if (wanted & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE))
-    {
-      MCOR_TRY(mcor_reserve(context, &mesh->curvature, 2 * vertices * real));
-      MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_curvature_points",
-        MCOR_BUFFER(&mesh->offset), MCOR_REAL(context->run.iso.relative),
-        MCOR_INT(context->space.flat), MCOR_BUFFER(&mesh->curvature)));
-    }
-    if (wanted & MCOR_OUT_NEAREST_PARTICLE)
-    {
-      MCOR_TRY(mcor_reserve(context, nearest, vertices * sizeof(cl_int)));
-      MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_nearest",
-        MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform), MCOR_BUFFER(&context->grid.order),
-        MCOR_BUFFER(nearest)));
-    }
-    MCOR_TRY(mcor_map_vertices(download));
-    mcor_number_lines(context, download->scanned, base);
-  }
-  MCOR_TRY(mcor_keep_cells(context, surface));
-  MCOR_TRY(mcor_find_counted(context, &download->owned));
-  MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
+  MCOR_TRY(mcor_find_counted(context, &d->owned));
+  MCOR_TRY(mcor_deliver_triangles(d));
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
-    MCOR_TRY(mcor_deliver_vertices(context, download));
-    MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
+    mcor_number_lines(context, d->scanned, base);
+    MCOR_TRY(mcor_deliver_vertices(context, d));
+    MCOR_TRY(mcor_add_attributes(context, input, d->scanned, surface));
   }
   surface->point_count += count;
-  surface->triangle_count += triangles;
+  surface->triangle_count += context->mesh.triangle_count;
   return MCOR_OK;
 }
 
@@ -429,21 +397,40 @@ bool mcor_output_evaluates(const mcor_context* context)
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface)
 {
-  mcor_download download = { .context = context,
-    .iso = context->run.iso.value,
-    .sum_rounding = mcor_sum_rounding(context),
-    .surface = surface };
   mcor_mesh* m = &context->mesh;
+  mcor_buffer *eigenvalue = &context->trim.eigenvalue, *nearest = &context->attributes.nearest;
+  mcor_download d = {
+    .context = context, .sum_rounding = mcor_sum_rounding(context), .surface = surface
+  };
+  const size_t real = context->cl.real_size, n = (size_t)m->vertex_count,
+               cuts = (size_t)(m->cap_first - m->march_count);
+  const bool curved = mcor_wants(context, MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE),
+             has_eigenvalue = mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE),
+             has_nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE),
+             has_keys = mcor_wants(context, MCOR_OUT_POINT_KEYS);
+  const mcor_mapping views[] = { { &m->scanned, (n + 1) * sizeof(cl_int), &d.scanned },
+    { &m->node, n * 4 * sizeof(cl_int), &d.node }, { &m->offset, n * 4 * real, &d.offset },
+    { &m->linear, (size_t)m->march_count * real, &d.linear },
+    { &m->field_value, n * real, &d.value }, { &m->gradient, n * 4 * real, &d.gradient },
+    { &m->vertex_weight, n * real, &d.weight }, { &m->flag, n, &d.flag },
+    { eigenvalue, has_eigenvalue ? n * real : 0, &d.eigenvalue },
+    { nearest, has_nearest ? n * sizeof(cl_int) : 0, &d.nearest },
+    { &m->curvature, curved ? 2 * n * real : 0, &d.curvature },
+    { &m->cut_edges, has_keys ? cuts * sizeof(cl_ulong) : 0, &d.cuts } };
+  int count = 0;
   /* Frees buffers that only the mesh needed, to make room for the output; then the buffers that
    * only the output needed. */
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
-  mcor_status status = mcor_append_mesh(context, input, all, &download);
-  status = mcor_unmap_all(context, download.mappings, download.mapped, status);
+  mcor_status status = mcor_number_vertices(context, all, &count);
+  const int mapped = count > 0 ? (int)(sizeof views / sizeof *views) : 0;
+  MCOR_THEN(status, mapped > 0 ? mcor_evaluate_outputs(context) : MCOR_OK);
+  MCOR_THEN(status, mcor_map_all(context, views, mapped));
+  MCOR_THEN(status, mcor_deliver(&d, input, count));
+  status = mcor_unmap_all(context, views, mapped, status);
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned,
-    &context->trim.eigenvalue);
-  free(download.owned);
+    &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned, eigenvalue);
+  free(d.owned);
   return status;
 }

@@ -89,39 +89,18 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
     : MCOR_OK;
 }
 
-/* Copies the cells of the mesh's triangles to the surface: their keys, and whether they are
- * kept. */
-mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
+void mcor_keep_cell(
+  mcor_context* context, mcor_surface* surface, int64_t triangle, int number, uint64_t cell)
 {
-  mcor_box* box = &context->box;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t triangles = (size_t)mesh->triangle_count, base = (size_t)surface->triangle_count;
-  if (!mcor_follows_cells(context))
+  if (context->box.kept)
   {
-    return MCOR_OK;
+    context->box.kept[triangle] = !(cell & MCOR_RING_CELL);
   }
-  MCOR_TRY(mcor_extend_kept(context, mesh->triangle_count, surface));
-  if (triangles == 0)
+  if (surface->triangle_keys)
   {
-    return MCOR_OK;
+    surface->triangle_keys[MCOR_TRIANGLE_KEY * triangle] = (uint64_t)number;
+    surface->triangle_keys[MCOR_TRIANGLE_KEY * triangle + 1] = cell;
   }
-  void* view;
-  MCOR_TRY(mcor_map(context, &box->cells, triangles * sizeof(cl_ulong), false, &view));
-  const cl_ulong* cells = view;
-  for (size_t i = 0; i < triangles; ++i)
-  {
-    if (box->is_part)
-    {
-      box->kept[base + i] = !(cells[i] & MCOR_RING_CELL);
-    }
-    if (surface->triangle_keys)
-    {
-      uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (base + i);
-      key[0] = (uint64_t)context->run.iso.number;
-      key[1] = cells[i];
-    }
-  }
-  return mcor_unmap(context, &box->cells, &view);
 }
 
 /* Moves elements of `width` bytes to their new numbers, which never increase; -1: dropped. */

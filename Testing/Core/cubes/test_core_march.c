@@ -4,6 +4,7 @@
 /* Tests extraction: cells in any pattern, made node by node; outliers; surfaces of parts of the particles. */
 
 #include "core_parts.h"
+#include "mcor_vector.h"
 
 /* The surface around one huge value is found, and it ends where the particle's support does. */
 static void test_outlier(void** state)
@@ -25,7 +26,7 @@ static void test_outlier(void** state)
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
       const double* x = surface.points + 3 * i;
-      const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+      const double r = sqrt(mcor_dot(x, x));
       CORE_CHECK(r > 0.9 * reach && r < 1.01 * reach, sign, r);
     }
   }
@@ -221,10 +222,9 @@ static void test_node_by_node(void** state)
   {
     node_pattern p;
     make_pattern(&p, seed);
-    particle_set set = pattern_particles(&p);
+    CORE_SET set = pattern_particles(&p);
     check_pattern(*state, &p, &set, MCOR_TOPOLOGY_TABLE);
     check_pattern(*state, &p, &set, MCOR_TOPOLOGY_FIELD);
-    particle_set_free(&set);
     for (int k = 0; k < 6; ++k)
     {
       pinched[k] += p.pinched[k / 2][k % 2];

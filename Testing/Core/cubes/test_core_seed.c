@@ -5,6 +5,7 @@
  * The oracle checks that complete seeds miss no edge. */
 
 #include "core_fixture.h"
+#include "mcor_vector.h"
 
 #define NO_BRICK 4
 
@@ -66,9 +67,9 @@ static marked_cells read_cells(mcor_context* context)
   return m;
 }
 
-/* Walks along a segment (in cubes) in small steps. Every cell on it must be marked, to within rounding; cells within
+/* Walks along a segment in small steps. Every cell on it must be marked, to within rounding; cells within
  * rounding of it get the value 2. */
-static void check_line(marked_cells* m, const double p[3], const double q[3])
+static void check_line(marked_cells* m, const double p[3], const double q[3], double cube)
 {
   enum
   {
@@ -80,7 +81,7 @@ static void check_line(marked_cells* m, const double p[3], const double q[3])
     int inside = 1;
     for (int a = 0; a < 3; ++a)
     {
-      const double x = p[a] + (q[a] - p[a]) * i / STEPS;
+      const double x = (p[a] + (q[a] - p[a]) * i / STEPS) / cube;
       at[a] = (int)floor(x);
       const double f = x - at[a];
       others[a] = f < 1e-3 ? at[a] - 1 : f > 1 - 1e-3 ? at[a] + 1 : at[a];
@@ -117,17 +118,13 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   {
     for (int64_t k = 0; k < j; ++k)
     {
-      double p[3], q[3], d2 = 0;
-      for (int a = 0; a < 3; ++a)
-      {
-        p[a] = set->position[3 * j + a] / cube;
-        q[a] = set->position[3 * k + a] / cube;
-        d2 += (p[a] - q[a]) * (p[a] - q[a]) * cube * cube;
-      }
+      const double *p = set->position + 3 * j, *q = set->position + 3 * k;
       const double h = fmax(set->smoothing_length[j], set->smoothing_length[k]);
-      if ((set->scalar[j] >= 0) != (set->scalar[k] >= 0) && d2 < h * h)
+      double d[3];
+      mcor_subtract(p, q, d);
+      if ((set->scalar[j] >= 0) != (set->scalar[k] >= 0) && mcor_dot(d, d) < h * h)
       {
-        check_line(&m, p, q);
+        check_line(&m, p, q, cube);
         ++pairs;
       }
     }
@@ -153,19 +150,15 @@ static void test_line(void** state)
   for (int i = 0; i < 40; ++i)
   {
     CORE_SET set = particle_set_make(2);
-    double length = 0;
+    double d[3];
     for (int c = 0; c < 6; ++c)
     {
-      const double x = i < 10 ? ends[i][c] : 15 * random_unit(&seed);
-      set.position[c] = 0.125 * x;
+      set.position[c] = 0.125 * (i < 10 ? ends[i][c] : 15 * random_unit(&seed));
     }
-    for (int a = 0; a < 3; ++a)
-    {
-      length += pow(set.position[a] - set.position[3 + a], 2);
-    }
+    mcor_subtract(set.position, set.position + 3, d);
     for (int j = 0; j < 2; ++j)
     {
-      set.smoothing_length[j] = 1.01 * sqrt(length);
+      set.smoothing_length[j] = 1.01 * sqrt(mcor_dot(d, d));
       set.volume[j] = 1;
       set.scalar[j] = j ? 1 : -1;
     }
@@ -189,7 +182,7 @@ static void test_pairs(void** state)
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;
-  particle_set set = particle_set_make(2 * 20 * 20 * 10);
+  CORE_SET set = particle_set_make(2 * 20 * 20 * 10);
   uint64_t seed = 8;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -215,7 +208,6 @@ static void test_pairs_in_each_form(void** state)
   }
   assert_true(cells[0] > 1000 && cells[0] < 11000);
   assert_int_equal(cells[0], cells[1]);
-  particle_set_free(&set);
 }
 
 /* The mean of values that all equal the iso value may round to either side. Cells there are seeds, and stay seeds if
@@ -223,7 +215,7 @@ static void test_pairs_in_each_form(void** state)
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };
-  particle_set set = core_make_block(16, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(16, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = set.position[3 * i] < -2 ? iso[1] : 50 + set.scalar[i];
@@ -243,7 +235,6 @@ static void test_rounding(void** state)
     }
   }
   assert_true(hash[0] == hash[1]);
-  particle_set_free(&set);
 }
 
 CORE_MAIN(

@@ -4,11 +4,11 @@
 /* Topology by the field, tested with bridges and gaps of known shape; the oracle tests it with noise. */
 
 #include "core_fixture.h"
+#include "mcor_vector.h"
 
 /* Makes particles around the origin, closer together than the cubes, with the scalar given by `value`. */
 static particle_set make_particles(
-  double (*value)(const double x[3], const double end[3], double sign), const double end[3],
-  double sign)
+  double (*value)(const double x[3], const double end[3]), const double end[3], double sign)
 {
   enum
   {
@@ -26,40 +26,25 @@ static particle_set make_particles(
     }
     set.smoothing_length[i] = 1.3 * spacing;
     set.volume[i] = spacing * spacing * spacing;
-    set.scalar[i] = sign * value(x, end, sign);
+    set.scalar[i] = sign * value(x, end);
   }
   return set;
 }
 
 /* Returns the scalar of a straight thread from the origin to `end`, thinner than a cube. */
-static double thread(const double x[3], const double end[3], double sign)
+static double thread(const double x[3], const double end[3])
 {
-  double along = 0, length2 = 0, distance2 = 0;
-  (void)sign;
-  for (int a = 0; a < 3; ++a)
-  {
-    along += x[a] * end[a];
-    length2 += end[a] * end[a];
-  }
-  along = fmin(fmax(along / length2, 0), 1);
-  for (int a = 0; a < 3; ++a)
-  {
-    distance2 += (x[a] - along * end[a]) * (x[a] - along * end[a]);
-  }
-  return 1.2 * 1.2 - distance2;
+  const double along = fmin(fmax(mcor_dot(x, end) / mcor_dot(end, end), 0), 1);
+  const double d[3] = { x[0] - along * end[0], x[1] - along * end[1], x[2] - along * end[2] };
+  return 1.2 * 1.2 - mcor_dot(d, d);
 }
 
 /* Returns the scalar of two balls around the thread's ends, which do not touch. */
-static double balls(const double x[3], const double end[3], double sign)
+static double balls(const double x[3], const double end[3])
 {
-  double first = 0, second = 0;
-  (void)sign;
-  for (int a = 0; a < 3; ++a)
-  {
-    first += x[a] * x[a];
-    second += (x[a] - end[a]) * (x[a] - end[a]);
-  }
-  return 1.2 * 1.2 - fmin(first, second);
+  double d[3];
+  mcor_subtract(x, end, d);
+  return 1.2 * 1.2 - fmin(mcor_dot(x, x), mcor_dot(d, d));
 }
 
 /* Checks that the surface is closed, and returns the number of its parts. */

@@ -5,6 +5,7 @@
 
 #include "core_parts.h"
 #include "core_period.h"
+#include "mcor_vector.h"
 
 /* Fails unless the surface with caps begins with the surface without. */
 static void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
@@ -96,16 +97,12 @@ static void check_opposite_caps(const mcor_surface* open, const mcor_surface* s)
   for (int64_t t = open->triangle_count; t < s->triangle_count; ++t)
   {
     const int32_t* c = s->triangles + 3 * t;
-    const double *p = s->points + 3 * (int64_t)c[0], *q = s->points + 3 * (int64_t)c[1],
-                 *r = s->points + 3 * (int64_t)c[2];
-    double n[3];
-    int most = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      const int b = (a + 1) % 3, d = (a + 2) % 3;
-      n[a] = (q[b] - p[b]) * (r[d] - p[d]) - (q[d] - p[d]) * (r[b] - p[b]);
-      most = fabs(n[a]) > fabs(n[most]) ? a : most;
-    }
+    double u[3], v[3], n[3];
+    mcor_subtract(s->points + 3 * c[1], s->points + 3 * c[0], u);
+    mcor_subtract(s->points + 3 * c[2], s->points + 3 * c[0], v);
+    mcor_cross(u, v, n);
+    int most = fabs(n[1]) > fabs(n[0]) ? 1 : 0;
+    most = fabs(n[2]) > fabs(n[most]) ? 2 : most;
     area[most][n[most] > 0] += 0.5 * fabs(n[most]);
     ++count[most][n[most] > 0];
   }

@@ -6,10 +6,11 @@
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
+#include "mcor_vector.h"
 
 static double length_of(const double x[3])
 {
-  return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+  return sqrt(mcor_dot(x, x));
 }
 
 /* Checks normals by triangles: the sum of the cross products around each point, scaled to length 1. */
@@ -18,20 +19,15 @@ static void check_triangle_normals(const mcor_surface* surface)
   CORE_FREED double* sums = oracle_allocate(surface->point_count, 3 * sizeof(double));
   for (int64_t t = 0; t < 3 * surface->triangle_count; t += 3)
   {
-    const double* x[3];
-    for (int c = 0; c < 3; ++c)
+    const int32_t* corner = surface->triangles + t;
+    const double* x = surface->points;
+    double u[3], v[3], cross[3];
+    mcor_subtract(x + 3 * corner[1], x + 3 * corner[0], u);
+    mcor_subtract(x + 3 * corner[2], x + 3 * corner[0], v);
+    mcor_cross(u, v, cross);
+    for (int i = 0; i < 9; ++i)
     {
-      x[c] = surface->points + 3 * surface->triangles[t + c];
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      const int u = (a + 1) % 3, v = (a + 2) % 3;
-      const double cross =
-        (x[1][u] - x[0][u]) * (x[2][v] - x[0][v]) - (x[1][v] - x[0][v]) * (x[2][u] - x[0][u]);
-      for (int c = 0; c < 3; ++c)
-      {
-        sums[3 * surface->triangles[t + c] + a] += cross;
-      }
+      sums[3 * corner[i / 3] + i % 3] += cross[i % 3];
     }
   }
   for (int64_t i = 0; i < surface->point_count; ++i)
@@ -61,12 +57,9 @@ static void test_triangle_normals(void** state)
     check_triangle_normals(&surface);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
-      double n[3], outwards = 0;
-      for (int a = 0; a < 3; ++a)
-      {
-        n[a] = (double)surface.normals[3 * i + a];
-        outwards += n[a] * surface.points[3 * i + a] / length_of(surface.points + 3 * i);
-      }
+      const float* normal = surface.normals + 3 * i;
+      const double n[3] = { normal[0], normal[1], normal[2] }, *x = surface.points + 3 * i;
+      const double outwards = mcor_dot(n, x) / length_of(x);
       CORE_CHECK(fabs(length_of(n) - 1) < 1e-5 && outwards > 0.7, n[0], n[1], n[2], outwards);
     }
   }
@@ -168,10 +161,7 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
     for (int64_t j = 0; j < set.count; ++j)
     {
       double d[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        d[a] = set.position[3 * j + a] - surface.points[3 * i + a];
-      }
+      mcor_subtract(set.position + 3 * j, surface.points + 3 * i, d);
       best = !solids || !set.solid[j] ? fmin(best, length_of(d)) : best;
       at_got = j == got ? length_of(d) : at_got;
     }

@@ -7,8 +7,7 @@ import numpy as np
 
 import marchingcorrectors as mc
 from marchingcorrectors import Error
-from marchingcorrectors._film import in_order
-from marchingcorrectors._spray import label_pieces, small_pieces, without_points
+from marchingcorrectors._film import in_order, label_pieces, small_pieces, without_points
 from marchingcorrectors._usd import Film, find_velocity
 from marchingcorrectors.io import ENDINGS, count_steps, read
 

@@ -35,17 +35,15 @@ from vtkmodules.vtkCommonDataModel import (vtkDataObject, vtkDataObjectTree, vtk
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkCommonMisc import vtkContourValues
 
-from marchingcorrectors import Cancelled, Context, DeviceError, Error
+from marchingcorrectors import Cancelled, Context, DeviceError, Error, InvalidArgument
 from marchingcorrectors import _structs as c
-from marchingcorrectors._arrays import QUANTITIES, find_iso_value
+from marchingcorrectors._arrays import QUANTITIES, find_iso_value, tells_of_walls
 from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, describe_warnings, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
-from marchingcorrectors._find import tells_of_walls
-from marchingcorrectors._vtk_blocks import copy_of, describe_mesh, join_blocks, leaves_of, list_all, sets_of, take_vertices
-from marchingcorrectors._vtk_particles import Particles, Unusable, choose_array, find_period, is_single, name_of, request_of, varies
-from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
+from marchingcorrectors._vtk import (Particles, add_iso_values, add_nearest, add_run, build_mesh, choose_array, copy_of, describe, describe_mesh,
+                                     find_period, is_single, join_blocks, leaves_of, list_all, name_of, request_of, sets_of, take_vertices, varies)
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -112,6 +110,8 @@ def with_properties(kind):
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
     for name in SIDES:
         define(name, lambda self, name=name: self._values[name], lambda self, *sides, name=name: self._set_sides(name, sides))
+    for name in ("Only", "ExcludedArrays"):
+        setattr(kind, name, property(lambda self, name=name: self._values[name], lambda self, value, name=name: self._put(name, list(value))))
     for name in (*NOTHING, "ErrorMessage", "MessageCount", "RunStatistics"):
         define(name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "FreeSurface", "Cells", "Fluid", "Array", "Warning"):
@@ -309,19 +309,17 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             return
         choice.FreeSurface = int(not request_of(self, 0, points).name and not self._levels("ContourValues"))
         if choice.FreeSurface:
-            with suppress(Unusable, Error):  # The run reports the error.
-                particles = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
-                choice.FreeSurface = particles.has_free_surface()
+            with suppress(Error):  # The run reports the error.
+                choice.FreeSurface = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice)).has_free_surface()
 
     def _look_at(self, points, ahead):
         """Adds to `ahead` what these points tell. Each value needs only some of the arrays: the range no smoothing
         length, the number of cells no scalar."""
         choice = self._choice()
         self._settle(choice, points)
-        with suppress(Unusable):
-            fittest = Particles(choice, points, ["fluid", "array"])
-            ahead["Array"] = ahead["Array"] or name_of(fittest.scalar)
-        with suppress(Unusable):
+        with suppress(Error):
+            ahead["Array"] = ahead["Array"] or name_of(Particles(choice, points, ["fluid", "array"]).scalar)
+        with suppress(Error):
             particles = self._find(choice, points, ["fluid", "scalar"])
             ahead["Fluid"] = particles.describe_fluid()
             if not choice.FreeSurface:
@@ -331,12 +329,11 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
-        with suppress(Unusable, Error):
+        with suppress(Error):
             sizes = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
-            given = sizes.arguments()
             ahead["FreeSurface"] |= sizes.has_free_surface()
-            ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
-            ahead["Cells"] += Particles.estimate_cells(given, self._options(choice))
+            ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(sizes.input), None, choice.Dimension)
+            ahead["Cells"] += sizes.estimate_cells()
 
     def _find(self, choice, points, wants, **more):
         if choice.FreeSurface:
@@ -417,14 +414,14 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._warn_once("type", particles.unused_type)
             self._warn_once("unused", particles.unused)
             if choice.DetectPeriod and not period:
-                raise Unusable(say("CELL_TILTED" if cell else "NO_PERIOD"))
-            self._extract(particles, options, output)
+                raise InvalidArgument(say("CELL_TILTED" if cell else "NO_PERIOD"))
+            self._extract(particles, output)
         except Cancelled:
             pass
-        except (Unusable, Error) as sentence:
-            if getattr(sentence, "particles", None):
-                self._note(sentence.particles)
-            self._fail(sentence.args[0])
+        except Error as error:
+            if hasattr(error, "particles"):
+                self._note(error.particles)
+            self._fail(error.args[0])
 
     def _note(self, particles):
         self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
@@ -466,53 +463,52 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         lib.mcor_spell_out(ctypes.byref(options))
         return options
 
-    def _extract(self, particles, options, output):
-        choice, arguments = particles.choice, particles.arguments()
-        arguments.options = options
+    def _extract(self, particles, output):
+        choice, options = particles.choice, particles.options
         iso = self._levels("FreeSurfaceValues" if choice.FreeSurface else "ContourValues")
         if not iso:
             found = (None, 0.5) if choice.FreeSurface else find_iso_value(particles.input)
             iso = [found[1]] if found else []
-        arguments.set_iso_values(iso)
+        particles.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
-        self.UsedVolume = take_text(lib.mcor_describe_volume(ctypes.byref(arguments.input)))
-        self.EstimatedCells = particles.estimate_cells(arguments, options)
+        self.UsedVolume = take_text(lib.mcor_describe_volume(ctypes.byref(particles.input)))
+        self.EstimatedCells = particles.estimate_cells()
         self._warn_once("cells of " + self.BlockName, take_sentence(lib.mcor_describe_estimate(self.EstimatedCells)))
-        with self._called(particles, arguments) as surface:
-            found, used = take_surface(surface, arguments), ctypes.byref(surface.statistics)
+        with self._called(particles) as surface:
+            found, used = take_surface(surface, particles), ctypes.byref(surface.statistics)
             if particles.scalar is not None:
                 self.FluidScalarRange = (surface.statistics.scalar_min, surface.statistics.scalar_max)
             self.UsedIsoValues = ", ".join(f"{value:g}" for value in iso)
             self.IsoValueArrayName = particles.iso_value_name if options.iso_value else ""
-            self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(ctypes.byref(arguments.input), used))
+            self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(ctypes.byref(particles.input), used))
             self.UsedCubeSize = surface.statistics.cube_size
             self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
             for name, particle in found.left_out.items():
                 self._say(say("ARRAY_LEFT_OUT", name, particle, "the surface"), "Warning")
-            for kind, sentence in describe_warnings(arguments, surface).items():
+            for kind, sentence in describe_warnings(particles, surface).items():
                 self._warn_once(kind, sentence)
         add_iso_values(output.GetFieldData(), options)
-        add_run(self.RunStatistics, found, particles, arguments)
-        self._build(found, particles, options, output)
+        add_run(self.RunStatistics, found, particles)
+        self._build(found, particles, output)
 
     @contextmanager
-    def _called(self, particles, arguments):
+    def _called(self, particles):
         choice = particles.choice
         self._in_run, self._release = True, not choice.KeepDeviceData
         try:
             if self._context is None or self._context_device != choice.Device:
                 self._last = NO_RUN
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
-            signatures = *particles.signatures(), factor_options(arguments.options)
+            signatures = *particles.signatures(), factor_options(particles.options)
             if choice.KeepDeviceData:  # The kept scalar is in the order of the particles, so new particles need a new scalar.
                 self._versions[0] += self._last[0] != signatures[0]
                 self._versions[1] += self._last[:2] != signatures[:2]
-                arguments.input.particles_version, arguments.input.scalar_version = self._versions
+                particles.input.particles_version, particles.input.scalar_version = self._versions
                 if (self._last[0], self._last[2]) == (signatures[0], signatures[2]):
-                    arguments.widening = self._last[3]
-            arguments.context, arguments.progress = self._context, self._report
-            with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
-                self._last = (*signatures, keep_factors(arguments.widening)) if choice.KeepDeviceData else NO_RUN
+                    particles.widening = self._last[3]
+            particles.context, particles.progress = self._context, self._report
+            with called(lib.mcor_extract, c.mcor_surface, particles) as surface:
+                self._last = (*signatures, keep_factors(particles.widening)) if choice.KeepDeviceData else NO_RUN
                 yield surface
         except BaseException as failure:
             self._last = NO_RUN
@@ -524,10 +520,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if self._release:
                 self.ReleaseDeviceMemory()
 
-    def _build(self, found, particles, options, output):
+    def _build(self, found, particles, output):
         precision, data, arrays = particles.choice.OutputPointsPrecision, output.GetPointData(), found.point_arrays()
         if precision == vtkAlgorithm.SINGLE_PRECISION or (
-                precision == vtkAlgorithm.DEFAULT_PRECISION and is_single(particles.positions)):
+                precision == vtkAlgorithm.DEFAULT_PRECISION and particles.positions.dtype == np.float32):
             self._warn_once("single points", take_sentence(lib.mcor_describe_single_points(
                 np.abs(found.points).max(initial=0.0), self.UsedCubeSize)))
             found.points = found.points.astype(np.float32)
@@ -543,7 +539,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         for name, array in particles.from_nearest.items() if nearest is not None else ():
             add_nearest(data, name, array, nearest)
         names = [name for name, array in particles.interpolated.items() if varies(array, data.GetArray(name))
-                 and not (options.iso_count == 1 and not options.filled and name == particles.contoured)]
+                 and not (particles.options.iso_count == 1 and not particles.options.filled and name == particles.contoured)]
         best = choose_array([data.GetArray(name) for name in (*names, particles.iso_value_name) if data.HasArray(name)])
         if best is not None:
             data.SetActiveScalars(name_of(best))
@@ -606,21 +602,13 @@ def paraview_plugin(kind):
     """Gives ParaView the filter and its panel: the C++ plugin's XML, with this class in it."""
     root = read_panel()
     group = root.find("ProxyGroup[@name='filters']")
-    for other in list(root):
-        if other is not group:
-            root.remove(other)
-    for proxy in list(group):
-        if proxy.get("class") != "vtkMarchingCorrectors":
-            group.remove(proxy)
-            continue
+    root[:], group[:] = [group], group.findall("SourceProxy[@class='vtkMarchingCorrectors']")
+    for proxy in group:
         proxy.set("class", f"{Path(__file__).stem}.vtkMarchingCorrectors")
         proxy.set("si_class", "vtkSIPythonSourceProxy")
-        lacking = {thing.get("name") for thing in proxy if "command" in thing.attrib
-                   and not hasattr(kind, thing.get("command"))}
+        lacking = {thing.get("name") for thing in proxy if "command" in thing.attrib and not hasattr(kind, thing.get("command"))}
         for parent in proxy.iter():
-            for thing in list(parent):
-                if thing.get("name") in lacking and (parent is proxy or thing.tag == "Property"):
-                    parent.remove(thing)
+            parent[:] = [thing for thing in parent if thing.get("name") not in lacking or parent is not proxy and thing.tag != "Property"]
     kind._pvsm_proxy_xml = ElementTree.tostring(root, encoding="unicode")
 
 

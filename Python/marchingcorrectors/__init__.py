@@ -8,16 +8,16 @@
 With PyVista: particles.sph.isosurface("Velocity", 1.0). With VTK: vtkMarchingCorrectors.
 """
 import sys as _sys
+from importlib import import_module as _import_module
+from pathlib import Path as _Path
 from pkgutil import extend_path as _extend_path
 from typing import TYPE_CHECKING, Any, List
 
-from ._context import Context
-from ._functions import derivatives, flow, free_surface, isosurface, probe, project, widening
-from ._library import (Cancelled, DeviceError, Error, InputWarning, InvalidArgument, InvalidData, OutOfCapacity,
+from ._functions import derivatives, flow, flux, free_surface, gauge, isosurface, probe, project, widening
+from ._library import (Cancelled, Context, DeviceError, Error, InputWarning, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
-from ._meters import Fluxes, Gauges, flux, gauge
 from ._structs import VERSION as __version__
-from ._surface import Derivatives, Projection, Samples, Surface
+from ._surface import Derivatives, Fluxes, Gauges, Projection, Samples, Surface
 
 if TYPE_CHECKING:
     import pyvista
@@ -59,18 +59,39 @@ def __dir__() -> List[str]:
     return sorted([*__all__, "__version__", "io", "vtkMarchingCorrectors"])
 
 
+def _find_class(name: str) -> Any:
+    """Returns a class of VTK: the C++ class if it was built, else the filter in Python."""
+    try:
+        import vtkmodules
+    except ImportError:
+        raise ImportError("VTK was not found: pip install vtk, or pip install pyvista.") from None
+    module: Any = None
+    # Wheels of VTK bring no headers, so no C++ class can have been built against one, and a class built against another VTK must not be
+    # loaded beside it.
+    if any(list(_Path(folder).glob("vtkMarchingCorrectors*.so")) for folder in __path__) and not list(
+            _Path(vtkmodules.__file__).resolve().parents[1].glob("vtk-*.dist-info")):
+        try:
+            import vtkmodules.vtkCommonExecutionModel  # noqa: F401  superclasses come first
+
+            module = _import_module(".vtkMarchingCorrectors", __name__)
+        except ImportError:
+            pass  # The class was built for another Python, or its VTK is gone.
+    if module is None and name == "vtkMarchingCorrectors":
+        module = _import_module(".MarchingCorrectorsFilter", __name__)
+    if module is None or not hasattr(module, name):
+        raise ImportError(f"{name} is there in C++ only: build the sources with CMake for this VTK.")
+    globals()[name] = getattr(module, name)  # This replaces the module of the same name, which the import has put into the package.
+    return globals()[name]
+
+
 if not TYPE_CHECKING:  # Type checkers know only the names above.
     def __getattr__(name):
         """Imports VTK's classes, and io, when they are asked for, because NumPy users need no VTK."""
         if name == "io":
-            from importlib import import_module
-
-            return import_module(".io", __name__)
+            return _import_module(".io", __name__)
         if name == "vtkMarchingCorrectors" or name.startswith("vtkSPH"):
-            from ._vtk import find_class
-
             try:
-                return find_class(name)
+                return _find_class(name)
             except ImportError as error:
                 if _sys._getframe(1).f_globals.get("__name__") == "importlib._bootstrap":
                     raise  # "from marchingcorrectors import ..." shows this sentence.

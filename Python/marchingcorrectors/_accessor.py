@@ -3,21 +3,18 @@
 """PyVista's particles.sph, which PyVista finds by the package's entry point."""
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union, cast
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import pyvista
 
-from . import _functions, _meters
-from ._arrays import QUANTITIES, as_points
-from ._call import Shared, own_keywords
-from ._find import Found
+from . import _functions
+from ._arrays import QUANTITIES, Found, as_points
+from ._call import Keywords, own_keywords
 from ._library import InvalidArgument, warn
-from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
-from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import GHOSTS, WALL_BLOCK, find_period, named, to_numpy
+from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, did_you_mean, show
+from ._vtk import GHOSTS, WALL_BLOCK, describe_mesh, find_period, join_blocks, named, take_vertices, to_numpy
 from .io import Particles as FileParticles
 
 if TYPE_CHECKING:
@@ -30,6 +27,7 @@ ABOUT_PARTICLES = '''
             and densities there are.
         fluid: ("ParticleType", 0) or "ParticleType=0": where this point array has another value, there are solids. "auto":
             by a point array of a usual name that clearly tells it.
+        solid: the name of a point array, or an array: True or not 0 for walls.
         within: six bounds, as of box: particles beyond these are left out.
         only: {"ParticleType": 1} or {"ParticleType": (1, 3)}: particles with other values in these
             point arrays are left out.
@@ -42,7 +40,7 @@ ABOUT_PARTICLES = '''
 '''
 
 
-class Particles(Shared, total=False):
+class Particles(Keywords, total=False):
     """Has the keywords of all methods."""
 
     attributes: Optional[Iterable[str]]
@@ -50,16 +48,11 @@ class Particles(Shared, total=False):
 
 def _method(options: Sequence[str]) -> Callable[[Function], Function]:
     """Returns a decorator. It gives a method the keywords of Particles and these options, in its signature and in its
-    text."""
+    text. The functions for NumPy arrays check them."""
     def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def call(self: Any, *arguments: Any, **words: Any) -> Any:
-            check_names(call, words, options)
-            return function(self, *arguments, **words)
-
-        call.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
-        show(call, own_keywords(Particles, options), options)
-        return cast(Function, call)
+        function.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
+        show(function, own_keywords(Particles, options), options)
+        return function
 
     return decorate
 
@@ -79,8 +72,8 @@ class PointData(FileParticles):
     def __init__(self, data):
         points = data.point_data
         arrays = {name: lambda name=name: np.asarray(points[name]) for name in points.keys() if name not in (GHOSTS, WALL_BLOCK)}
-        found = self.found = Found(to_numpy(data.GetPoints().GetData()) if data.n_points else np.empty((0, 3)),
-                                   named(data.GetPointData()), ["sizes", "list", "attributes"], find=True)
+        found = self.found = Found(to_numpy(data.GetPoints().GetData()) if data.n_points else np.empty((0, 3))).find(
+            named(data.GetPointData()), ["sizes", "list", "attributes"], find=True)
         if found.found.made[0].name:
             arrays["Velocity"] = lambda: found.made(0)[1]
         self.velocity = found.name("velocity") or "Velocity"
@@ -132,7 +125,8 @@ class SphAccessor:
         scalar, scalar_dot: names of point arrays, or arrays. "Density", where there is no such array, is summed from masses.
         iso: as in marchingcorrectors.isosurface().
         """
-        return _functions.isosurface(scalar=scalar, iso=iso, scalar_dot=scalar_dot, **self._prepare(words)).to_pyvista()
+        particles, keywords = self._prepare(words)
+        return _functions.isosurface(particles, scalar, iso, scalar_dot=scalar_dot, **keywords).to_pyvista()
 
     @_method(FREE_SURFACE)
     def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
@@ -143,7 +137,8 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
         """
-        return _functions.free_surface(iso=iso, **self._prepare(words)).to_pyvista()
+        particles, keywords = self._prepare(words)
+        return _functions.free_surface(particles, iso, **keywords).to_pyvista()
 
     @_method(PROBE)
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
@@ -157,11 +152,11 @@ class SphAccessor:
 
         points: a data set, or an array (points, 3).
         """
-        keywords = self._prepare(words)
-        keywords["attributes"] = [name for name in keywords["attributes"] if keywords["positions"].array(name).dtype.kind in "fiub"]
+        particles, keywords = self._prepare(words)
+        keywords["attributes"] = [name for name in keywords["attributes"] if particles.array(name).dtype.kind in "fiub"]
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(
             as_points(points, "points", "(points, 3)"))
-        found = _functions.probe(points=result.points, **keywords)
+        found = _functions.probe(particles, result.points, **keywords)
         for name, values in found._point_arrays().items():
             result.point_data[name] = values.reshape(len(values), -1) if values.ndim > 2 else values
         return result
@@ -178,8 +173,8 @@ class SphAccessor:
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
         """
-        keywords = self._prepare(words, with_attributes=False)
-        found = _functions.derivatives(attributes={"array": keywords["positions"].array(array)}, form=form, **keywords)
+        particles, keywords = self._prepare(words, with_attributes=False)
+        found = _functions.derivatives(particles, {"array": particles.array(array)}, form=form, **keywords)
         gradients = found.gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
@@ -196,7 +191,7 @@ class SphAccessor:
         return result
 
     @_method(GAUGE)
-    def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _meters.Gauges:
+    def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _functions.Gauges:
         """Water levels: where straight lines cross the free surface, every crossing.
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
@@ -205,11 +200,12 @@ class SphAccessor:
 
         lines, iso: as of marchingcorrectors.gauge().
         """
-        return _meters.gauge(lines=lines, iso=iso, **self._prepare(words, with_attributes=False))
+        particles, keywords = self._prepare(words, with_attributes=False)
+        return _functions.gauge(particles, lines, iso, **keywords)
 
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
-             **words: Unpack[Particles]) -> _meters.Fluxes:
+             **words: Unpack[Particles]) -> _functions.Fluxes:
         """Fluxes through sections.
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
@@ -219,9 +215,8 @@ class SphAccessor:
         sections, iso: as of marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
         velocity: the name of a point array, or an array; by default the point array with a usual name.
         """
-        keywords = self._prepare(words, with_attributes=False)
-        velocity = keywords["positions"].velocity if velocity is None else velocity
-        return _meters.flux(velocity=velocity, sections=_triangles_in(sections), iso=iso, **keywords)
+        particles, keywords = self._prepare(words, with_attributes=False)
+        return _functions.flux(particles, particles.velocity if velocity is None else velocity, _triangles_in(sections), iso, **keywords)
 
     @_method(PROJECT)
     def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
@@ -236,17 +231,16 @@ class SphAccessor:
         scalar, weighted_by: names of point arrays, or arrays; without a scalar, the density.
         direction, resolution, box: as of marchingcorrectors.project().
         """
-        return _functions.project(scalar=scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
-                                **self._prepare(words, with_attributes=False))
+        particles, keywords = self._prepare(words, with_attributes=False)
+        return _functions.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box, **keywords)
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
-        """Returns keywords for the functions that take NumPy arrays. `positions` has the points and arrays of the data
-        set."""
-        words = {"periodic": None, **given, "positions": PointData(self._particles)}  # Without "auto", a period in the field data is ignored.
+        """Returns the particles, and keywords, for the functions that take NumPy arrays."""
+        particles, words = PointData(self._particles), {"periodic": None, **given}  # Without "auto", a period in the field data is ignored.
         names = words.pop("attributes", None)
         if with_attributes:
-            words["attributes"] = list(words["positions"].arrays if names is None else names)
-        return words
+            words["attributes"] = list(particles.arrays if names is None else names)
+        return particles, words
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)

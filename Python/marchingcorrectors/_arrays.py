@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Passes NumPy arrays to the core, and copies its results to NumPy arrays."""
+"""Passes NumPy arrays to the core, lets it find quantities among them (mcor_find.h), and copies its results to NumPy arrays."""
 import contextlib
 import ctypes
 import os
@@ -10,11 +10,15 @@ import numpy as np
 
 from . import _structs as c
 from ._device_arrays import on_host
-from ._find import ELEMENTS, ROLES, as_bytes, copy_at
 from ._library import ERRORS, Error, InvalidArgument, lib, take_sentence
 from ._options import BOUNDS, ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of
 
+ROLES = {name[len("MCOR_ROLE_"):].lower(): number for name, number in c.ENUMS["mcor_role"].items()
+         if not name.endswith("_COUNT")}
+WANTS = {name[len("MCOR_WANT_"):].lower(): number for name, number in c.ENUMS["mcor_want"].items()}
+ELEMENTS = {np.dtype(word): number for number, word in enumerate(("f4", "f8", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"))}
+OTHER = c.ENUMS["mcor_element"]["MCOR_ELEMENT_OTHER"]
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
 ABSENT = 2  # MCOR_ABSENT
@@ -105,15 +109,101 @@ def as_named(attributes):
 SUMMED = "Density"  # isosurface() has none if there is no such array.
 
 
-class Arguments:
-    """Fills the structures for one call, and keeps alive the arrays that the core borrows."""
+def as_bytes(text):
+    """Encodes text for the core's messages; characters that UTF-8 cannot hold (in names of files, say) become "?"."""
+    return text.encode(errors="replace")
+
+
+def copy_at(address, kind, shape):
+    """Returns an array that NumPy owns, of the numbers at this address."""
+    size = int(np.prod(shape)) * kind.itemsize
+    return np.frombuffer((ctypes.c_char * size).from_address(address), kind).reshape(shape).copy() if size else np.empty(shape, kind)
+
+
+def list_named(arrays):
+    """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers is listed with its shape alone."""
+    pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
+    named = (c.mcor_named * max(len(pairs), 1))()
+    for each, (name, array) in zip(named, pairs):
+        kind = np.dtype(np.uint8) if getattr(array, "dtype", None) == bool else getattr(array, "dtype", None)
+        each.name, each.type = None if name is None else as_bytes(name), ELEMENTS.get(kind, OTHER)
+        each.tuples, each.components = array.shape[0], int(np.prod(array.shape[1:], dtype=int))
+        if each.type != OTHER and array.size:
+            each.data = array.ctypes.data
+            each.stride[0] = array.strides[0] if len(array) > 1 else 0
+            each.stride[1] = array.strides[1] if array.ndim > 1 and array.shape[1] > 1 else 0
+    return named, len(pairs)
+
+
+def name_priority(name, quantity):
+    """Returns 0 for the most usual name of a quantity, more for less usual ones, -1 for any other name."""
+    return lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], as_bytes(name))
+
+
+def tells_of_walls(name):
+    """Returns whether a block or body of this name holds walls."""
+    return bool(lib.mcor_tells_of_walls(as_bytes(name)))
+
+
+class Found:
+    """Holds an mcor_found, as `found`, and the arrays that it borrows."""
 
     def __init__(self, positions):
-        self.kept, self.kinds, self.widening = [], {}, None
-        self.input, self.options = c.mcor_input(), c.mcor_options()
-        lib.mcor_set_default_options(ctypes.byref(self.options))
-        array = as_points(positions, "positions", "(particles, 3)")
-        self.positions, self.count = array, len(array)
+        self.positions, self.count, self.found = positions, len(positions), c.mcor_found()
+
+    def find(self, arrays, wants, names=None, values=None, only=(), taken=(), excluded=(), **words):
+        """Asks the core, and returns self. arrays: {name: array}, or pairs; wants: names of mcor_want; names: {role: name}; values: {role: number};
+        only: (name, low, high); taken, excluded: names; words: further members of mcor_request."""
+        pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
+        request = c.mcor_request(wants=sum(WANTS[name] for name in wants), active=-1)
+        for role, name in (names or {}).items():
+            request.names[ROLES[role]] = as_bytes(name or "")
+        for role, value in (values or {}).items():
+            request.values[ROLES[role]] = value
+        for name, value in words.items():
+            if isinstance(getattr(request, name), ctypes.Array):
+                getattr(request, name)[:] = value
+            else:
+                setattr(request, name, value)
+        ranges = (c.mcor_only * max(len(only), 1))(*((as_bytes(name), low, high) for name, low, high in only))
+        request.only, request.only_count = ranges, len(only)
+        request.taken, request.excluded = as_bytes("\n".join(taken)), as_bytes("\n".join(excluded))
+        self._borrowed, (named, count) = (pairs, ranges), list_named(pairs)
+        status = lib.mcor_find_input(ctypes.byref(request), list_named([(None, self.positions)])[0], named, count, None,
+                                     ctypes.byref(self.found))
+        self.error, self.unused_type, self.unused = (
+            take_sentence(getattr(self.found, name)) for name in ("error", "unused_type", "unused"))
+        if status and not self.error:
+            raise MemoryError
+        return self
+
+    def __del__(self):
+        if hasattr(self, "found"):
+            lib.mcor_free_found(ctypes.byref(self.found))
+
+    def text(self, member):
+        return (getattr(self.found, member) or b"").decode(errors="replace")
+
+    def name(self, role):
+        """Returns the name of the role's array, even if the array is not used; "" if there is none."""
+        return (self.found.views[ROLES[role]].name or b"").decode(errors="replace")
+
+    def made(self, i):
+        """Returns (name, a copy of the array)."""
+        made = self.found.made[i]
+        kind = next(dtype for dtype, number in ELEMENTS.items() if number == made.type)
+        return made.name.decode(), copy_at(made.data, kind, (made.tuples, made.components)[:1 + (made.components > 1)])
+
+
+class Arguments(Found):
+    """Fills the structures for one call, and keeps alive the arrays that the core borrows."""
+
+    def __init__(self, positions, options=None):
+        super().__init__(as_points(positions, "positions", "(particles, 3)"))
+        self.kept, self.kinds, self.widening, self.input, self.options = [], {}, None, self.found.input, options
+        if options is None:
+            self.options = c.mcor_options()
+            lib.mcor_set_default_options(ctypes.byref(self.options))
 
     def view(self, array, name):
         self.kept.append(array if array.size else np.empty(array.shape, array.dtype))  # NULL would mean a constant.
@@ -180,11 +270,19 @@ class Arguments:
             self.options.capping = 2  # MCOR_CAP_BOX
         lib.mcor_spell_out(ctypes.byref(self.options))
 
-    def per_neighbours(self, found, function, *more):
-        """Returns sums over neighbours, (particles,), by a function of the core. found: a Found, which has the masses of all
-        particles."""
-        given, values, why = c.mcor_input.from_buffer_copy(found.found.input), np.empty(self.count), c.mcor_message()
-        given.mass = found.found.views[ROLES["mass"]]
+    def sum_over_neighbours(self, ratio):
+        """Computes the smoothing lengths (ratio: their ETA) and the densities that the core lacks."""
+        for name, is_needed, function, more, take_it in (
+                ("SmoothingLength", self.found.needs_lengths, lib.mcor_find_smoothing_lengths, [ratio], lib.mcor_take_lengths),
+                ("Density", self.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
+            if is_needed and self.input.count:
+                self.kept.append(self.sums(name, function, *more))
+                take_it(ctypes.byref(self.found), self.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+
+    def sums(self, name, function, *more):
+        """Returns sums over neighbours, (particles,), by a function of the core, which takes the masses of all particles."""
+        given, values, why = c.mcor_input.from_buffer_copy(self.input), np.empty(self.count), c.mcor_message()
+        given.mass = self.found.views[ROLES["mass"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
         sentence = take_sentence(why)

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Unio
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (QUANTITIES, SUMMED, Arguments, as_array, contiguous, convert, number, take)
-from ._context import Context, default_context
-from ._find import ELEMENTS, Found, name_priority
-from ._library import InvalidArgument, InvalidData, fill_slots, lib, say, warn, warn_of_particles
+from ._arrays import ELEMENTS, QUANTITIES, Arguments, as_array, contiguous, convert, name_priority, number, take
+from ._library import Context, InvalidArgument, InvalidData, default_context, fill_slots, lib, say, warn, warn_of_particles
 from ._options import BOUNDS, OUTPUTS, Function, Options, check_names, did_you_mean, kind_of, show
-from ._units import without_unit
+from ._units import Units, without_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -40,14 +38,12 @@ if TYPE_CHECKING:
     Fluid = Union[str, Tuple[str, float], Mapping[str, float]]
     Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
 
-# These arguments may name an array if the particles come from a file.
-ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIES)
 
-
-class Shared(Options, total=False):
-    """The keywords that all functions, and the methods for PyVista, have."""
+class Keywords(Options, total=False):
+    """The keywords that all functions have."""
 
     fluid: Optional[Fluid]
+    solid: Optional[ArrayLike]
     smoothing_length: Optional[ArrayLike]
     volume: Optional[ArrayLike]
     mass: Optional[ArrayLike]
@@ -58,10 +54,6 @@ class Shared(Options, total=False):
     context: Optional[Context]
     device: Union[None, str, int]
     progress: Optional[Progress]
-
-
-class Keywords(Shared, total=False):
-    solid: Optional[ArrayLike]
 
 
 def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str, Any]:
@@ -88,7 +80,7 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
             if hasattr(positions, "words"):
                 given = signature.bind(positions, *arguments, **words).arguments
                 more = given.pop("words", {})
-                return function(**words_of_file(given.pop("positions"), {**given, **more}))
+                return function(**given.pop("positions").words({**given, **more}))
             return function(positions, *arguments, **words)
 
         show(call, own_keywords(Keywords, options), options)
@@ -97,20 +89,8 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
     return decorate
 
 
-def words_of_file(particles, given):
-    """Returns keywords of a function, with arrays in place of names. Adds `source`: the particles, whose arrays `fluid` and `only` may name."""
-    words = dict(given)
-    for name in ARRAYS:
-        text = words.get(name)
-        if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
-                (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
-            words[name] = particles.array(text)
-    words = particles.words(words)
-    return {**words, "source": particles, "positions": particles.positions}
-
-
-def prepare(units, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
-    """Returns the core's arguments. words: Keywords. named: the arrays that `fluid` and `only` may name; by default the
+def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
+    """Returns the core's arguments, with their units. words: Keywords. named: the arrays that `fluid` and `only` may name; by default the
     attributes. wants: names of mcor_want. nothing: the warning's words if there is no fluid; None makes this an error. roles:
     arrays by names in mcor_role."""
     options, attributes = dict(words), attributes or {}
@@ -118,8 +98,9 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
     options.update((name, True) for name in given.pop("outputs") or ())
     _warn_of_unused(options, given["context"])
+    units = Units(positions)
     arguments = Finder(units.positions, source, attributes if named is None else named)
-    arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
+    arguments.units, arguments.context, arguments.device, arguments.progress = units, given["context"], given["device"], given["progress"]
     given.update(units.quantities(given), within=units.lengths(given["within"], "within"))
     arguments.add_sizes({**{role: given[role] for role in QUANTITIES}, **roles}, options.pop("estimate_smoothing_length", False))
     arguments.add_fluid(given["solid"], given["fluid"])
@@ -127,7 +108,7 @@ def prepare(units, words, attributes=None, named=None, wants=(), nothing="no sur
     arguments.request["scalar_component"] = -1  # This means the magnitude.
     arguments.request.update((name, number(name, kind_of(name), options.pop(name))) for name in (
         "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options)
-    arguments.find(wants, units.options(options), nothing)
+    arguments.complete(wants, units.options(options), nothing)
     if "flow" not in wants:
         arguments.set_attributes(attributes)
     return arguments
@@ -146,7 +127,6 @@ class Finder(Arguments):
         super().__init__(positions)
         self.source = source
         self.others = source.arrays if source else attributes
-        self.array_of = source.array if source else functools.partial(_attribute, attributes)
         self.named, self.names, self.values, self.ranges, self.texts, self.looks = {}, {}, {}, [], [], False
         self.request = {"find": source is not None}
 
@@ -156,6 +136,14 @@ class Finder(Arguments):
             name += "'"
         self.named[name] = array
         return name
+
+    def array_of(self, name):
+        if self.source is not None:
+            return self.source.array(name)
+        if name not in self.others:
+            raise InvalidArgument(f"There is no array '{name}' among the attributes.{did_you_mean(name, self.others)} "
+                                  f"Attributes: {', '.join(self.others) or 'none'}.")
+        return self.others[name]
 
     def take(self, keyword, name, kinds="fiub"):
         array = as_array(without_unit(self.array_of(name)), f"array '{name}' of {keyword}")
@@ -238,16 +226,14 @@ class Finder(Arguments):
         self.texts.append(self.add(name, marks))
         self.ranges.append((self.texts[-1], 1, 1))
 
-    def find(self, wants, options, nothing):
+    def complete(self, wants, options, nothing):
         """Sets the input and the options. nothing: the warning's words for no fluid; None: no fluid is an error."""
-        found = Found(self.positions, self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges,
-                      **self.request)
-        self.kept += [found, self.named]
-        if found.error:
-            raise InvalidArgument(say("LENGTH_MISSING") if found.error.code == "NO_SMOOTHING_LENGTH" else found.error)
-        for sentence in filter(None, (found.unused, found.unused_type)):
+        self.find(self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges, **self.request)
+        if self.error:
+            raise InvalidArgument(say("LENGTH_MISSING") if self.error.code == "NO_SMOOTHING_LENGTH" else self.error)
+        for sentence in filter(None, (self.unused, self.unused_type)):
             warn(sentence)
-        self.input, why = found.found.input, found.text("no_fluid")
+        why = self.text("no_fluid")
         for name in self.texts:  # The core's sentence has name=value.
             why = why.replace(f"{name}=1", name)
         self.set_options(options)
@@ -256,12 +242,7 @@ class Finder(Arguments):
                 raise InvalidData(say("NOTHING_WITHOUT_FLUID", why, "nothing to compute"))
             warn(say("NOTHING_WITHOUT_FLUID", why, nothing))
             self.input.count = 0
-        for is_needed, function, more, take_it in (
-                (found.found.needs_lengths, lib.mcor_find_smoothing_lengths, [self.ratio], lib.mcor_take_lengths),
-                (found.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
-            if is_needed and self.input.count:
-                self.kept.append(self.per_neighbours(found, function, *more))
-                take_it(ctypes.byref(found.found), self.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        self.sum_over_neighbours(self.ratio)
 
 
 def parse_fluid(fluid):
@@ -293,13 +274,6 @@ def _list_outputs(words, options):
         if words.get(name) is False:
             raise InvalidArgument(f"outputs names '{name}', but {name} is False. Leave one of them out.")
     return outputs
-
-
-def _attribute(attributes, name):
-    if name not in attributes:
-        raise InvalidArgument(f"There is no array '{name}' among the attributes.{did_you_mean(name, attributes)} "
-                              f"Attributes: {', '.join(attributes) or 'none'}.")
-    return attributes[name]
 
 
 def _warn_of_unused(options, context):

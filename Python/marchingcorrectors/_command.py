@@ -12,12 +12,11 @@ from functools import partial
 import numpy as np
 
 from . import _film, _structs as c, io
+from ._arrays import Found
 from ._call import Keywords, Ranges, own_keywords
-from ._find import Found
-from ._functions import free_surface, isosurface, probe
+from ._functions import free_surface, gauge, isosurface, probe
 from ._library import InvalidArgument, lib, say
-from ._meters import gauge
-from .io._outputs import Outputs
+from .io.convert import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
 from ._usd import is_usd
 
@@ -188,7 +187,7 @@ def find_words(given, names, particles, command):
     if given.dp is not None:
         if length is not None:
             raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
-        dimension = lib.mcor_find_dimension(ctypes.byref(Found(particles.positions, [], ["list"]).found.input), None, words.get("dimension", 0))
+        dimension = lib.mcor_find_dimension(ctypes.byref(Found(particles.positions).find([], ["list"]).found.input), None, words.get("dimension", 0))
         words["smoothing_length"] = (given.coefh or 1.0) * dimension ** 0.5 * given.dp
         mass_and_density = [words.get(name, getattr(particles, name)) for name in ("mass", "density")]
         if "volume" not in words and particles.volume is None and any(each is None for each in mass_and_density):
@@ -227,8 +226,8 @@ def surface_of(given, particles, more=()):
     surface = isosurface(particles, given.scalar, given.iso, **words)
     if surface.iso_value is not None and given.scalar in particles:
         scalar = particles.array(given.scalar)
-        surface.iso_value_name = Found(
-            particles.positions, {given.scalar: scalar}, ["scalar"], {"scalar": given.scalar}, filled=bool(given.filled),
+        surface.iso_value_name = Found(particles.positions).find(
+            {given.scalar: scalar}, ["scalar"], {"scalar": given.scalar}, filled=bool(given.filled),
             scalar_component=words.get("scalar_component", -1)).text("iso_value_name")
         surface.iso_value = surface.iso_value.astype(np.float32 if scalar.dtype == np.float32 else np.float64)
     return surface, words

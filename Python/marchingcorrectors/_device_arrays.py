@@ -114,11 +114,11 @@ class Driver:
 
     def take(self, size):
         """Takes the smallest idle block with enough room; if there is none, makes the largest idle block larger."""
-        fitting = [block for block in self.idle if block[1] >= size]
-        if fitting or self.idle:
-            block = min(fitting, key=lambda each: each[1]) if fitting else max(self.idle, key=lambda each: each[1])
+        block = min((each for each in self.idle if each[1] >= size), key=lambda each: each[1], default=None) or max(
+            self.idle, key=lambda each: each[1], default=None)
+        if block:
             self.idle.remove(block)
-            if fitting:
+            if block[1] >= size:
                 return block
             self.call("cuMemFreeHost", ctypes.c_void_p(block[0]))
         memory, room = ctypes.c_void_p(), size + size // 8

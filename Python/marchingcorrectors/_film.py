@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Films in one USD file, of particles (the command surface) or of surfaces that the program wrote (the command convert)."""
 import argparse
+import dataclasses
 import re
 import sys
 from functools import partial
@@ -10,11 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from . import io
+from ._arrays import values_of
+from ._call import prepare
+from ._functions import probe
 from ._library import Error, InvalidArgument, in_shell, warn
-from ._spray import take_spray
-from ._surface import Surface
-from ._usd import Film, find_velocity, is_usd
+from ._options import PROBE
+from ._surface import CELLS, Surface
+from ._usd import Film, Spray, find_velocity, is_usd
 from .io._particles import TIMES, Particles, usual
+from .io.convert import convert as convert_particles
 from .io.vtk_files import XmlFile, list_pieces, list_times
 
 # Options of films: name, name of the value, type, and meaning.
@@ -38,24 +43,20 @@ def refuse_options(given):
             raise InvalidArgument(f"{word} is for films: give an output that ends in .usdc, .usda or .usd.")
 
 
-def open_film(given, inputs):
-    names = ("fps", "slow", "meters_per_unit", "velocity")
-    return Film(given.output, inputs, **{name: getattr(given, name) for name in names if getattr(given, name) is not None})
-
-
 def in_order(paths):
     """Sorts files by the numbers in their names, as the program does: drop_9 before drop_10."""
     return sorted(paths, key=lambda path: [(0, int(part), "") if part.isdigit() else (1, 0, part)
                                            for part in re.split(r"(\d+)", str(path))])
 
 
-def run(given, inputs, steps, make):
-    """Adds each step, a pair of (label, argument of make()). If a step fails, reports it and adds the others."""
-    failed = 0
-    with open_film(given, inputs) as film:
-        for i, (label, step) in enumerate(steps):
+def run(given, inputs, steps, add):
+    """Adds each step, a pair of (label, function that returns a thing and its time), by add(film, thing, time). If a step fails, reports it and adds
+    the others."""
+    failed, words = 0, {name: getattr(given, name) for name in ("fps", "slow", "meters_per_unit", "velocity")}
+    with Film(given.output, inputs, **{name: value for name, value in words.items() if value is not None}) as film:
+        for i, (label, load) in enumerate(steps):
             try:
-                said = make(film, step, i * (1.0 if given.time_step is None else given.time_step))
+                said = add(film, *load())
                 if not getattr(given, "quiet", False):
                     print(f"{given.output}: {label}, {said}", flush=True)
             except (Error, OSError) as error:
@@ -86,8 +87,7 @@ def run_particles(given, surface_of):
         particles = io.read(path, step=step, walls=given.walls)
         return particles, time if particles.time is None or given.time_step is not None else particles.time
 
-    def make(film, step, _):
-        particles, time = step()
+    def add(film, particles, time):
         film.up = given.up or film.up if film.steps else given.up or particles.up
         arrays = particles.arrays if len(particles) else {}
         velocity = find_velocity(arrays, film.velocity) if arrays else None
@@ -106,7 +106,7 @@ def run_particles(given, surface_of):
     steps = [(Path(path).name, partial(load, path, step, i * unit)) for i, (path, step) in enumerate(stored)]
     if given.times or given.slow is not None:
         steps = between_steps(steps, given.times, (given.fps or 24.0) * (given.slow or 1.0), given.velocity)
-    return run(given, [*paths, *given.walls], steps, make)
+    return run(given, [*paths, *given.walls], steps, add)
 
 
 def between_steps(steps, times, rate, velocity):
@@ -203,6 +203,112 @@ def to_times(text):
     return sorted(found)
 
 
+# -- spray: particles in small drops, or alone, which a film shows as balls beside the surface of the others --
+
+SPRAY_WORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid", "within", "only", "device")
+
+
+def take_spray(surface, particles, words, iso, least, velocity=None):
+    """Returns the surface without the closed pieces that enclose fewer than `least` fluid particles, and the spray: the
+    particles in these pieces, and particles where the sum of the weights is below `iso`. A particle that is nearest to a
+    point of another piece, as at its tip, is no spray.
+
+    words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of its array.
+    """
+    if surface.line_offsets is not None:
+        raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
+    kept = {name: value for name, value in words.items() if name in PROBE or name in SPRAY_WORDS}
+    every, found = particles.positions, particles.words(kept)
+    arguments = prepare(found.pop("positions"), found)
+    given, count = arguments.input, arguments.count
+    fluid = np.flatnonzero(np.ctypeslib.as_array(given.solid, (count,)) == 0) if given.solid else np.arange(count)
+    volume, mass, density = (values_of(each, count) for each in (given.volume, given.mass, given.density))
+    if volume is None:
+        volume = mass / density if mass is not None and density is not None else (surface.statistics["smoothing_length_max"] / 1.3) ** 3
+    widths = np.broadcast_to(np.cbrt(6 / np.pi * np.asarray(volume, float)), count)  # These are diameters of balls with the volumes.
+    is_spray = probe(particles, every[fluid], **kept).weight_sum < iso
+    label = label_pieces(surface.triangles, len(surface.points))
+    small = small_pieces(surface, label, every, fluid, least)
+    is_small = np.isin(label, [piece for piece, _ in small])
+    is_spray &= ~np.isin(fluid, surface.nearest_particle[~is_small])
+    is_spray |= np.isin(fluid, np.concatenate([np.zeros(0, int), *(own for _, own in small)]))
+    surface = dataclasses.replace(surface, nearest_particle=None)
+    chosen = fluid[is_spray]
+    ids = usual([name for name in particles.arrays if particles.arrays[name].dtype.kind in "iu"], "particle_id")
+    return without_points(surface, is_small), Spray(
+        every[chosen], widths[chosen],
+        None if velocity is None else particles.arrays[velocity][chosen], None if ids is None else particles.arrays[ids][chosen])
+
+
+def label_pieces(triangles, count):
+    """Returns the lowest point of each point's piece; triangles that share points are one piece."""
+    label = np.arange(count)
+    edges = np.concatenate([triangles[:, :2], triangles[:, 1:]]).astype(np.int64)
+    while True:
+        ends = label[edges]
+        lowest = ends.min(axis=1)
+        if (ends == lowest[:, None]).all():
+            return label
+        np.minimum.at(label, ends.ravel(), np.repeat(lowest, 2))
+        while (label[label] != label).any():
+            label = label[label]
+
+
+def small_pieces(surface, label, positions, fluid, least):
+    """Returns (piece, its particles) for each closed piece with fewer than `least` particles. A piece's particles are enclosed by it, or nearest
+    to its points. Cavities are not listed; a cavity is left out with the piece around it."""
+    piece = label[surface.triangles[:, 0]]
+    corners = surface.points[surface.triangles].astype(float)
+    volume = np.bincount(piece, np.linalg.det(corners), len(label))
+    nearest = np.unique(np.stack([label, surface.nearest_particle], axis=1), axis=0)
+    begins = np.searchsorted(nearest[:, 0], np.arange(len(label) + 1))
+    order, along = np.argsort(piece, kind="stable"), fluid[np.argsort(positions[fluid, 0], kind="stable")]
+    ends = np.searchsorted(piece[order], np.arange(len(label) + 1))
+    found, x = [], positions[along, 0]
+    for each in np.flatnonzero((np.diff(begins) > 0) & (np.diff(begins) < least) & (np.diff(ends) > 0)):
+        own = order[ends[each]:ends[each + 1]]
+        low, high = corners[own].min(axis=(0, 1)), corners[own].max(axis=(0, 1))
+        near = along[np.searchsorted(x, low[0]):np.searchsorted(x, high[0], "right")]
+        near = near[((positions[near] >= low) & (positions[near] <= high)).all(axis=1)]
+        if is_closed(surface.triangles[own]):
+            inside = near[encloses(corners[own], positions[near].astype(float))]
+            found.append((each, np.union1d(inside, nearest[begins[each]:begins[each + 1], 1]), low, high))
+    small = [one for one in found if volume[one[0]] > 0 and len(one[1]) < least]
+    small += [one for one in found if volume[one[0]] <= 0 and any(
+        (one[2] >= other[2]).all() and (one[3] <= other[3]).all() for other in small)]
+    return [one[:2] for one in small]
+
+
+def is_closed(triangles):
+    """Returns whether each edge has a triangle on both sides."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
+    there, back = (np.sort(edges[:, i] << 32 | edges[:, 1 - i]) for i in range(2))
+    return np.array_equal(there, back)
+
+
+def encloses(corners, points):
+    """Returns, for each point, whether the triangles surround it: their solid angles add up to a full sphere."""
+    a, b, c = np.moveaxis(corners[None] - points[:, None, None], 2, 0)
+    la, lb, lc = (np.linalg.norm(each, axis=-1) for each in (a, b, c))
+    dot = lambda one, other: np.einsum("...i,...i", one, other)  # noqa: E731
+    angle = np.arctan2(dot(a, np.cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+    return np.abs(angle.sum(axis=1)) > np.pi
+
+
+def without_points(surface, left_out):
+    """Returns the surface without these points, and without triangles that have one."""
+    if not left_out.any():
+        return surface
+    number = np.cumsum(~left_out) - 1
+    kept = ~left_out[surface.triangles[:, 0]]
+    arrays = {f.name: getattr(surface, f.name)[~left_out] for f in dataclasses.fields(surface)
+              if isinstance(getattr(surface, f.name), np.ndarray) and (f.name == "points" or f.name not in CELLS)}
+    return dataclasses.replace(
+        surface, **arrays, triangles=number[surface.triangles[kept]].astype(surface.triangles.dtype),
+        triangle_keys=None if surface.triangle_keys is None else surface.triangle_keys[kept],
+        attributes={name: array[~left_out] for name, array in surface.attributes.items()})
+
+
 # -- films of surfaces --
 
 def run_convert(arguments):
@@ -217,27 +323,28 @@ def run_convert(arguments):
         print(f"{given.output}: {convert(given)}")
     else:
         refuse_options(given)
-        from .io.convert import convert as convert_particles
-
         convert_particles(given.input, given.output)
 
 
 def convert(given):
     """Adds the surfaces in .vtp files, or in lists of them."""
-    paths, steps = [Path(path) for path in in_order(given.input)], []
-    for path in paths:
-        times = list_times(path) if path.suffix.lower() == ".pvd" else {None: [path]}
-        steps += [(files[0].name, (time, files)) for time, files in times.items()]
+    paths = [Path(path) for path in in_order(given.input)]
+    stored = [(time, files) for path in paths for time, files in (
+        list_times(path) if path.suffix.lower() == ".pvd" else {None: [path]}).items()]
 
-    def make(film, step, time):
-        found, surface = read_surface(step[1])
+    def load(time, files, other):
+        found, surface = read_surface(files)
+        known = found if time is None else time
+        return surface, other if known is None or given.time_step is not None else known
+
+    def add(film, surface, time):
         film.up = given.up or film.up
-        known = found if step[0] is None else step[0]
-        time = time if known is None or given.time_step is not None else known
         film.add(surface, time)
         return tell(surface, time)
 
-    return run(given, [*paths, *(path for _, (_, files) in steps for path in files)], steps, make)
+    unit = 1.0 if given.time_step is None else given.time_step
+    steps = [(files[0].name, partial(load, time, files, i * unit)) for i, (time, files) in enumerate(stored)]
+    return run(given, [*paths, *(path for _, files in stored for path in files)], steps, add)
 
 
 def read_surface(paths):

@@ -1,20 +1,22 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""isosurface, free_surface, probe, derivatives, widening, project: one call of the core each."""
+"""isosurface, free_surface, probe, derivatives, widening, project, gauge, flux, flow: one call of the core each."""
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _structs as c
-from ._arrays import SUMMED, as_named, as_points, contiguous, find_iso_value, left_out, number, set_option, statistics, take, take_all, take_each
+from ._arrays import (SUMMED, as_bytes, as_named, as_points, contiguous, find_iso_value, left_out, number, set_option, statistics, take, take_all,
+                      take_each, take_rows)
 from ._call import called, of_particles, prepare, warn_of_missing
-from ._library import ERRORS, InvalidArgument, describe_warnings, lib, warn, warn_of_particles
-from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, PROJECT, WIDENING
-from ._surface import Derivatives, Projection, Samples, Surface
-from ._units import Units, scalar_and_iso, without_unit
+from ._library import ERRORS, InvalidArgument, describe_warnings, lib, say, warn, warn_of_particles
+from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, WIDENING
+from ._surface import STATES, Derivatives, Fluxes, Gauges, Projection, Samples, Surface
+from ._units import scalar_and_iso, without_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -89,7 +91,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     if is_free and scalar is not None:
         warn('The scalar is not used, because field is "weight_sum", which is the free surface. Leave one of them out.')
     roles = {} if is_free else {"wants": ["scalar"], "scalar": scalar, "scalar_dot": scalar_dot}
-    arguments = prepare(Units(positions), words, real, attributes, **roles)
+    arguments = prepare(positions, words, real, attributes, **roles)
     arguments.input.scalar.name = None  # Then the core says "the scalar".
     if iso is None:
         found = ((), 0.5) if is_free else find_iso_value(arguments.input)
@@ -191,9 +193,8 @@ def probe(positions: Positions, points: ArrayLike, *,
 
     {options}
     """
-    units = Units(positions)
-    arguments = prepare(units, words, as_named(attributes), nothing="no point is valid")
-    where = contiguous(units.lengths(points, "array of points"), "array of points")
+    arguments = prepare(positions, words, as_named(attributes), nothing="no point is valid")
+    where = contiguous(arguments.units.lengths(points, "array of points"), "array of points")
     is_whole = where.shape[-1:] == (3,)
     shape = where.shape[:-1] if is_whole else (0,)
     where = as_points(where.reshape(-1, 3) if is_whole else where, "points", "(..., 3)")
@@ -235,7 +236,7 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 
     {options}
     """
-    arguments = prepare(Units(positions), words, as_named(attributes), nothing=None)
+    arguments = prepare(positions, words, as_named(attributes), nothing=None)
     chosen = number("form", "mcor_gradient", form)
     with called(lib.mcor_derive, c.mcor_derivatives, arguments, chosen) as result:
         found = Derivatives(
@@ -265,7 +266,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
 
     {options}
     """
-    arguments = prepare(Units(positions), {**words, "widen": widen}, nothing=None)
+    arguments = prepare(positions, {**words, "widen": widen}, nothing=None)
     if iso is not None:
         arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
         arguments.set_iso_values(iso)
@@ -273,17 +274,6 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
         warn_of_particles(arguments, result.statistics)
         factors = take(result.factor, (result.count,))
         return (factors, take(result.volume, (result.count,))) if return_volume else factors
-
-
-def _direction(direction):
-    if isinstance(direction, str) and direction in ("x", "y", "z"):
-        return [float(direction == axis) for axis in "xyz"]
-    numbers = np.zeros(0 if isinstance(direction, str) else 3)
-    if not isinstance(direction, (str, type(None))):
-        numbers = np.ravel(contiguous(direction, "direction"))
-    if len(numbers) != 3 or direction is not None and not numbers.any():
-        raise InvalidArgument(f"direction is {direction!r}; it must be \"x\", \"y\", \"z\" or three numbers that are not all 0.")
-    return numbers.tolist()
 
 
 @of_particles(PROJECT)
@@ -314,13 +304,18 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
 
     {options}
     """
-    units = Units(positions)
     if isinstance(scalar, str) and scalar == SUMMED:  # If this array is missing, the sum of the particles' masses is used.
         scalar = None
-    arguments = prepare(units, words, wants=["column"], nothing="nothing is seen", scalar=without_unit(scalar))
+    arguments = prepare(positions, words, wants=["column"], nothing="nothing is seen", scalar=without_unit(scalar))
+    if isinstance(direction, str):
+        along = [float(direction == axis) for axis in "xyz"]
+    else:
+        along = [0.0] * 3 if direction is None else np.ravel(contiguous(direction, "direction")).tolist()
+    if len(along) != 3 or direction is not None and not any(along):
+        raise InvalidArgument(f"direction is {direction!r}; it must be \"x\", \"y\", \"z\" or three numbers that are not all 0.")
     view = c.mcor_view()
-    view.direction[:] = _direction(direction)
-    set_option(view, "box", "double[6]", units.lengths(box, "box"))
+    view.direction[:] = along
+    set_option(view, "box", "double[6]", arguments.units.lengths(box, "box"))
     view.resolution = number("resolution", "int", resolution)
     if weighted_by is not None:
         view.weight = arguments.per_particle(without_unit(weighted_by), "weight")
@@ -332,6 +327,135 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
             values=np.zeros((0, 0)) if values is None else values, axes=np.array(found.axes).reshape(3, 3), depth=low[2],
             extent=np.array([low[0], low[0] + columns * pixel[0], low[1], low[1] + rows * pixel[1]]),
             statistics=statistics(found.statistics))
+
+
+def _warn_of_dry(arguments, noun, names, outside):
+    """Warns of places that no particle reaches. If there is no fluid, another warning says so."""
+    dry = [name for name, is_dry in zip(names, outside) if is_dry and arguments.input.count]
+    if dry:
+        warn(say("PLACE_DRY", noun, dry[0]) if len(dry) == 1 else say("PLACES_DRY", len(dry), len(names), noun, dry[0]))
+
+
+@of_particles(GAUGE)
+def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Gauges:
+    """Water levels: where straight lines cross the free surface, every crossing.
+
+    Example: gauge(x, {"mast": ((0.5, 0, 0), (0.5, 1, 0))}, smoothing_length=h, mass=m, density=rho).last
+
+    Returns Gauges: state, first, last, depth and place of each line, and all crossings by name.
+
+    lines: (lines, 2, 3), L: from and to of each; or one line, (2, 3); or {name: (from, to)}.
+    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+
+    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share). The other
+    arguments are those of isosurface().
+
+    {options}
+    """
+    arguments = prepare(positions, words, nothing="all gauges are dry")
+    names = [str(name) for name in lines] if isinstance(lines, Mapping) else None
+    given = list(lines.values()) if isinstance(lines, Mapping) else lines
+    array = contiguous(arguments.units.lengths(given, "array of lines"), "array of lines").astype(np.float64)
+    if array.size == 0:
+        array = array.reshape(0, 2, 3)
+    if array.ndim == 2 and names is None:
+        array = array[np.newaxis]
+    if array.ndim != 3 or array.shape[1:] != (2, 3):
+        raise InvalidArgument(f"Lines have the shape (lines, 2, 3), from and to each, not {array.shape}.")
+    names = names or [str(i) for i in range(len(array))]
+    arguments.set_iso_values(iso)
+    structures = (c.mcor_gauge_line * max(len(array), 1))()
+    for line, name, ends in zip(structures, names, array):
+        getattr(line, "from")[:], line.to[:], line.name = ends[0], ends[1], as_bytes(name)
+    with called(lib.mcor_gauge, c.mcor_gauges, arguments, structures, len(array)) as found:
+        rows, crossings = take_rows(found.readings, found.count), take_rows(found.crossings, found.crossing_count)
+        columns = {name: rows[name].copy() for name in ("first", "last", "depth", "place")}
+        _warn_of_dry(arguments, "gauge", names, rows["outside"])
+        return Gauges(
+            names=names, state=STATES[rows["state"]], outside=rows["outside"].astype(bool), **columns,
+            crossings={name: crossings[row["first_crossing"]:][:row["crossing_count"]].copy() for name, row in zip(names, rows)},
+            statistics=statistics(found.statistics))
+
+
+FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, radius); '
+         '("box", six bounds); (n, 3, 3): triangles; (2, 3) or (n, 2, 3): lines in two dimensions')
+
+
+def _as_section(section, name, units):
+    """Returns a section's kind of shape, points (n, 3) and radius."""
+    def numbers(values, shape):
+        array = contiguous(values, "section").astype(np.float64)
+        if array.shape != shape:
+            raise InvalidArgument(f"Section '{name}' has an array of the shape {array.shape} where it is {shape}. A section is "
+                                  f"{FORMS}.")
+        return array
+
+    kinds = c.ENUMS["mcor_section_shape"]
+    if isinstance(section, (tuple, list)) and len(section) and isinstance(section[0], str):
+        lengths = [units.lengths(each, "section") for each in section[1:2] + section[3:]]
+        if section[0] == "disc" and len(section) == 4:
+            points = [numbers(lengths[0], (3,)), numbers(without_unit(section[2]), (3,))]
+            return kinds["MCOR_SECTION_DISC"], np.stack(points), float(numbers(lengths[1], (1,))[0])
+        if section[0] == "box" and len(section) == 2:
+            return kinds["MCOR_SECTION_BOX"], np.ascontiguousarray(numbers(lengths[0], (6,)).reshape(3, 2).T), 0.0
+        raise InvalidArgument(f"Section '{name}' begins with '{section[0]}'. A section is {FORMS}.")
+    array = contiguous(units.lengths(section, "section"), "section").astype(np.float64)
+    shape = {(3, 3): "RECTANGLE", (2, 3): "LINES"}.get(array.shape)
+    if array.ndim == 3 and array.shape[1:] in ((3, 3), (2, 3)):
+        shape = "TRIANGLES" if array.shape[1] == 3 else "LINES"
+    if shape is None:
+        raise InvalidArgument(f"Section '{name}' has the shape {array.shape}. A section is {FORMS}.")
+    return kinds["MCOR_SECTION_" + shape], array.reshape(-1, 3), 0.0
+
+
+def _as_sections(sections, units):
+    """Returns names and structures, and the arrays that must stay alive as long as the structures."""
+    is_one = isinstance(sections, np.ndarray) or (
+        isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
+    if not is_one and not isinstance(sections, (Mapping, tuple, list)):
+        raise InvalidArgument(f"The sections are of the type {type(sections).__name__}; they must be one section, a list of them or "
+                              f"{{name: section}}. A section is {FORMS}.")
+    given = [sections] if is_one else list(sections.values()) if isinstance(sections, Mapping) else list(sections)
+    names = [str(name) for name in sections] if isinstance(sections, Mapping) else [str(i) for i in range(len(given))]
+    made, kept = (c.mcor_section * max(len(given), 1))(), []
+    for structure, section, name in zip(made, given, names):
+        structure.shape, points, structure.radius = _as_section(section, name, units)
+        kept.append(points)
+        structure.points = points.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        structure.point_count, structure.name = len(points), as_bytes(name)
+    return names, made, kept
+
+
+@of_particles(GAUGE)
+def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
+    """Fluxes through sections, to 1e-5 of the largest flux that the velocities there allow.
+
+    Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
+
+    Returns Fluxes: area, volume_flux, mass_flux and velocity of each section.
+
+    velocity: (particles, 3), L per unit of time; in two dimensions (particles, 2) will do.
+    sections: one, a list of them, or {name: section}. A section is (3, 3): a rectangle's corner and two
+        ends, whose cross product is the normal; ("disc", centre, normal, radius); ("box", six bounds): its
+        sides, with normals outwards; (n, 3, 3): triangles, with normals by the right-hand rule,
+        or outwards if they are a closed surface; in two dimensions (2, 3) or (n, 2, 3): lines, with normals
+        to their right.
+    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+    density: (particles,) or one value, for mass fluxes; or mass and volume, which give it.
+
+    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share); the means are those of the
+    fluid. The other arguments are those of isosurface().
+
+    {options}
+    """
+    arguments = prepare(positions, words, wants=["flow"], nothing="nothing flows", velocity=velocity)
+    names, array, _kept = _as_sections(sections, arguments.units)
+    arguments.set_iso_values(iso)
+    with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:
+        rows = take_rows(found.readings, found.count)
+        columns = {name: rows[name].copy() for name in ("area", "volume_flux", "mass_flux", "velocity")}
+        _warn_of_dry(arguments, "section", names, rows["outside"])
+        return Fluxes(names=names, outside=rows["outside"].astype(bool), **columns, statistics=statistics(found.statistics))
 
 
 def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:

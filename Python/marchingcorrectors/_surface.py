@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of the functions: a surface, samples, derivatives, an image."""
+"""Results of the functions: a surface, samples, derivatives, an image, gauges, fluxes."""
 from __future__ import annotations
 
 import csv
@@ -118,7 +118,7 @@ class Surface(Result):
         """A pyvista.PolyData with all arrays of the surface."""
         import pyvista
 
-        from ._vtk_surface import build_mesh
+        from ._vtk import build_mesh
 
         mesh, arrays = pyvista.PolyData(), self.point_arrays()
         build_mesh(mesh, self, {name: array for name, array in arrays.items() if array.dtype.kind in "fiuU" or not len(array)
@@ -311,3 +311,41 @@ class Projection(Result):
     def __repr__(self):
         rows, columns = self.values.shape
         return f"<Projection: {columns} x {rows} pixels>"
+
+
+STATES = np.array(["dry", "wet", "full"])
+
+
+@dataclass(eq=False, repr=False)
+class Gauges(Result):
+    """Readings of lines; lengths are from the line's beginning, unit of the positions (L). NaN where dry."""
+
+    names: List[str]  #: of the lines; "0", "1", ... where none were given
+    state: np.ndarray  #: (lines,) "dry": no fluid; "full": fluid at the line's end; "wet": else
+    first: np.ndarray  #: (lines,) float64: where fluid first ends
+    last: np.ndarray  #: (lines,) float64: where it last ends; at the line's end where full
+    depth: np.ndarray  #: (lines,) float64: length in fluid
+    place: np.ndarray  #: (lines, 3) float64: of `last`
+    outside: np.ndarray  #: (lines,) bool: no particle reaches the line
+    crossings: Dict[str, np.ndarray]  #: {name: float64}: where each line goes through the surface
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        counts = ", ".join(f"{int((self.state == state).sum())} {state}" for state in STATES)
+        return f"<Gauges: {len(self.names)} lines, {counts}>"
+
+
+@dataclass(eq=False, repr=False)
+class Fluxes(Result):
+    """Fluxes through the part of each section that is in fluid; units of positions (L), velocities and densities."""
+
+    names: List[str]  #: of the sections; "0", "1", ... where none were given
+    area: np.ndarray  #: (sections,) float64: of that part, L^2; in two dimensions a length
+    volume_flux: np.ndarray  #: (sections,) float64: the integral of v . n
+    mass_flux: np.ndarray  #: (sections,) float64: of rho v . n; NaN without densities
+    velocity: np.ndarray  #: (sections,) float64: volume_flux / area; NaN where the area is 0
+    outside: np.ndarray  #: (sections,) bool: no particle reaches the section
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        return f"<Fluxes: {len(self.names)} sections, {int((self.area > 0).sum())} in fluid>"

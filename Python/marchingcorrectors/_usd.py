@@ -12,7 +12,7 @@ import numpy as np
 from ._library import InvalidArgument, warn
 from ._options import did_you_mean
 from ._surface import Surface
-from .io._outputs import Outputs
+from .io.convert import Outputs
 from .io._particles import FileError, usual
 
 ENDINGS = (".usdc", ".usda", ".usd")
@@ -102,6 +102,8 @@ class Film:
         velocities: (points, 3); without them the array of the surface that is the velocity.
         spray: particles beside the surface.
         """
+        from pxr import UsdGeom
+
         if self._stage is None:
             self._open()
         code = round(float(time) * self.fps * self.slow, 6)  # Without the rounding, a whole frame could be off by a bit.
@@ -120,7 +122,14 @@ class Film:
             wanted["spray"] = self._spray_of(spray)
         try:
             if self._first is None:
-                self._start(code)
+                if self.up not in ("y", "z"):
+                    raise InvalidArgument(f"up is '{self.up}'; USD knows y and z.")
+                self._first = code
+                UsdGeom.SetStageUpAxis(self._stage, self.up.upper())
+                UsdGeom.SetStageMetersPerUnit(self._stage, self.meters_per_unit)
+                self._stage.SetFramesPerSecond(self.fps)
+                self._stage.SetTimeCodesPerSecond(self.fps)
+                self._stage.SetStartTimeCode(code)
             for name, (kind, _) in wanted.items():
                 if name not in self._parts:
                     self._parts[name] = _Part(self._stage, kind, name)
@@ -135,18 +144,6 @@ class Film:
         self.steps += 1
         if self._unsaved > UNSAVED:
             self._save()
-
-    def _start(self, code):
-        from pxr import UsdGeom
-
-        if self.up not in ("y", "z"):
-            raise InvalidArgument(f"up is '{self.up}'; USD knows y and z.")
-        self._first = code
-        UsdGeom.SetStageUpAxis(self._stage, self.up.upper())
-        UsdGeom.SetStageMetersPerUnit(self._stage, self.meters_per_unit)
-        self._stage.SetFramesPerSecond(self.fps)
-        self._stage.SetTimeCodesPerSecond(self.fps)
-        self._stage.SetStartTimeCode(code)
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
         """Sets velocities, and arrays as primvars."""
@@ -291,13 +288,8 @@ def _nothing(name, usd):
 
 def _to_usd(usd, array):
     """Returns the array in USD's type `usd`."""
-    from pxr import Vt
+    from pxr import Sdf
 
-    width = next((int(letter) for letter in usd.replace("Int64", "") if letter.isdigit()), 1)
-    letter = "i" if usd.startswith("Int") else "f"
-    made = getattr(Vt, "Int64Array" if usd == "Int64" else f"Vec{width}{letter}Array" if width > 1 else
-                   "IntArray" if letter == "i" else "FloatArray")
-    if not array.size:
-        return made()
-    plain = np.ascontiguousarray(array, np.int64 if usd == "Int64" else np.int32 if letter == "i" else np.float32)
-    return made.FromNumpy(plain.reshape((-1, width) if width > 1 else -1))
+    empty = getattr(Sdf.ValueTypeNames, usd + "Array").defaultValue
+    plain = np.asarray(empty)
+    return type(empty).FromNumpy(np.ascontiguousarray(array, plain.dtype).reshape(-1, *plain.shape[1:])) if array.size else empty

@@ -10,12 +10,11 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 from . import io
-from .io.bodies import LISTS
 from .io.convert import to_vtk
 
 # ParaView reads VTK's own files itself. Its readers of tables and molecules make no particles; for their endings ParaView asks
 # which reader to use.
-ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *LISTS)] + ["gadget"]
+ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *io.LISTS)] + ["gadget"]
 
 
 @smproxy.reader(name="SPHParticleReader", label="SPH Particle Reader", extensions=ENDINGS,

@@ -14,7 +14,6 @@ import numpy as np
 import marchingcorrectors as mc
 from marchingcorrectors import _options, _structs
 from marchingcorrectors._call import prepare
-from marchingcorrectors._units import Units
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from says import says  # noqa: E402
@@ -80,7 +79,7 @@ class Results(unittest.TestCase):
             if name not in ("periodic", "box", "capping"):
                 kind = _options.Options.__annotations__[name]
                 for value, number in {True: 1}.items() if kind is bool else numbers.items() if numbers else {3: 3}.items():
-                    options = prepare(Units(POSITIONS), {"smoothing_length": H, name: value}).options
+                    options = prepare(POSITIONS, {"smoothing_length": H, name: value}).options
                     self.assertEqual(getattr(options, name), number, name)
 
     def test_attributes(self):
@@ -235,7 +234,7 @@ class Inputs(unittest.TestCase):
     def test_right_arrays_are_not_copied(self):
         for dtype in (np.float32, np.float64):
             positions, distance = lattice(dtype)
-            arguments = prepare(Units(positions), {"smoothing_length": H, "volume": distance}, {"a": distance})
+            arguments = prepare(positions, {"smoothing_length": H, "volume": distance}, {"a": distance})
             self.assertEqual(arguments.input.positions.data, positions.ctypes.data)
             self.assertEqual(arguments.input.volume.data, distance.ctypes.data)
             self.assertEqual(arguments.input.attributes[0].data, distance.ctypes.data)

@@ -67,6 +67,9 @@ class Test(unittest.TestCase):
             setattr(surface, name, surface.GetWidening() + 1)
             self.assertGreater(surface.GetMTime(), before)
         self.assertEqual((surface.GetWidening(), surface.Widening), (3, 3))
+        surface.AddOnly("h", 0, 1)
+        surface.ExcludedArrays = ["h"]
+        self.assertEqual((surface.Only, surface.ExcludedArrays, surface.GetExcludedArray(0)), ([("h", 0, 1)], ["h"], "h"))
         with self.assertRaises(AttributeError):
             surface.used_cube_size = 1.0
         with self.assertRaisesRegex(AttributeError, "'cube'"):

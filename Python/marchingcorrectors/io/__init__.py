@@ -7,16 +7,32 @@
 from __future__ import annotations
 
 import os
+import re
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Iterator, Sequence, Union
 
-from . import bodies
-from ._bytes import read_head
-from ._particles import FileError, Particles, choose_step
-from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary, read_phantom_dump
+import numpy as np
 
+from .._arrays import tells_of_walls
+from ._particles import FileError, Particles, add_velocity, choose_step, ending_of, join, join_bodies, read_head, usual_quantities
+from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary, read_phantom_dump
+from .vtk_files import list_pieces, list_series, list_times, read_xml
+
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
+XYZ = (".xyz", ".extxyz", ".exyz")
+LISTS = (".pvtp", ".pvtu", ".pvd", ".series")
+DUMPS = (".dump", ".lammpstrj")
+PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # These endings may be followed by .gz.
+# The module (none: this one) and the function that read a file, and whether it may hold several steps.
+READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{ending: ("molecules", "read_xyz", True) for ending in XYZ},
+           **{ending: ("molecules", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
+           ".data": ("molecules", "read_data", False), ".ply": ("tables", "read_ply", False), ".npz": ("tables", "read_arrays", False),
+           ".npy": ("tables", "read_arrays", False), ".vtp": ("vtk_files", "read_xml", False), ".vtu": ("vtk_files", "read_xml", False),
+           ".vtk": ("vtk_files", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("", "read_pieces", False), ".pvtu": ("", "read_pieces", False),
+           ".pvd": ("", "read_list", True), ".series": ("", "read_list", True)}
 HDF5 = (".hdf5", ".h5", ".h5part")
-ENDINGS = (*HDF5, ".bi4", ".bgeo", *bodies.ENDINGS)
+ENDINGS = (*HDF5, ".bi4", ".bgeo", *READERS, ".gz")
 PathName = Union[str, "os.PathLike[str]"]
 __all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read", "read_steps"]
 
@@ -57,7 +73,7 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
 def count_steps(path: PathName) -> int:
     """How many steps a file holds; more than one only in .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series."""
-    reader = bodies.reader_of(Path(path))
+    reader = reader_of(Path(path))
     return len(read(path).times or [0]) if (reader and reader[2]) or Path(path).suffix.lower() in HDF5 else 1
 
 
@@ -82,10 +98,10 @@ def _read(paths, types, walls, step):
     path, ending = paths[0], paths[0].suffix.lower()
     with open(path, "rb") as file:
         head = file.read(64)
-    reader = bodies.reader_of(path)
+    reader = reader_of(path)
     is_hdf5, is_gadget = head.startswith(b"\x89HDF\r\n\x1a\n"), order_of(head) is not None
     if reader and (ending == ".vtkhdf" or not is_hdf5 and not is_gadget):
-        return bodies.read_bodies(paths, walls, step)
+        return read_bodies(paths, walls, step)
     if len(paths) > 1 or walls:
         raise FileError("Several files are one set only where they are bodies: VTK's, or tables.")
     if is_hdf5:
@@ -104,3 +120,84 @@ def _read(paths, types, walls, step):
         return read_phantom_dump(path)
     raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, .ply, "
                     ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")
+
+
+# -- bodies: VTK's files, such as those of SPHinXsys, PartVTK and SPlisHSPlasH, and tables; several become one set, with walls marked --
+
+def read_list(path, step):
+    """Reads one step of a .pvd or .series file, which lists files of several times."""
+    times = (list_times if ending_of(path) == ".pvd" else list_series)(path)
+    time = list(times)[choose_step(path.name, step, times)]
+    body = join_bodies([load(each, 0) for each in check_parts(path, times[time])])
+    return body._replace(time=time, times=list(times))
+
+
+def read_pieces(path):
+    return join_bodies([read_xml(piece) for piece in check_parts(path, list_pieces(path))])
+
+
+def reader_of(path):
+    """Finds the format by the name's ending, except for files that begin like a dump, and .xyz files without a count, which are tables."""
+    ending = ending_of(path)
+    head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
+    if head.startswith(b"ITEM:"):
+        return READERS[".dump"]
+    if ending in XYZ and not re.match(rb"\s*[0-9]+\s*\n", head):
+        return READERS[".txt"]
+    if path.suffix.lower() == ".gz" and ending not in PACKED:
+        return None
+    return READERS.get(ending)
+
+
+def check_parts(path, parts):
+    for part in parts:
+        if ending_of(part) in (".pvd", ".series") or ending_of(part) not in READERS:
+            raise FileError(f"{path.name} lists {part.name}, which is no file of particles that are bodies.")
+        if not part.is_file():
+            raise FileError(f"{path.name} lists '{part}', and there is no such file.")
+    return parts
+
+
+def load(path, step):
+    module, name, has_steps = reader_of(path)
+    load_it = getattr(import_module("." + module, __name__), name) if module else globals()[name]
+    if has_steps:
+        return load_it(path, step)
+    choose_step(path.name, step, [0.0])
+    return load_it(path)
+
+
+def column(name, bodies, fluids):
+    """Returns one array of all bodies. Walls that lack it get the fluid's median: they take part in no field, so only their
+    smoothing lengths, and the arrays that give volumes, matter."""
+    shape = fluids[0].arrays[name].shape[1:]
+    parts = [body.arrays.get(name) for body in bodies]
+    parts = [part if part is not None and part.shape[1:] == shape else None for part in parts]
+    if any(part is None for part in parts):
+        values = join([body.arrays[name] for body in fluids])
+        middle = (len(values) - 1) // 2
+        median = np.partition(values, middle, axis=0)[middle]
+        parts = [np.broadcast_to(median, (len(body.points), *shape)) if part is None else part
+                 for part, body in zip(parts, bodies)]
+    return join(parts)
+
+
+def read_bodies(paths, walls, step):
+    every = paths + [path for path in walls if path not in paths]
+    bodies = [load(path, step) for path in every]
+    if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # A step of a film may be empty.
+        raise FileError(f"{paths[0].name} has no points.")
+    marked = [path in walls or not walls and len(every) > 1 and tells_of_walls(path.stem) for path in every]
+    counts = [len(body.points) for body in bodies]
+    fluids = [body for body, wall in zip(bodies, marked) if not wall] or bodies
+    common = [name for name in fluids[0].arrays if all(
+        name in body.arrays and body.arrays[name].shape[1:] == fluids[0].arrays[name].shape[1:] for body in fluids)]
+    arrays = {name: lambda n=name: column(n, bodies, fluids) for name in common}
+    single = [name for name in common if fluids[0].arrays[name].ndim == 1 and fluids[0].arrays[name].dtype.kind in "fiub"]
+    add_velocity(arrays, single)
+    solid = np.repeat(marked, counts)
+    if "Type" in common and ("Rhop" in common or "Idp" in common):
+        solid |= arrays["Type"]() != 3  # PartVTK's number for fluid
+    return Particles(paths[0].name, "VTK", lambda: join([body.points for body in bodies]), arrays,
+                     **usual_quantities(single), solid=solid if solid.any() else None, time=bodies[0].time, **{"cell" if len(fluids[0].period or ()) == 9 else "period": fluids[0].period},
+                     times=bodies[0].times, parameters={"bodies": dict(zip([path.name for path in every], counts))})

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles of a file. Arrays are read when they are first used."""
+"""Particles of a file, whose arrays are read when they are first used; and what all readers share."""
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping
 from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from .. import _structs as c
-from .._arrays import QUANTITIES
-from .._find import Found, list_named
+from .._arrays import QUANTITIES, SUMMED, Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean
 
@@ -20,6 +20,7 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
 
+NAMES_ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIES)  # These arguments may name an array.
 GHOSTS = "vtkGhostType"
 NO_VALUE = np.empty(0, np.float32)
 TIMES = ("TimeValue", "TIME", "Time", "time")  # In VTK's files these are arrays of field data.
@@ -173,15 +174,21 @@ class Particles:
         return self.period
 
     def words(self, given):
-        """Returns keywords of the functions for NumPy arrays; given arguments take precedence. The core chooses among volume, mass and density."""
-        words = dict(given)
+        """Returns keywords of the functions for NumPy arrays, with arrays in place of names; given arguments take precedence. The core chooses among
+        volume, mass and density. Adds `source`: these particles, whose arrays `fluid` and `only` may name."""
+        words = {**given, "source": self, "positions": self.positions}
+        for name in NAMES_ARRAYS:
+            text = words.get(name)
+            if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
+                    (name, text) == ("scalar", SUMMED) and SUMMED not in self):
+                words[name] = self.array(text)
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
             words["smoothing_length"] = self.quantity("smoothing_length")
             if words["smoothing_length"] is not None:
                 words.setdefault("smoothing_length_is_support_radius", self.support_radius)
             elif len(self):
                 names = {name: NO_VALUE for name in self.arrays}
-                raise InvalidArgument(Found(np.empty((len(self), 3)), names, ["sizes"]).error)
+                raise InvalidArgument(Found(np.empty((len(self), 3))).find(names, ["sizes"]).error)
         if words.get("solid") is None and words.get("fluid") is None and self.solid is not None:
             words["solid"] = self.solid
         if isinstance(words.get("periodic"), str):
@@ -261,6 +268,37 @@ def join_bodies(bodies):
         arrays = {name: np.concatenate([body.arrays[name][mine] for body, mine in zip(parts, own)]) for name in names}
         return parts[0]._replace(points=np.concatenate([body.points[mine] for body, mine in zip(parts, own)]), arrays=arrays)
     return parts[0]
+
+
+def ending_of(path):
+    """Returns the ending in small letters, without .gz: .csv for a.csv.gz."""
+    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).suffix.lower()
+
+
+def inflate(path, data, least=None):
+    """Unpacks data, or at least its first `least` bytes."""
+    if not data.startswith(b"\x1f\x8b"):
+        return data
+    found, left = [], 1000 * len(data) + 1024  # Deflate cannot pack more densely.
+    while data and left > 0 and (least is None or not found):  # Parallel programs write several parts, one behind the other.
+        unpacker = zlib.decompressobj(31)
+        try:
+            found.append(unpacker.decompress(data, left if least is None else least))
+        except zlib.error as error:
+            raise FileError(f"{path.name} is damaged: {error}") from None
+        if not unpacker.eof and least is None:
+            raise FileError(f"{path.name} ends too early.")
+        data, left = unpacker.unused_data, left - len(found[-1])
+    return b"".join(found)
+
+
+def read_bytes(path):
+    return inflate(path, path.read_bytes())
+
+
+def read_head(path):
+    with open(path, "rb") as file:
+        return inflate(path, file.read(4096), 200)
 
 
 def choose_step(file, step, times):

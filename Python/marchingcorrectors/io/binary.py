@@ -5,12 +5,41 @@ import itertools
 import os
 import re
 import struct
+from typing import NamedTuple
 
 import numpy as np
 
 from .._library import say
-from ._bytes import RawArray, read_bytes, state_of
-from ._particles import FileError, Particles, by_name
+from ._particles import FileError, Particles, by_name, read_bytes
+
+
+def state_of(file):
+    """Returns a mark that changes when the file is written anew."""
+    status = os.fstat(file.fileno())
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+class RawArray(NamedTuple):
+    """Where an array lies in a file."""
+    path: os.PathLike
+    state: tuple
+    begin: int
+    kind: np.dtype
+    count: int
+    columns: int = 1
+
+    def load(self):
+        with open(self.path, "rb") as file:
+            values = np.fromfile(file, self.kind, self.count * self.columns, offset=self.begin)
+            if state_of(file) != self.state:
+                raise FileError(f"{self.path.name} was written anew after it had been opened: read it once more.")
+        values = values.astype(self.kind.newbyteorder("="), copy=False)
+        return values.reshape(self.count, self.columns) if self.columns > 1 else values
+
+    def rows(self, begin, count):
+        width = self.columns * self.kind.itemsize
+        return self._replace(begin=self.begin + begin * width, count=count)
+
 
 # GADGET: records of Fortran, each between two copies of its number of bytes, in one file or several. The first record is a header of 256
 # bytes. Each other record is an array: of all types of particles in order, of the types that have no mass in the header, or of gas. In

@@ -10,7 +10,7 @@ from typing import NamedTuple, Optional
 import h5py
 import numpy as np
 
-from .._find import tells_of_walls
+from .._arrays import tells_of_walls
 from ._particles import Body, FileError, Particles, check_claim, add_velocity, choose_step, find_kernel, usual_quantities
 from .binary import files_of, make_phantom, no_particles, numbers_of
 

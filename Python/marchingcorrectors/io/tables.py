@@ -10,10 +10,9 @@ import zipfile
 
 import numpy as np
 
-from .._find import as_bytes
+from .._arrays import as_bytes
 from .._library import lib, say, warn
-from ._bytes import ending_of, read_bytes
-from ._particles import TIMES, Body, FileError, check_claim, period_of_field, usual
+from ._particles import TIMES, Body, FileError, check_claim, ending_of, period_of_field, read_bytes, usual
 
 MOST_COLUMNS = 10000
 COMPONENT = re.compile(r"(.+?)(?:[:_.]([0-8xyzXYZ])|[\[(]([0-8])[\])]|(?<=[a-z])([XYZ]))")
@@ -66,11 +65,16 @@ def columns_of(file, lines, names, separator=None):
     found = {}
     for i, (name, column) in enumerate(zip(names, values)):
         is_identifier = lib.mcor_tells_apart(as_bytes(name))
-        if column.dtype.kind == "f" and (is_identifier or (np.abs(column) >= 2 ** 53).any()):
-            column = as_integers(column, lambda: [split(line, separator)[i] for line in lines])
-            if is_identifier and column.dtype.kind == "f" and (np.abs(column) >= 2 ** 53).any():
+        is_large = column.dtype.kind == "f" and (np.abs(column) >= 2 ** 53).any()
+        if is_large:  # Doubles lose digits from 2^53 on, so integers are read from their own digits.
+            words = [split(line, separator)[i] for line in lines]
+            if all(re.fullmatch(r"-?[0-9]+", word) and abs(int(word[:20])) < 2 ** 63 for word in words):
+                column = np.array([int(word) for word in words], np.int64)
+            elif is_identifier:
                 raise FileError(f"{file}: its column {name} has numbers from 2^53 on, where some of it are not whole or are 2^63 "
                                 "and more: different ones would become equal.")
+        elif is_identifier and column.dtype.kind == "f" and (column == np.floor(column)).all():
+            column = column.astype(np.int64)
         found[name] = column
     return found
 
@@ -89,16 +93,6 @@ def numbers_or_words(file, cells, separator):
     if numbers and numbers[0] is None:
         return np.array([cell[:64] for cell in cells])
     return np.array([np.nan if number is None else number for number in numbers], float)
-
-
-def as_integers(values, cells):
-    """Reads integers from their own digits, because doubles lose digits from 2^53 on. Returns `values` itself if a cell is no integer."""
-    if (np.abs(values) < 2 ** 53).all():
-        return values.astype(np.int64) if (values == np.floor(values)).all() else values
-    words = cells()
-    if all(re.fullmatch(r"-?[0-9]+", word) and abs(int(word[:20])) < 2 ** 63 for word in words):
-        return np.array([int(word) for word in words], np.int64)
-    return values
 
 
 def join_vectors(columns):

@@ -6,6 +6,7 @@ import binascii
 import bisect
 import json
 import re
+import warnings
 import zlib
 from functools import partial
 from urllib.parse import unquote_to_bytes
@@ -15,10 +16,32 @@ from xml.parsers import expat
 import numpy as np
 
 from .._library import say, warn
-from ._bytes import parse_numbers
 from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
 
 VERTICES = (1, 2)  # VTK's types of cells that are points
+IS_BLANK = np.isin(np.arange(256), np.frombuffer(b" \t\n\v\f\r", np.uint8))
+
+
+def parse_numbers(text, kind, count):
+    """Returns the first `count` numbers, with blanks between them, of bytes or a memoryview, and where the last one ends.
+    Raises ValueError. Time and memory depend only on the numbers that are read, not on the text behind them."""
+    size = 16 * count + 64
+    while True:  # Longer pieces are tried until one has `count` words.
+        piece = bytes(text[:size])
+        is_blank = np.append(IS_BLANK[np.frombuffer(piece, np.uint8)], len(piece) == len(text))
+        ends = np.flatnonzero(is_blank[1:] & ~is_blank[:-1]) + 1
+        if len(ends) >= count or len(piece) == len(text):
+            break
+        size *= 2
+    if len(ends) < count:
+        raise ValueError(f"{len(ends)} numbers where there should be {count}")
+    end = int(ends[count - 1]) if count else 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # NumPy warns when it stops at a word that is no number.
+        values = np.fromstring(piece[:end], kind, sep=" ") if count else np.empty(0, kind)
+    if len(values) != count:
+        raise ValueError("a word is no number")
+    return values, end
 
 
 def offsets_of(cells, count):
@@ -429,17 +452,6 @@ class Legacy:
         return into
 
 
-def lists_of(legacy):
-    """Returns the lists of cells as take_vertices() takes them, in the order of VTK's cells."""
-    lists = []
-    for name in LEGACY_CELLS:
-        if name in legacy.cells and len(legacy.cells[name][0]):
-            begins, ids = legacy.cells[name] if legacy.offsets else offsets_of(*legacy.cells[name])
-            types = legacy.types if name == "CELLS" else np.full(len(begins) - 1, LEGACY_CELLS[name])
-            lists.append((types, lambda begins=begins, ids=ids: (begins[1:], ids)))
-    return lists
-
-
 def read_legacy(path):
     try:
         legacy = Legacy(path)
@@ -452,6 +464,12 @@ def read_legacy(path):
     body = Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
                 float(np.ravel(time)[0]) if len(time) else None, period_of_field(legacy.field))
     try:
-        return take_vertices(path.name, body, lists_of(legacy), {name: lambda array=array: array for name, array in legacy.cell_arrays.items()})
+        lists = []
+        for name, kind in LEGACY_CELLS.items():
+            if name in legacy.cells and len(legacy.cells[name][0]):
+                begins, ids = legacy.cells[name] if legacy.offsets else offsets_of(*legacy.cells[name])
+                types = legacy.types if name == "CELLS" else np.full(len(begins) - 1, kind)
+                lists.append((types, lambda begins=begins, ids=ids: (begins[1:], ids)))
+        return take_vertices(path.name, body, lists, {name: lambda array=array: array for name, array in legacy.cell_arrays.items()})
     except (ValueError, IndexError):  # Damaged cells tell nothing.
         return body

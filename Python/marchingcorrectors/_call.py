@@ -126,7 +126,7 @@ class Finder(Arguments):
     def __init__(self, positions, source, attributes):
         super().__init__(positions)
         self.source = source
-        self.others = source.arrays if source else attributes
+        self.others = attributes if source is None else source.arrays
         self.named, self.names, self.values, self.ranges, self.texts, self.looks = {}, {}, {}, [], [], False
         self.request = {"find": source is not None}
 

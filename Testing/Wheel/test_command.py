@@ -5,26 +5,22 @@ import csv
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 import pyvista
+from test_files import Case
 
 DAM = str(Path(os.environ["MCOR_TEST_DATA"]) / "dam_break_45k.vtp")
 PROGRAM = os.environ.get("MCOR_TEST_PROGRAM")
 FLUID = ["--fluid", "ParticleType=0"]
 
 
-class Command(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
+class Command(Case):
     def run_it(self, command, name, *words, program=(), status=0, given=DAM):
         """Returns the file that the wheel's command wrote, and the program's file; program: its own options, None: it does not run."""
-        path, other = (str(Path(self.folder.name) / each) for each in (name, "program_" + name))
+        path, other = (str(self.at(each)) for each in (name, "program_" + name))
         done = subprocess.run([sys.executable, "-m", "marchingcorrectors", command, given, path, *words],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(done.returncode, status, done.stderr)
@@ -56,7 +52,7 @@ class Command(unittest.TestCase):
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3))
         data["R"], data["V"] = np.linalg.norm(data.points - [0.9, 0.9, 0], axis=1), data.points
         data["=f"] = data["R"]
-        given = str(Path(self.folder.name) / "in.vtp")
+        given = str(self.at("in.vtp"))
         data.save(given)
         paths = self.run_it("surface", "a.csv", "--smoothing-length", "0.13", "--scalar", "R", "--iso", "0.4,0.6", given=given)
         mine, its = (Path(path).read_bytes() for path in paths)
@@ -91,7 +87,7 @@ class Command(unittest.TestCase):
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line[:6]), -1).reshape(-1, 3))
         data.field_data["PeriodicBounds"] = [0, 1.2, 0, 1.2, 0, 0]
         for name in ("in.vtp", "in.vtk"):
-            given = str(Path(self.folder.name) / name)
+            given = str(self.at(name))
             data.save(given)
             words = ["--smoothing-length", "0.13", "--periodic", "auto", "--curvature"]
             mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"], given=given))
@@ -112,9 +108,9 @@ class Command(unittest.TestCase):
         line = np.arange(16) * 0.02
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3))
         data["Idp"] = np.arange(data.n_points)
-        data.save(Path(self.folder.name) / "in.vtk")
+        data.save(self.at("in.vtk"))
         path, _ = self.run_it("gauge", "a.csv", "--dp", "0.02", "--coefh", "1.2", "--kernel", "wendland", "--gauge",
-                              "up=0.15,0.15,-1:0.15,0.15,1", given=str(Path(self.folder.name) / "in.vtk"))
+                              "up=0.15,0.15,-1:0.15,0.15,1", given=str(self.at("in.vtk")))
         with open(path) as file:
             self.assertAlmostEqual(float(next(csv.DictReader(file))["z"]), 0.31, delta=0.001)  # The level is half a spacing above the particles.
 
@@ -130,7 +126,7 @@ class Command(unittest.TestCase):
 
     def test_film(self):
         """All steps of a file are measured, each at its time."""
-        line, path = np.arange(-4, 5) * 0.1, Path(self.folder.name) / "in.xyz"
+        line, path = np.arange(-4, 5) * 0.1, self.at("in.xyz")
         block = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
         path.write_text("".join(f"{len(block)}\nProperties=pos:R:3 Time={0.5 * i}\n"
                                 + "".join(f"{x} {y} {z + 0.2 * i}\n" for x, y, z in block) for i in range(2)))

@@ -19,33 +19,24 @@ from marchingcorrectors import io
 from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, write_phantom, write_pysph
 
 
-def write_vtk(path):
+def write_vtk(path, kind="", version=0):
+    """Writes a file as VTK does. kind: how a .vtp file packs its bytes, which stand behind the XML for LZ4; or "text". version: of a .vtk file of an
+    unstructured grid, as SPlisHSPlasH writes it."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
-    (body if path.suffix != ".vtu" else body.cast_to_unstructured_grid()).save(path)
-
-
-def write_packed(path, kind):
-    """Writes a .vtp file whose bytes stand behind the XML, packed by one of VTK's methods."""
-    body = pyvista.PolyData(X)
-    body["Density"], body["Velocity"] = DENSITY, X.astype(np.float32)
-    writer = vtkXMLPolyDataWriter()
+    if version:
+        body, writer = body.cast_to_unstructured_grid(), vtkUnstructuredGridWriter()
+        writer.SetFileVersion(version)
+        writer.SetFileType(1 if kind == "text" else 2)
+    elif kind:
+        writer = vtkXMLPolyDataWriter()
+        getattr(writer, f"SetCompressorTypeTo{kind}")()
+        writer.SetEncodeAppendedData(kind == "LZ4")
+    else:
+        (body if path.suffix != ".vtu" else body.cast_to_unstructured_grid()).save(path)
+        return
     writer.SetFileName(str(path))
     writer.SetInputData(body)
-    getattr(writer, f"SetCompressorTypeTo{kind}")()
-    writer.SetEncodeAppendedData(kind == "LZ4")
-    writer.Write()
-
-
-def write_grid(path, text=False):
-    """Writes a .vtk file as SPlisHSPlasH does."""
-    body = pyvista.PolyData(X.astype(np.float32))
-    body["Density"], body["Velocity"] = DENSITY, X
-    writer = vtkUnstructuredGridWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(body.cast_to_unstructured_grid())
-    writer.SetFileVersion(42)
-    writer.SetFileType(1 if text else 2)
     writer.Write()
 
 
@@ -162,8 +153,8 @@ class Hostile(Case):
     def test_cut_off(self):
         """A file of each kind without its end gives one line on stderr, and no output file."""
         for name, make in (("Part_0001.bi4", write_bi4), ("fluid.bgeo", write_bgeo), ("body.vtp", write_vtk),
-                           ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", write_grid),
-                           ("text.vtk", lambda path: write_grid(path, True)), ("snap.hdf5", write_gadget)):
+                           ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", lambda path: write_vtk(path, version=42)),
+                           ("text.vtk", lambda path: write_vtk(path, "text", 42)), ("snap.hdf5", write_gadget)):
             make(self.at(name))
             self.at(name).write_bytes(self.at(name).read_bytes()[:-2000])
             done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", str(self.at(name)),
@@ -174,7 +165,7 @@ class Hostile(Case):
 
     def test_cells(self):
         """A damaged list of cells must not be followed, as VTK's own reader would follow it."""
-        write_grid(self.at("grid.vtk"))
+        write_vtk(self.at("grid.vtk"), version=42)
         whole = self.at("grid.vtk").read_bytes()
         wanted = io.read(self.at("grid.vtk"))
         at = whole.index(b"\n", whole.index(b"\nCELLS ") + 1) + 1 + 8 * 2000  # This number says how many points the 2000th cell has.
@@ -187,8 +178,8 @@ class Hostile(Case):
         random = np.random.default_rng(34)
         makers = {"snap.hdf5": write_gadget, "dump.h5": write_phantom, "run.hdf5": write_pysph,
                   "Part_0001.bi4": write_bi4, "fluid.bgeo": write_bgeo, "body.vtp": write_vtk, "body.vtu": write_vtk,
-                  "body.vtk": write_vtk, "grid.vtk": write_grid, "text.vtk": lambda path: write_grid(path, True),
-                  **{f"{kind}.vtp": lambda path, kind=kind: write_packed(path, kind) for kind in ("ZLib", "LZ4", "LZMA")}}
+                  "body.vtk": write_vtk, "grid.vtk": lambda path: write_vtk(path, version=42), "text.vtk": lambda path: write_vtk(path, "text", 42),
+                  **{f"{kind}.vtp": lambda path, kind=kind: write_vtk(path, kind) for kind in ("ZLib", "LZ4", "LZMA")}}
 
         def turn(data, is_head):
             data[random.integers(min(len(data), 4000 if is_head else len(data)))] ^= 1 << random.integers(8)

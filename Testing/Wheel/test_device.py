@@ -1,12 +1,20 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests which device is found: the built-in one without any driver, program or home; a driver's device by name. Each case runs in its own process.
-With "whole" the wheel has all kernels."""
+Whole is for a wheel with all kernels. Arrays tests arrays on a CUDA device, as CuPy, PyTorch and others give them. CUDA's driver is a fake over
+the host's memory (fake_libcuda.c), so this tests what the package asks of a driver, not a card."""
+import ctypes
+import gc
 import os
 import subprocess
 import sys
 import tempfile
 import unittest
+from pathlib import Path
+
+import numpy as np
+
+import marchingcorrectors as mc
 
 RUN = """
 import numpy as np, marchingcorrectors as mc
@@ -85,6 +93,142 @@ class Usual(Case):
         """ParaView loads the plugin's file from a folder where Python does not look for packages."""
         before = "import sys; sys.path = [p for p in sys.path if not p.endswith('site-packages')]"
         self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
+
+
+N = 12
+H, V = 0.13, 0.001
+INDICES = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3)
+POSITIONS = (INDICES * 0.1 + np.random.default_rng(1).normal(0, 0.004, (N ** 3, 3))).astype(np.float32)
+DISTANCE = np.linalg.norm(POSITIONS - 0.55, axis=1).astype(np.float32)
+
+
+class OnCuda:
+    """Is an array that has the interface of CuPy's arrays, and like them does not become one of NumPy by itself."""
+
+    def __init__(self, array, strides=False, stream=None):
+        self.array, self.shape, self.ndim = array, array.shape, array.ndim
+        self.__cuda_array_interface__ = {
+            "shape": array.shape, "typestr": array.dtype.str, "data": (array.ctypes.data, False), "version": 3,
+            "strides": array.strides if strides else None, "stream": stream}
+
+    def __len__(self):
+        return len(self.array)
+
+    def __array__(self, *_, **__):
+        raise TypeError("Implicit conversion to a NumPy array is not allowed.")
+
+
+class OnlyDlpack:
+    """Has only DLPack's methods, and says that it is on a CUDA device. The tensor in its capsule, which NumPy makes, is on the host all the same."""
+
+    def __init__(self, array):
+        self.array, self.streams = array, []
+
+    def __len__(self):
+        return len(self.array)
+
+    def __dlpack_device__(self):
+        return (2, 0)
+
+    def __dlpack__(self, *, stream=None):
+        self.streams.append(stream)
+        return self.array.__dlpack__()
+
+
+class Hidden:
+    """Raises as PyTorch's tensors do while they need a gradient."""
+
+    @property
+    def __cuda_array_interface__(self):
+        raise RuntimeError("Can't get __cuda_array_interface__ on Variable that requires grad.")
+
+
+def sphere(wrap=lambda array: array, **more):
+    words = {"smoothing_length": np.full(len(POSITIONS), H, "f4"), "volume": np.full(len(POSITIONS), V), "attributes": {"a": 2 * POSITIONS},
+             "solid": np.zeros(len(POSITIONS), bool), **more}
+    words = {name: {"a": wrap(array["a"])} if name == "attributes" else wrap(array) for name, array in words.items()}
+    return mc.isosurface(wrap(POSITIONS), wrap(DISTANCE), 0.4, **words)
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        try:
+            ctypes.CDLL("libcuda.so.1")
+        except OSError:
+            pass
+        else:
+            raise unittest.SkipTest("there is a driver of CUDA, in place of which no fake can be loaded")
+        with cls().assertRaisesRegex(mc.DeviceError, "scalar is on a CUDA device, but CUDA's driver cannot be used: .*Copy it to the host first"):
+            mc.isosurface(POSITIONS, OnCuda(DISTANCE), 0.4, smoothing_length=H, volume=V)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        path = os.path.join(folder.name, "libcuda.so.1")
+        subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-o", path, "-Wl,-soname,libcuda.so.1",
+                        str(Path(__file__).with_name("fake_libcuda.c"))], check=True)
+        cls.fake = ctypes.CDLL(path)  # The loader then finds it by this name.
+        cls.expected = sphere()
+
+    def number(self, name):
+        return ctypes.c_int.in_dll(self.fake, "fake_" + name)
+
+    def copied(self, function):
+        """Returns what the function returns, the number of copies and their bytes."""
+        bytes_of = ctypes.c_size_t.in_dll(self.fake, "fake_bytes")
+        copies, before = self.number("copies").value, bytes_of.value
+        result = function()
+        return result, self.number("copies").value - copies, bytes_of.value - before
+
+    def test_every_array(self):
+        """Each array is copied once, and all of it; a second surface locks no more memory."""
+        found, copies, size = self.copied(lambda: sphere(OnCuda))
+        self.assertEqual(found, self.expected)
+        self.assertEqual(copies, 6)
+        self.assertEqual(size, len(POSITIONS) * (12 + 4 + 4 + 8 + 12 + 1))  # positions, scalar, h, volume, attribute, marks
+        gc.collect()
+        locks = self.number("locks").value
+        self.assertTrue(0 < locks <= 6)
+        self.assertEqual(sphere(OnCuda), self.expected)
+        gc.collect()
+        self.assertEqual(self.number("locks").value, locks)
+
+    def test_dlpack(self):
+        made = []
+        found, copies, _ = self.copied(lambda: sphere(lambda array: made.append(OnlyDlpack(array)) or made[-1]))
+        self.assertEqual(found, self.expected)
+        self.assertEqual((copies, [one.streams for one in made]), (6, [[1]] * 6))
+        column, words = OnlyDlpack(np.stack([DISTANCE, POSITIONS[:, 0]], axis=1)[:, 0]), {"smoothing_length": H, "volume": V}
+        self.assertEqual(mc.isosurface(POSITIONS, column, 0.4, **words), mc.isosurface(POSITIONS, DISTANCE, 0.4, **words))
+
+    def test_strides(self):
+        """Columns of a table, reversed and transposed arrays are as on the host."""
+        table = np.concatenate([DISTANCE[:, None], POSITIONS, POSITIONS[:, :1]], axis=1)
+        words = {"smoothing_length": H, "volume": V}
+        found = mc.isosurface(OnCuda(table[:, 1:4], True), OnCuda(table[:, 0], True), 0.4, **words)
+        self.assertEqual(found, mc.isosurface(POSITIONS, DISTANCE, 0.4, **words))
+        found = mc.isosurface(OnCuda(np.asfortranarray(POSITIONS)[::-1], True), OnCuda(DISTANCE[::-1], True), 0.4, **words)
+        self.assertEqual(found, mc.isosurface(POSITIONS[::-1], DISTANCE[::-1], 0.4, **words))
+
+    def test_streams_pools_and_nothing(self):
+        """The array's stream is waited for. Memory of a pool belongs to no context. Arrays without particles are not copied."""
+        sphere(lambda array: OnCuda(array, stream=7))
+        self.assertEqual(self.number("synchronized").value, 7)
+        self.number("of_pool").value = 1
+        self.addCleanup(setattr, self.number("of_pool"), "value", 0)
+        self.assertEqual(sphere(OnCuda), self.expected)
+        found, copies, _ = self.copied(lambda: mc.isosurface(OnCuda(POSITIONS[:0]), OnCuda(DISTANCE[:0]), 0.4, smoothing_length=H))
+        self.assertEqual((len(found.points), copies), (0, 0))
+
+    def test_refused(self):
+        words = {"smoothing_length": H, "volume": V}
+        with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers, but"):
+            mc.isosurface(POSITIONS, OnCuda(DISTANCE.view("V4")), 0.4, **words)
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is not an array .* requires grad"):
+            mc.isosurface(POSITIONS, Hidden(), 0.4, **words)
+        self.number("fails").value = 1
+        self.addCleanup(setattr, self.number("fails"), "value", 0)
+        with self.assertRaisesRegex(mc.DeviceError, r"cuPointerGetAttribute failed: invalid argument \(1\)"):
+            mc.isosurface(POSITIONS, OnCuda(DISTANCE), 0.4, **words)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ import sys
 import tempfile
 import unittest
 import unittest.mock
-import warnings
 from pathlib import Path
 
 import h5py
@@ -22,10 +21,8 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWrit
 import marchingcorrectors as mc
 from marchingcorrectors import io
 from marchingcorrectors.io._particles import find_kernel
-from solver_files import DENSITY, MASS, SPACING, WALL, X, H, write_bgeo, write_bi4
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from says import says  # noqa: E402
+from solver_files import DENSITY, MASS, WALL, X, H, write_bgeo, write_bi4
+from test_numpy import quietly, says
 
 
 def write_gadget(path, part=slice(None), files=1, table=False, swift=False, periodic=False):
@@ -117,12 +114,6 @@ def write_pysph(path):
             arrays["tag"] = np.arange(chosen.sum()) == 0  # One particle belongs to another process.
             if name == "fluid":
                 arrays["u"], arrays["v"], arrays["w"] = X[chosen].T
-
-
-def quietly(function, *arguments, **words):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return function(*arguments, **words)
 
 
 class Case(unittest.TestCase):
@@ -510,10 +501,8 @@ class Layouts(Case):
         with self.assertWarnsRegex(mc.InputWarning, says("LISTED_TWICE", "run.pvd lists 1 file", "time 0;")):
             first = io.read(self.at("run.pvd"))
         self.assertEqual((first["n"].tolist(), first.time, first.times), ([3, 4], 0, [0, 0.5, 2]))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            self.assertEqual(io.read(self.at("run.pvd"), step=1)["n"].tolist(), [3, 4, 1, 2, 3, 4])
-            self.assertEqual(len(io.read(self.at("run.pvd"), step=-1)), 0)
+        self.assertEqual(quietly(io.read, self.at("run.pvd"), step=1)["n"].tolist(), [3, 4, 1, 2, 3, 4])
+        self.assertEqual(len(quietly(io.read, self.at("run.pvd"), step=-1)), 0)
         for kind, tag, sentence in (
                 ("x.pvtp", "a", "lists no pieces"), ("x.pvtp", 'Piece Source="all.pvtp"', "is no .vtp file"),
                 ("x.pvd", "a", "lists no files"), ("x.pvd", entry("late", 0, "a.vtp"), "time 'late' is no number"),

@@ -3,20 +3,15 @@
 """Tests gauge(), flux() and project(): for a block of particles by hand, for other particles against probe() and counts; PyVista's methods and
 files; and refusals."""
 import os
-import sys
 import tempfile
 import unittest
-from pathlib import Path
 
 import numpy as np
 import pyvista
 
 import marchingcorrectors as mc
+from test_numpy import H, V, says
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from says import says  # noqa: E402
-
-H, V = 0.13, 0.001
 X = np.stack(np.meshgrid(*[np.arange(12)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1
 WORDS = {"smoothing_length": H, "volume": V}
 UP = np.array([[0.52, 0.55, -1.0], [0.52, 0.55, 2.0]])

@@ -26,6 +26,7 @@ import unyt
 
 import marchingcorrectors as mc
 from marchingcorrectors import _options, _structs
+from test_files import Case
 from test_numpy import DISTANCE, H, POSITIONS, V, quietly, says, sphere
 
 COUNT = len(POSITIONS)
@@ -369,15 +370,14 @@ class Bars(unittest.TestCase):
             sphere(progress="yes")
 
 
-class Files(unittest.TestCase):
+class Files(Case):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         self.surface = sphere(weight_sum=True, attributes={"speed": DISTANCE, "where": POSITIONS,
                                                            "id": np.arange(COUNT)})
 
     def save(self, name, surface=None):
-        path = Path(self.folder.name) / name
+        path = self.at(name)
         found = caught((surface or self.surface).save, path)
         return path, [str(w.message) for w in found]
 
@@ -426,7 +426,7 @@ class Files(unittest.TestCase):
             self.assertEqual(self.save(name, sphere())[1], [])
         for name, sentence in (("a", "no ending"), ("a.dae", "a.dae was not written, because no format of that ending")):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
-                self.surface.save(Path(self.folder.name) / name)
+                self.surface.save(self.at(name))
 
     def test_other_libraries(self):
         mesh = self.surface.to_trimesh()

@@ -231,8 +231,8 @@ def fuzz(case, writers, least):
 class AgainstNumPy(Case):
     """Tests 40 random files of each kind."""
 
-    def randoms(self):
-        return (np.random.default_rng([44, seed]) for seed in range(40))
+    def randoms(self, count=40):
+        return (np.random.default_rng([44, seed]) for seed in range(count))
 
     def assert_same(self, found, wanted):
         self.assertEqual(np.shape(found), np.shape(wanted))

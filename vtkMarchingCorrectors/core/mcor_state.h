@@ -296,7 +296,6 @@ typedef struct mcor_run
 {
   const mcor_options* options;
   bool uses_solids; /* whether solid particles must be on the device */
-  bool is_sampled;  /* context->samples are of this rank's particles, see mcor_choose_samples */
   double widest; /* greatest factor of lengths in sums at particles, see mcor_widen.c; 0: no sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
   struct mcor_far* far; /* particles that are left out so that the lattice fits; NULL: none */

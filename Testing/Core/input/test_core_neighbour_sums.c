@@ -5,6 +5,7 @@
 
 #include "core_fixture.h"
 #include "mcor_plane.h"
+#include "mcor_vector.h"
 
 /* Returns sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
 static double sum_of_all(const particle_set* set, const mcor_options* options, int dimension,
@@ -57,10 +58,31 @@ static particle_set make_clusters(int64_t count, int dimension, uint64_t seed)
   return set;
 }
 
+static void find_lengths(
+  const mcor_input* input, const mcor_options* options, int64_t count, double* lengths)
+{
+  CORE_MESSAGE why;
+  const mcor_status status =
+    mcor_find_smoothing_lengths(input, options, MCOR_USUAL_ETA, count, lengths, &why);
+  CORE_CHECK(status == MCOR_OK, why.text);
+}
+
+static void sum_densities(
+  const mcor_input* input, const mcor_options* options, int64_t count, double* densities)
+{
+  CORE_MESSAGE why;
+  const mcor_status status = mcor_sum_densities(input, options, count, densities, &why);
+  CORE_CHECK(status == MCOR_OK, why.text);
+}
+
 static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
 {
-  mcor_message why;
-  const int64_t count = 400;
+  enum
+  {
+    count = 400
+  };
+  double lengths[count], densities[count], mass[count], again[count], some[count];
+  uint8_t marks[count] = { 0 };
   CORE_SET set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
   mcor_options options = core_options(NULL);
   options.sph_kernel = kernel;
@@ -71,12 +93,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
     options.periodic[2 * a + 1] = 1.4;
   }
   mcor_input input = core_input(&set);
-  double *lengths = oracle_allocate(count, sizeof *lengths),
-         *densities = oracle_allocate(count, sizeof *densities),
-         *mass = oracle_allocate(count, sizeof *mass),
-         *again = oracle_allocate(count, sizeof *again);
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths, &why), MCOR_OK);
+  find_lengths(&input, &options, input.count, lengths);
   double least = INFINITY, most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -90,7 +107,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   assert_true(most > 20 * least);
   input.mass = core_array(mass, 1);
   input.smoothing_length = core_array(lengths, 1);
-  assert_int_equal(mcor_sum_densities(&input, &options, input.count, densities, &why), MCOR_OK);
+  sum_densities(&input, &options, input.count, densities);
   for (int64_t i = 0; i < count; ++i)
   {
     const double expected =
@@ -105,8 +122,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
     memcpy(other.position + 3 * i, set.position + 3 * order[i], 3 * sizeof(double));
   }
   input = core_input(&other);
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, again, &why), MCOR_OK);
+  find_lengths(&input, &options, input.count, again);
   for (int64_t i = 0; i < count; ++i)
   {
     assert_true(again[i] == lengths[order[i]]);
@@ -114,10 +130,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   /* A call may ask for sums at some particles, with all particles as neighbours. Particles that play no part change
    * nothing. */
   input = core_input(&set);
-  CORE_FREED uint8_t* marks = oracle_allocate(count, 1);
-  CORE_FREED double* some = oracle_allocate(count, sizeof *some);
   const int64_t part = count / 3;
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, part, some, &why), MCOR_OK);
+  find_lengths(&input, &options, part, some);
   assert_memory_equal(some, lengths, (size_t)part * sizeof *some);
   assert_true(some[part] == 0);
   for (int64_t i = part; i < count; ++i)
@@ -128,22 +142,18 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   other.count = part;
   memcpy(other.position, set.position, 3 * (size_t)part * sizeof(double));
   input = core_input(&other);
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, part, again, &why), MCOR_OK);
+  find_lengths(&input, &options, part, again);
   input = core_input(&set);
   input.solid = marks;
   input.mass = core_array(mass, 1);
   mass[part] = NAN;
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, count, some, &why), MCOR_OK);
+  find_lengths(&input, &options, count, some);
   assert_memory_equal(some, again, (size_t)part * sizeof *some);
   assert_true(some[part] == 0);
   input.smoothing_length = core_array(some, 1);
-  assert_int_equal(mcor_sum_densities(&input, &options, count, again, &why), MCOR_OK);
+  sum_densities(&input, &options, count, again);
   assert_true(again[0] > 0 && again[part] == 0);
   other.count = count;
-  free(lengths);
-  free(densities);
-  free(mass);
-  free(again);
 }
 
 static void test_sums(void** state)
@@ -163,7 +173,6 @@ static void test_sums(void** state)
 /* From positions and masses alone, the densities of Plummer's sphere at the radii 1 and 3 are found. */
 static void test_plummer(void** state)
 {
-  mcor_message why;
   const int count = 20000;
   const double radii[2] = { 1, 3 }, isos[2] = { 0.0422, 0.000755 };
   CORE_SET set = particle_set_make(count);
@@ -178,12 +187,10 @@ static void test_plummer(void** state)
   }
   mcor_options options = core_options(NULL);
   mcor_input input = core_input(&set);
-  assert_int_equal(mcor_find_smoothing_lengths(
-                     &input, &options, MCOR_USUAL_ETA, input.count, set.smoothing_length, &why),
-    MCOR_OK);
+  find_lengths(&input, &options, input.count, set.smoothing_length);
   input.volume = (mcor_array){ 0 };
   input.mass = (mcor_array){ .constant = 1.0 / count };
-  assert_int_equal(mcor_sum_densities(&input, &options, input.count, set.scalar, &why), MCOR_OK);
+  sum_densities(&input, &options, input.count, set.scalar);
   input.density = core_array(set.scalar, 1);
   for (int k = 0; k < 2; ++k)
   {
@@ -194,23 +201,19 @@ static void test_plummer(void** state)
     options.level_limit = MCOR_CUBE_LEVELS - 1;
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     double sum = 0;
-    int64_t used = 0;
     for (int64_t p = 0; p < surface.point_count; ++p)
     {
       const double* x = surface.points + 3 * p;
-      const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-      sum += r;
-      ++used;
+      sum += sqrt(mcor_dot(x, x));
     }
-    assert_true(used > 1000);
-    CORE_CHECK(fabs(sum / (double)used / radii[k] - 1) < 0.03, sum / (double)used, radii[k]);
+    const double mean = sum / (double)surface.point_count;
+    CORE_CHECK(surface.point_count > 1000 && fabs(mean / radii[k] - 1) < 0.03, mean, radii[k]);
   }
 }
 
 /* A particle may lie any number of periods away without a change. */
 static void test_far_beyond_period(void** state)
 {
-  mcor_message why;
   double at[3 * 64], lengths[2][64];
   uint64_t seed = 9;
   for (int i = 0; i < 3 * 64; ++i)
@@ -225,8 +228,7 @@ static void test_far_beyond_period(void** state)
     at[12] += far * 1e6;
     at[13] -= far * 1e6;
     at[14] += far * 2e6;
-    assert_int_equal(
-      mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[far], &why), MCOR_OK);
+    find_lengths(&input, &options, input.count, lengths[far]);
   }
   assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
 }
@@ -238,7 +240,6 @@ static void test_far_away(void** state)
   {
     N = 300
   };
-  mcor_message why;
   double at[3 * N], lengths[2][N];
   uint64_t seed = 9;
   const mcor_options options = core_options(NULL);
@@ -253,9 +254,7 @@ static void test_far_away(void** state)
     for (int far = 0; far < 2; ++far)
     {
       const mcor_input input = { .count = N - 1 + far, .positions = core_array(at, 3) };
-      assert_int_equal(
-        mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[far], &why),
-        MCOR_OK);
+      find_lengths(&input, &options, input.count, lengths[far]);
     }
     for (int i = 0; i < N - 1; ++i)
     {
@@ -273,7 +272,6 @@ static void test_far_body(void** state)
     BODY = 100,
     N = 5 * BODY
   };
-  mcor_message why;
   double at[3 * N], turned[3 * N], lengths[3][N];
   uint64_t seed = 9;
   const mcor_options options = core_options(NULL);
@@ -286,8 +284,7 @@ static void test_far_body(void** state)
   {
     const mcor_input input = { .count = k == 0 ? BODY : N,
       .positions = core_array(k == 2 ? turned : at, 3) };
-    assert_int_equal(
-      mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[k], &why), MCOR_OK);
+    find_lengths(&input, &options, input.count, lengths[k]);
   }
   for (int i = 0; i < N; ++i)
   {
@@ -313,8 +310,7 @@ static void test_weird(void** state)
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),
     MCOR_INVALID_DATA, &why, "NEIGHBOURS_AT_ONE_POINT");
   at[0] = 2;
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
+  find_lengths(&input, &options, input.count, out);
   /* Two particles are too few, so the domain's extent is used. */
   assert_true(out[0] == 1 && out[1] == 1);
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, input.count, out, &why),
@@ -331,14 +327,12 @@ static void test_weird(void** state)
   expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),
     MCOR_INVALID_DATA, &why, "POSITION_NOT_FINITE|particle 1 ");
   input.count = 0;
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
+  find_lengths(&input, &options, input.count, out);
   /* So many particles lie at one place that the length becomes the least possible. */
   double many[3 * 100] = { 0 }, lengths[100];
   many[0] = 1;
   input = (mcor_input){ .count = 100, .positions = core_array(many, 3) };
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths, &why), MCOR_OK);
+  find_lengths(&input, &options, input.count, lengths);
   assert_true(lengths[99] > 0 && lengths[99] < 1e-6);
 }
 

@@ -123,6 +123,27 @@ static void test_what_is_no_plane(void** state)
   expect_error(*state, &input, &options, "ARRAY_VALUE|particle 1");
 }
 
+/* Where steps of single precision are longer than the distance of particles, rounding may lay all layers of a block in
+ * one plane. The particles then lie in space. */
+static void test_rounded_plane(void** state)
+{
+  const double iso = 0;
+  CORE_SET set = core_make_block(6, 0, 1, core_slope);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  for (int is_far = 0; is_far < 2; ++is_far)
+  {
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.position[3 * i + 1] = is_far ? 1e9 : 1;
+    }
+    options.dimension = 0;
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.dimension, is_far ? 3 : 2);
+    assert_int_equal(mcor_find_dimension(&input, NULL, 0), is_far ? 3 : 2);
+  }
+}
+
 /* Sentences name the caller's axes. A flat box around the particles is a box. */
 static void test_sentences_of_sides(void** state)
 {
@@ -309,5 +330,5 @@ static void test_bits(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_kernels_integrate_to_1, test_weight_is_1_inside,
-  test_what_is_no_plane, test_minus_zero, test_sentences_of_sides, test_walls_in_another_plane,
-  test_derivatives_and_gauges, test_pairs_and_reuse, test_bits)
+  test_what_is_no_plane, test_rounded_plane, test_minus_zero, test_sentences_of_sides,
+  test_walls_in_another_plane, test_derivatives_and_gauges, test_pairs_and_reuse, test_bits)

@@ -207,16 +207,7 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     { widening, "widening" }, { has_volume ? &input->volume : NULL, "volume" },
     { has_mass ? &input->mass : NULL, "mass" },
     { has_mass && mcor_is_given(&input->density) ? &input->density : NULL, "density" } };
-  MCOR_TRY(mcor_check_form(context, &input->positions, "position", 3));
-  bool all_finite = false;
-  if (!context->run.options->globals) /* globals are measured already, so they need no sample */
-  {
-    MCOR_TRY(mcor_sample_own(context, input, mcor_most_samples(input), &all_finite));
-  }
-  if (!all_finite)
-  {
-    MCOR_TRY(mcor_check_array(context, input, &input->positions, skip, "position", 3, false));
-  }
+  MCOR_TRY(mcor_check_array(context, input, &input->positions, skip, "position", 3, false));
   MCOR_FAIL_IF(arrays[0].array && !mcor_is_given(arrays[0].array), context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(LENGTH_MISSING));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)

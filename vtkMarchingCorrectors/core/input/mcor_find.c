@@ -264,53 +264,41 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
     : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), mcor_called(f, words, name), has));
 }
 
-static const char* const mcor_quantity_words[MCOR_ROLE_VALUES] = { "smoothing length", "volume",
-  "mass", "density" };
-
-/* Finds the value or the array that is given for a quantity, else an array with a usual name.
- * Returns whether something is given. */
-static bool mcor_find_quantity(mcor_finder* f, mcor_role role)
+/* Takes the array that is given for a role, else the one that was found before, as the role's view.
+ * words: what it is for. Returns whether there is one. */
+static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, int components)
 {
-  mcor_found* found = f->found;
   const char* name = mcor_given_name(f, role);
-  if (f->request->values[role] != 0)
+  int* which = &f->found->which[role];
+  *which = name ? mcor_find_given(f, words, name, components) : *which;
+  if (*which >= 0)
   {
-    found->views[role].constant = f->request->values[role];
-    return true;
+    f->found->views[role] = mcor_view_of(f, *which);
   }
-  const int index = name ? mcor_find_given(f, mcor_quantity_words[role], name, 1)
-    : f->request->find
-    ? mcor_find_named(f->arrays, f->count, (mcor_quantity)role, 1, f->positions->tuples)
-    : -1;
-  if (index >= 0)
-  {
-    found->views[role] = mcor_view_of(f, index);
-    f->at[role] = index;
-  }
-  return name != NULL;
+  return *which >= 0;
 }
 
 /* Says that there is no smoothing length, and which one may be right. */
 static mcor_message mcor_no_length(mcor_finder* f)
 {
+  const int64_t count = f->positions->tuples;
+  const int spacing = mcor_find_named(f->arrays, f->count, MCOR_SPACING, 1, count);
   bool has_rhop = false, has_idp = false;
+  double range[2] = { 0, 0 };
   for (int i = 0; i < f->count; ++i)
   {
     has_rhop = has_rhop || mcor_is_usual_name(f->arrays[i].name, "rhop");
     has_idp = has_idp || mcor_is_usual_name(f->arrays[i].name, "idp");
   }
-  const int64_t count = f->positions->tuples;
-  const int spacing = mcor_find_named(f->arrays, f->count, MCOR_SPACING, 1, count);
-  const double distance =
-    spacing >= 0 && count > 0 ? mcor_element_at(f->arrays + spacing, 0, 0) : 0;
-  bool is_one = distance > 0;
-  for (int64_t i = 0; i < count && is_one; ++i)
+  if (spacing >= 0)
   {
-    is_one = mcor_element_at(f->arrays + spacing, i, 0) == distance;
+    const mcor_array distances = mcor_view_of(f, spacing);
+    mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0, range);
   }
-  char* usual = is_one ? mcor_text(" By '%s', particles are %g apart: %g is usual.",
-                           f->arrays[spacing].name, distance, 1.3 * distance)
-                       : NULL;
+  char* usual = range[0] > 0 && range[0] == range[1]
+    ? mcor_text(" By '%s', particles are %g apart: %g is usual.", f->arrays[spacing].name, range[0],
+        1.3 * range[0])
+    : NULL;
   const mcor_message message = mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
     has_rhop && has_idp
       ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program --coefh "
@@ -321,40 +309,50 @@ static mcor_message mcor_no_length(mcor_finder* f)
   return message;
 }
 
-static void mcor_find_length(mcor_finder* f)
+/* Finds the value or the array that is given for a quantity, else an array with a usual name. */
+static void mcor_find_quantity(mcor_finder* f, mcor_role role)
 {
+  static const char* const words[MCOR_ROLE_VALUES] = { "smoothing length", "volume", "mass",
+    "density" };
   const mcor_request* r = f->request;
-  mcor_found* found = f->found;
-  found->input.smoothing_length_is_support_radius = r->smoothing_length_is_support_radius != 0;
-  found->input.estimate_smoothing_length = r->estimate_smoothing_length != 0;
-  if (r->estimate_smoothing_length)
+  mcor_array* view = &f->found->views[role];
+  view->constant = r->values[role];
+  if (view->constant == 0)
   {
-    found->needs_lengths = r->lengths_by_neighbours != 0;
-    return;
+    f->found->which[role] = r->find
+      ? mcor_find_named(f->arrays, f->count, (mcor_quantity)role, 1, f->positions->tuples)
+      : -1;
+    mcor_take_role(f, role, words[role], 1);
   }
-  mcor_find_quantity(f, MCOR_ROLE_SMOOTHING_LENGTH);
-  found->input.smoothing_length = found->views[MCOR_ROLE_SMOOTHING_LENGTH];
-  found->which[MCOR_ROLE_SMOOTHING_LENGTH] = f->at[MCOR_ROLE_SMOOTHING_LENGTH];
-  if (!mcor_has_error(f) && !(r->wants & MCOR_WANT_LIST) &&
-    !mcor_is_given(&found->input.smoothing_length))
+  if (role == MCOR_ROLE_SMOOTHING_LENGTH && !(r->wants & MCOR_WANT_LIST) && !mcor_is_given(view))
   {
     mcor_refuse(f, mcor_no_length(f));
   }
 }
 
-/* Returns, as bits 1 << role, which of volume, mass and density make the volumes; 0: none, so
- * volumes are request->particle_volume or computed. What is given by hand replaces only the same
- * quantity, so known volumes stay, unless mass and density are both given, or volumes are to be
- * computed. known: all that is given or found. */
+/* Quantities that are given, known or used. */
+enum
+{
+  MCOR_THE_LENGTH = 1 << MCOR_ROLE_SMOOTHING_LENGTH,
+  MCOR_THE_VOLUME = 1 << MCOR_ROLE_VOLUME,
+  MCOR_THE_MASS = 1 << MCOR_ROLE_MASS,
+  MCOR_THE_DENSITY = 1 << MCOR_ROLE_DENSITY,
+  MCOR_MASS_AND_DENSITY = MCOR_THE_MASS | MCOR_THE_DENSITY
+};
+
+/* Returns which of volume, mass and density make the volumes; 0: none, so volumes are
+ * request->particle_volume or computed. What is given by hand replaces only the same quantity, so
+ * known volumes stay, unless mass and density are both given, or volumes are to be computed. known:
+ * all that is given or found. */
 static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
 {
-  const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
-                 both = mass | 1u << MCOR_ROLE_DENSITY;
-  return request->compute_volumes                                      ? known & mass
-    : (known & volume) && ((given & volume) || (given & both) != both) ? volume
-    : (known & both) == both                                           ? both
-    : request->particle_volume > 0                                     ? 0
-                                                                       : known & mass;
+  const bool has_both = (known & MCOR_MASS_AND_DENSITY) == MCOR_MASS_AND_DENSITY,
+             gives_both = (given & MCOR_MASS_AND_DENSITY) == MCOR_MASS_AND_DENSITY;
+  return request->compute_volumes                                           ? known & MCOR_THE_MASS
+    : (known & MCOR_THE_VOLUME) && (given & MCOR_THE_VOLUME || !gives_both) ? MCOR_THE_VOLUME
+    : has_both                                                              ? MCOR_MASS_AND_DENSITY
+    : request->particle_volume > 0                                          ? 0
+                                                                            : known & MCOR_THE_MASS;
 }
 
 /* Says what is given by hand but not used; volumes: the name of the array of volumes that is
@@ -362,18 +360,17 @@ static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given,
 static mcor_message mcor_describe_unused(
   const mcor_request* request, unsigned given, unsigned used, const char* volumes)
 {
-  const unsigned volume = 1u << MCOR_ROLE_VOLUME, mass = 1u << MCOR_ROLE_MASS,
-                 both = mass | 1u << MCOR_ROLE_DENSITY, idle = given & ~used & (volume | both);
-  const char* words = idle & volume ? "volume is"
-    : idle == both                  ? "mass and density are"
-    : idle == mass                  ? "mass is"
-                                    : "density is";
-  return request->estimate_smoothing_length && (given & 1u << MCOR_ROLE_SMOOTHING_LENGTH)
+  const unsigned idle = given & ~used & (MCOR_THE_VOLUME | MCOR_MASS_AND_DENSITY);
+  const char* words = idle & MCOR_THE_VOLUME ? "volume is"
+    : idle == MCOR_MASS_AND_DENSITY          ? "mass and density are"
+    : idle == MCOR_THE_MASS                  ? "mass is"
+                                             : "density is";
+  return request->estimate_smoothing_length && (given & MCOR_THE_LENGTH)
     ? mcor_say(MCOR_SAY(LENGTH_IN_VAIN))
-    : idle == 0                ? MCOR_NO_MESSAGE
-    : request->compute_volumes ? mcor_say(MCOR_SAY(SIZE_BESIDE_COMPUTED), words)
-    : used & given & volume    ? mcor_say(MCOR_SAY(SIZE_BESIDE_VOLUME), words)
-    : used & volume ? mcor_say(MCOR_SAY(SIZE_BESIDE_ARRAY), words, volumes ? volumes : "")
+    : idle == 0                      ? MCOR_NO_MESSAGE
+    : request->compute_volumes       ? mcor_say(MCOR_SAY(SIZE_BESIDE_COMPUTED), words)
+    : used & given & MCOR_THE_VOLUME ? mcor_say(MCOR_SAY(SIZE_BESIDE_VOLUME), words)
+    : used & MCOR_THE_VOLUME ? mcor_say(MCOR_SAY(SIZE_BESIDE_ARRAY), words, volumes ? volumes : "")
     : request->particle_volume > 0 ? mcor_say(MCOR_SAY(SIZE_BESIDE_ONE_VOLUME), words)
                                    : mcor_say(MCOR_SAY(DENSITY_WITHOUT_MASS), words);
 }
@@ -390,28 +387,29 @@ static bool mcor_is_summed(const mcor_finder* f)
 static void mcor_find_sizes(mcor_finder* f)
 {
   const mcor_request* r = f->request;
-  mcor_found* found = f->found;
-  const char* length = mcor_given_name(f, MCOR_ROLE_SMOOTHING_LENGTH);
-  unsigned given = length || r->values[MCOR_ROLE_SMOOTHING_LENGTH] != 0, known = 0;
-  mcor_find_length(f);
-  for (int role = MCOR_ROLE_VOLUME; role <= MCOR_ROLE_DENSITY; ++role)
+  mcor_input* input = &f->found->input;
+  const mcor_array* views = f->found->views;
+  unsigned given = 0, known = 0;
+  for (int role = 0; role < MCOR_ROLE_VALUES; ++role)
   {
-    given |= mcor_find_quantity(f, (mcor_role)role) ? 1u << role : 0;
-    known |= mcor_is_given(&found->views[role]) ? 1u << role : 0;
+    if (role != MCOR_ROLE_SMOOTHING_LENGTH || !r->estimate_smoothing_length)
+    {
+      mcor_find_quantity(f, (mcor_role)role);
+    }
+    given |= r->values[role] != 0 || mcor_given_name(f, (mcor_role)role) ? 1u << role : 0;
+    known |= mcor_is_given(&views[role]) ? 1u << role : 0;
   }
   const unsigned used = mcor_choose_volumes(r, given, known);
-  mcor_array* const of_input[MCOR_ROLE_VALUES] = { NULL, &found->input.volume, &found->input.mass,
-    &found->input.density };
-  for (int role = MCOR_ROLE_VOLUME; role <= MCOR_ROLE_DENSITY; ++role)
-  {
-    const bool is_used = (used & 1u << role) != 0;
-    *of_input[role] = is_used ? found->views[role] : (mcor_array){ 0 };
-    found->which[role] = is_used ? f->at[role] : -1;
-  }
-  if (used == 0 && !r->compute_volumes)
-  {
-    found->input.volume.constant = r->particle_volume;
-  }
+  f->uses |= used | MCOR_THE_LENGTH;
+  input->smoothing_length_is_support_radius = r->smoothing_length_is_support_radius != 0;
+  input->estimate_smoothing_length = r->estimate_smoothing_length != 0;
+  f->found->needs_lengths = r->estimate_smoothing_length && r->lengths_by_neighbours;
+  input->smoothing_length = views[MCOR_ROLE_SMOOTHING_LENGTH];
+  input->volume = used & MCOR_THE_VOLUME ? views[MCOR_ROLE_VOLUME] : (mcor_array){ 0 };
+  input->mass = used & MCOR_THE_MASS ? views[MCOR_ROLE_MASS] : (mcor_array){ 0 };
+  input->density = used & MCOR_THE_DENSITY ? views[MCOR_ROLE_DENSITY] : (mcor_array){ 0 };
+  input->volume.constant =
+    used == 0 && !r->compute_volumes ? r->particle_volume : input->volume.constant;
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
   /* Flow and columns use masses and densities beside volumes; the sum Density uses masses. */
@@ -419,9 +417,8 @@ static void mcor_find_sizes(mcor_finder* f)
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
   if (!(r->wants & MCOR_WANT_LIST))
   {
-    found->unused =
-      mcor_describe_unused(r, uses_all ? given & 1u << MCOR_ROLE_SMOOTHING_LENGTH : given,
-        used | (is_sum ? 1u << MCOR_ROLE_MASS : 0), found->views[MCOR_ROLE_VOLUME].name);
+    f->found->unused = mcor_describe_unused(r, uses_all ? given & MCOR_THE_LENGTH : given,
+      used | (is_sum ? MCOR_THE_MASS : 0), views[MCOR_ROLE_VOLUME].name);
   }
 }
 
@@ -438,52 +435,6 @@ static int mcor_choose_scalar(mcor_finder* f)
   return joined >= 0 ? joined : best >= 0 ? best : active < f->count ? active : -1;
 }
 
-static bool mcor_is_off_points(const mcor_finder* f, mcor_role role)
-{
-  return (f->request->not_on_points & 1 << role) != 0;
-}
-
-/* Sets the scalar, and checks its component. */
-static void mcor_keep_scalar(mcor_finder* f, mcor_array view)
-{
-  mcor_input* input = &f->found->input;
-  const int component = f->request->scalar_component;
-  const bool is_dot = input->scalar_dot.data != NULL;
-  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0;
-  f->found->views[MCOR_ROLE_SCALAR] = view;
-  input->scalar = view;
-  input->scalar_component = view.components <= 1 ? 0
-    : is_column && component < MCOR_MAGNITUDE    ? MCOR_MAGNITUDE
-                                                 : component;
-  if (!is_dot && view.components > 1 &&
-    (input->scalar_component < MCOR_MAGNITUDE || component >= view.components))
-  {
-    mcor_refuse(f,
-      mcor_say(MCOR_SAY(NO_SUCH_COMPONENT), mcor_called(f, "scalar", view.name ? view.name : ""),
-        component, view.components - 1));
-  }
-}
-
-static void mcor_find_dot(mcor_finder* f, const char* name, int scalar)
-{
-  mcor_found* found = f->found;
-  const int dot = mcor_find_given(f, "second vector of the dot product", name, 0);
-  if (dot < 0)
-  {
-    return;
-  }
-  const mcor_named *a = mcor_named_of(f, scalar), *b = mcor_named_of(f, dot);
-  if (a->components != b->components)
-  {
-    mcor_refuse(f,
-      mcor_say(MCOR_SAY(DOT_OF_DIFFERENT_VECTORS), a->name ? a->name : "", a->components, name,
-        b->components));
-    return;
-  }
-  found->which[MCOR_ROLE_SCALAR_DOT] = dot;
-  found->input.scalar_dot = found->views[MCOR_ROLE_SCALAR_DOT] = mcor_view_of(f, dot);
-}
-
 /* Makes an array one of the attributes. */
 static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
 {
@@ -493,16 +444,46 @@ static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
   found->attributes[at] = index;
 }
 
+/* Sets the scalar, and the second vector of a dot product. */
+static void mcor_keep_scalar(mcor_finder* f, mcor_array view, bool is_column, bool is_dot)
+{
+  mcor_found* found = f->found;
+  mcor_input* input = &found->input;
+  const char* name = view.name ? view.name : "";
+  const int component = f->request->scalar_component;
+  found->views[MCOR_ROLE_SCALAR] = input->scalar = view;
+  input->scalar_component = view.components <= 1 ? 0
+    : is_column && component < MCOR_MAGNITUDE    ? MCOR_MAGNITUDE
+                                                 : component;
+  if (is_dot && mcor_take_role(f, MCOR_ROLE_SCALAR_DOT, "second vector of the dot product", 0))
+  {
+    input->scalar_dot = found->views[MCOR_ROLE_SCALAR_DOT];
+    if (view.components != input->scalar_dot.components)
+    {
+      mcor_refuse(f,
+        mcor_say(MCOR_SAY(DOT_OF_DIFFERENT_VECTORS), name, view.components,
+          mcor_given_name(f, MCOR_ROLE_SCALAR_DOT), input->scalar_dot.components));
+    }
+  }
+  else if (view.components > 1 &&
+    (input->scalar_component < MCOR_MAGNITUDE || component >= view.components))
+  {
+    mcor_refuse(f,
+      mcor_say(MCOR_SAY(NO_SUCH_COMPONENT), mcor_called(f, "scalar", name), component,
+        view.components - 1));
+  }
+}
+
 /* Finds the scalar to contour, the one attribute of derivatives, or the scalar of a projection, if
  * it has one. */
 static void mcor_find_scalar(mcor_finder* f, bool contours)
 {
-  mcor_found* found = f->found;
   const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),
              *dot = contours ? mcor_given_name(f, MCOR_ROLE_SCALAR_DOT) : NULL;
-  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0,
-             is_off = mcor_is_off_points(f, MCOR_ROLE_SCALAR);
-  int* const which = &found->which[MCOR_ROLE_SCALAR];
+  const int is_off = f->request->not_on_points & 1 << MCOR_ROLE_SCALAR,
+            dot_is_off = contours ? f->request->not_on_points & 1 << MCOR_ROLE_SCALAR_DOT : 0;
+  const bool is_column = (f->request->wants & MCOR_WANT_COLUMN) != 0;
+  int* const which = &f->found->which[MCOR_ROLE_SCALAR];
   if (!name && is_column)
   {
     return;
@@ -514,7 +495,7 @@ static void mcor_find_scalar(mcor_finder* f, bool contours)
                : mcor_say(MCOR_SAY(NO_ARRAY), mcor_names_of(f)));
     return;
   }
-  if (is_off || (contours && mcor_is_off_points(f, MCOR_ROLE_SCALAR_DOT)))
+  if (is_off || dot_is_off)
   {
     const char* array = is_off ? name : dot;
     array = array ? array : "";
@@ -525,18 +506,14 @@ static void mcor_find_scalar(mcor_finder* f, bool contours)
   }
   if ((contours || is_column) && mcor_is_summed(f))
   {
-    found->needs_densities = 1;
+    f->found->needs_densities = 1;
     return;
   }
   const char* words = contours ? "scalar" : is_column ? "projection" : "derivatives";
   *which = name ? mcor_find_given(f, words, name, 0) : mcor_check_named(f, words, "", *which);
-  if (*which >= 0 && dot)
-  {
-    mcor_find_dot(f, dot, *which);
-  }
   if (*which >= 0 && (contours || is_column))
   {
-    mcor_keep_scalar(f, mcor_view_of(f, *which));
+    mcor_keep_scalar(f, mcor_view_of(f, *which), is_column, dot != NULL);
   }
   else if (*which >= 0)
   {
@@ -547,25 +524,18 @@ static void mcor_find_scalar(mcor_finder* f, bool contours)
 /* Finds the masses of a projection or, without masses, the densities; and the weight of a mean. */
 static void mcor_find_column(mcor_finder* f)
 {
-  mcor_found* found = f->found;
-  const mcor_array* mass = &found->views[MCOR_ROLE_MASS];
-  if (mcor_is_given(mass))
+  const mcor_array* views = f->found->views;
+  if (mcor_is_given(&views[MCOR_ROLE_MASS]))
   {
-    found->input.mass = *mass;
-    found->which[MCOR_ROLE_MASS] = f->at[MCOR_ROLE_MASS];
+    f->found->input.mass = views[MCOR_ROLE_MASS];
+    f->uses |= MCOR_THE_MASS;
   }
-  else if (mcor_is_given(&found->views[MCOR_ROLE_DENSITY]))
+  else if (mcor_is_given(&views[MCOR_ROLE_DENSITY]))
   {
-    found->input.density = found->views[MCOR_ROLE_DENSITY];
-    found->which[MCOR_ROLE_DENSITY] = f->at[MCOR_ROLE_DENSITY];
+    f->found->input.density = views[MCOR_ROLE_DENSITY];
+    f->uses |= MCOR_THE_DENSITY;
   }
-  const char* name = mcor_given_name(f, MCOR_ROLE_WEIGHT);
-  const int weight = name ? mcor_find_given(f, "weight", name, 1) : -1;
-  if (weight >= 0)
-  {
-    found->which[MCOR_ROLE_WEIGHT] = weight;
-    found->views[MCOR_ROLE_WEIGHT] = mcor_view_of(f, weight);
-  }
+  mcor_take_role(f, MCOR_ROLE_WEIGHT, "weight", 1);
 }
 
 /* Finds velocities by their usual names: an array of three components, three arrays, or, in a plane, an array of two
@@ -582,21 +552,18 @@ static int mcor_find_velocity(mcor_finder* f)
 static void mcor_find_flow(mcor_finder* f)
 {
   mcor_found* found = f->found;
-  const char* name = mcor_given_name(f, MCOR_ROLE_VELOCITY);
-  const int velocity =
-    name ? mcor_find_given(f, "velocity", name, 0) : found->which[MCOR_ROLE_VELOCITY];
-  found->which[MCOR_ROLE_VELOCITY] = velocity;
-  if (velocity < 0)
+  const mcor_array *views = found->views, *mass = &views[MCOR_ROLE_MASS],
+                   *volume = &found->input.volume;
+  if (!mcor_take_role(f, MCOR_ROLE_VELOCITY, "velocity", 0))
   {
     mcor_refuse(f, mcor_say(MCOR_SAY(NO_VELOCITY), mcor_names_of(f)));
     return;
   }
-  mcor_add_attribute(f, velocity, mcor_view_of(f, velocity));
-  const mcor_array *mass = &found->views[MCOR_ROLE_MASS], *volume = &found->input.volume;
-  if (mcor_is_given(&found->views[MCOR_ROLE_DENSITY]))
+  mcor_add_attribute(f, found->which[MCOR_ROLE_VELOCITY], views[MCOR_ROLE_VELOCITY]);
+  if (mcor_is_given(&views[MCOR_ROLE_DENSITY]))
   {
-    found->which[MCOR_ROLE_DENSITY] = f->at[MCOR_ROLE_DENSITY];
-    mcor_add_attribute(f, f->at[MCOR_ROLE_DENSITY], found->views[MCOR_ROLE_DENSITY]);
+    f->uses |= MCOR_THE_DENSITY;
+    mcor_add_attribute(f, found->which[MCOR_ROLE_DENSITY], views[MCOR_ROLE_DENSITY]);
   }
   else if (mcor_is_given(mass) && mcor_is_given(volume))
   {
@@ -606,7 +573,7 @@ static void mcor_find_flow(mcor_finder* f)
     {
       divided[i] = mcor_array_at(mass, i, 0) / mcor_array_at(volume, i, 0);
     }
-    found->which[MCOR_ROLE_MASS] = f->at[MCOR_ROLE_MASS];
+    f->uses |= MCOR_THE_MASS;
     found->made[1] = (mcor_named){ "Density", MCOR_ELEMENT_FLOAT64, 1, count, divided, { 0, 0 } };
     mcor_add_attribute(f, f->count + 1, mcor_view_of(f, f->count + 1));
   }
@@ -683,8 +650,7 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
     .arrays = arrays,
     .count = count,
     .ranks = ranks,
-    .found = found,
-    .at = { -1, -1, -1, -1 } };
+    .found = found };
   const unsigned wants = request->wants;
   *found = (mcor_found){ .input.count = positions->tuples, .fluid_count = positions->tuples };
   memset(found->which, -1, sizeof found->which);
@@ -718,16 +684,16 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   {
     mcor_find_scalar(&f, contours);
   }
-  if (wants & MCOR_WANT_SIZES && !mcor_has_error(&f))
+  if (wants & MCOR_WANT_SIZES)
   {
     mcor_find_sizes(&f);
   }
   mcor_mark_particles(&f);
-  if (wants & MCOR_WANT_FLOW && !mcor_has_error(&f))
+  if (wants & MCOR_WANT_FLOW)
   {
     mcor_find_flow(&f);
   }
-  if (wants & MCOR_WANT_COLUMN && !mcor_has_error(&f))
+  if (wants & MCOR_WANT_COLUMN)
   {
     mcor_find_column(&f);
   }
@@ -738,6 +704,10 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   if (wants & MCOR_WANT_ATTRIBUTES && !mcor_has_error(&f))
   {
     mcor_find_attributes(&f);
+  }
+  for (int role = 0; role < MCOR_ROLE_VALUES; ++role)
+  {
+    found->which[role] = f.uses & 1u << role ? found->which[role] : -1;
   }
   return f.lacks_memory  ? MCOR_OUT_OF_CAPACITY
     : mcor_has_error(&f) ? MCOR_INVALID_ARGUMENT

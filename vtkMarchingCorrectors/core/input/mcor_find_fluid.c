@@ -128,8 +128,7 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
   {
     snprintf(seems, sizeof seems, ", which seems to be %g", fluid);
   }
-  const mcor_message message =
-    mcor_say(MCOR_SAY(TYPE_UNUSED), name, list ? list : "", name, seems);
+  const mcor_message message = mcor_say(MCOR_SAY(TYPE_UNUSED), name, list ? list : "", name, seems);
   free(list);
   return message;
 }
@@ -137,12 +136,12 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
 /* Whether the request has ranges of this array, so the array is used. */
 static bool mcor_chooses_particles(const mcor_finder* f, const char* name)
 {
-  bool chooses = false;
-  for (int i = 0; i < f->request->only_count; ++i)
+  int i = 0;
+  while (i < f->request->only_count && strcmp(f->request->only[i].name, name) != 0)
   {
-    chooses = chooses || strcmp(f->request->only[i].name, name) == 0;
+    ++i;
   }
-  return chooses;
+  return i < f->request->only_count;
 }
 
 /* Finds the array with the most usual name that clearly tells which particles are fluid; without
@@ -200,7 +199,7 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
   const mcor_request* request = f->request;
   const mcor_only* only = request->only;
   const double* b = request->within;
-  const bool has_within = mcor_has_sides(request->within);
+  const bool has_within = mcor_has_sides(b);
   const int64_t count = f->positions->tuples;
   const int ranges = count > 0 ? request->only_count : 0;
   int* of = mcor_find_memory(f, (size_t)ranges * sizeof *of); /* the array of each range */
@@ -217,18 +216,11 @@ static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
     }
     for (int r = 0; r < ranges; ++r)
     {
-      int k = 0;
-      while (of[k] != of[r])
-      {
-        ++k;
-      }
-      /* A value must lie in one of its array's ranges. k: the first range of the array, where all
-       * of the array's ranges are tested; its later ranges (r > k) are skipped. */
       const double x = mcor_element_at(f->arrays + of[r], i, 0);
-      bool holds = k < r;
-      for (; k < ranges && !holds; ++k)
+      bool holds = false; /* a value must lie in one of its array's ranges */
+      for (int k = 0; k < ranges; ++k)
       {
-        holds = of[k] == of[r] && x >= only[k].low && x <= only[k].high;
+        holds = holds || (of[k] == of[r] && x >= only[k].low && x <= only[k].high);
       }
       solid[i] = holds ? solid[i] : MCOR_ABSENT;
     }
@@ -241,9 +233,9 @@ static char* mcor_describe_choice(const mcor_finder* f)
   const mcor_request* request = f->request;
   const bool has = mcor_has_sides(request->within);
   double b[6];
-  for (int side = 0; side < 6;
-       ++side) /* a tiny side stands for 0, because six zeros would choose no box */
+  for (int side = 0; side < 6; ++side)
   {
+    /* A tiny side stands for 0, because six zeros would choose no box. */
     b[side] = fpclassify(request->within[side]) == FP_SUBNORMAL ? 0 : request->within[side];
   }
   char* text = has
@@ -265,26 +257,20 @@ void mcor_mark_particles(mcor_finder* f)
   mcor_found* found = f->found;
   const int64_t count = f->positions->tuples;
   const char* name = mcor_given_name(f, MCOR_ROLE_FLUID);
-  int fluid = found->which[MCOR_ROLE_FLUID];
-  found->input.ignore_solids = request->ignore_solids != 0;
-  if (name && fluid < 0)
-  {
-    fluid = found->which[MCOR_ROLE_FLUID] = mcor_find_given(f, "fluid", name, 1);
-  }
   const bool is_chosen = mcor_has_sides(request->within) || request->only_count > 0;
-  if (fluid < 0 && (name || !is_chosen))
-  {
-    return;
-  }
-  found->views[MCOR_ROLE_FLUID].name = fluid < 0 ? NULL : mcor_keep_name(f, f->arrays[fluid].name);
-  uint8_t* solid = mcor_find_memory(f, (size_t)count);
+  int* const which = &found->which[MCOR_ROLE_FLUID];
+  found->input.ignore_solids = request->ignore_solids != 0;
+  *which = name && *which < 0 ? mcor_find_given(f, "fluid", name, 1) : *which;
+  uint8_t* solid = *which >= 0 || (!name && is_chosen) ? mcor_find_memory(f, (size_t)count) : NULL;
   if (!solid)
   {
     return;
   }
+  const mcor_named* fluid = *which >= 0 ? f->arrays + *which : NULL;
+  found->views[MCOR_ROLE_FLUID].name = fluid ? mcor_keep_name(f, fluid->name) : NULL;
   for (int64_t i = 0; i < count; ++i)
   {
-    solid[i] = fluid >= 0 && mcor_element_at(f->arrays + fluid, i, 0) != found->fluid_value;
+    solid[i] = fluid && mcor_element_at(fluid, i, 0) != found->fluid_value;
   }
   if (is_chosen)
   {
@@ -300,61 +286,44 @@ void mcor_mark_particles(mcor_finder* f)
   }
   if (found->fluid_count == 0)
   {
-    const char* array = fluid >= 0 && f->arrays[fluid].name ? f->arrays[fluid].name : "";
-    found->no_fluid = some && fluid >= 0
-      ? mcor_text("No particle has %s = %g", array, found->fluid_value)
+    found->no_fluid = some && fluid
+      ? mcor_text("No particle has %s = %g", fluid->name ? fluid->name : "", found->fluid_value)
       : mcor_describe_choice(f);
   }
 }
 
-static int mcor_shown_components(const mcor_named* array)
-{
-  return array->type < MCOR_ELEMENT_OTHER && array->name ? array->components : 0;
-}
-
-/* Ranks first find together which components of which arrays vary. */
+/* Ranks find together which arrays vary. */
 int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks)
 {
-  int ends = 0, best = -1, best_rank = -1;
+  int best = -1, best_rank = -1;
   for (int i = 0; i < count; ++i)
   {
-    ends += 2 * mcor_shown_components(arrays + i);
-  }
-  /* Each component's least value, then minus its greatest, up to the first value that differs. */
-  double *least = malloc(((size_t)ends + 1) * sizeof *least), *of = least;
-  for (int i = 0; least && i < count; ++i)
-  {
-    for (int c = 0; c < mcor_shown_components(arrays + i); ++c, of += 2)
+    const mcor_named* a = arrays + i;
+    const int components = a->type < MCOR_ELEMENT_OTHER && a->name ? a->components : 0;
+    bool varies = false;
+    for (int c = 0; c < components && !varies; ++c)
     {
-      of[0] = of[1] = INFINITY;
-      for (int64_t k = 0; k < arrays[i].tuples && !(of[0] < -of[1]); ++k)
+      /* The component's least value, and minus its greatest, up to the first value that differs. */
+      double ends[2] = { INFINITY, INFINITY };
+      for (int64_t k = 0; k < a->tuples && !(ends[0] < -ends[1]); ++k)
       {
-        const double x = mcor_element_at(arrays + i, k, c);
-        of[0] = fmin(of[0], x);
-        of[1] = fmin(of[1], -x);
+        const double x = mcor_element_at(a, k, c);
+        ends[0] = fmin(ends[0], x);
+        ends[1] = fmin(ends[1], -x);
       }
+      if (ranks && ranks->reduce_doubles(ranks->user, MCOR_LEAST, ends, 2) != 0)
+      {
+        return -1;
+      }
+      varies = ends[0] < -ends[1];
     }
-  }
-  const bool failed = !least ||
-    (ranks && ends > 0 && ranks->reduce_doubles(ranks->user, MCOR_LEAST, least, ends) != 0);
-  of = least;
-  for (int i = 0; i < count && !failed; ++i)
-  {
-    const int components = mcor_shown_components(arrays + i);
-    bool differs = false;
-    for (int c = 0; c < components; ++c, of += 2)
-    {
-      differs = differs || of[0] < -of[1];
-    }
-    const int rank = components == 0 ? -1
-                                     : mcor_view_priority(arrays[i].name, components,
-                                         arrays[i].type <= MCOR_ELEMENT_FLOAT64, differs);
+    const int rank =
+      mcor_view_priority(a->name, components, a->type <= MCOR_ELEMENT_FLOAT64, varies);
     if (rank >= 0 && (i == active || best < 0 || (rank < best_rank && best != active)))
     {
       best = i;
       best_rank = rank;
     }
   }
-  free(least);
   return best;
 }

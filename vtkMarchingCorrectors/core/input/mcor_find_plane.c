@@ -4,102 +4,39 @@
 /* Finds whether the particles lie in a plane. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_vector.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Finds the ranges of the particles along x, y, z: first of the fluid, then of the solids that play
- * a part. */
-typedef struct mcor_spread_job
-{
-  const mcor_input* input;
-  mcor_findings slices[MCOR_SLICES];
-} mcor_spread_job;
-
-/* Measures each axis only until two values along it differ: the fluid is then not flat along this
- * axis, and its exact extent does not matter. */
-static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_spread_job* job = data;
-  const mcor_input* input = job->input;
-  mcor_findings spread = mcor_no_findings();
-  bool everywhere = false;
-  for (int64_t begin = first; begin < last && !everywhere; begin += MCOR_CHUNK)
-  {
-    const int count = mcor_chunk_of(last - begin);
-    double x[MCOR_CHUNK];
-    everywhere = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      if (spread.least[a] < spread.most[a])
-      {
-        continue;
-      }
-      mcor_read_array(&input->positions, begin, count, a, x);
-      const bool same =
-        !input->solid && mcor_is_all_within(x, count, spread.least[a], spread.most[a]);
-      for (int i = 0; i < count && !same; ++i)
-      {
-        const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
-        if (mcor_is_present(input, begin + i) && (finite || !solid))
-        {
-          mcor_add_range(
-            &spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
-        }
-      }
-      everywhere = everywhere && spread.least[a] < spread.most[a];
-    }
-  }
-  job->slices[slice] = spread;
-}
-
-/* Whether positions can be read; if not, mcor_check_input says later what is wrong. */
 bool mcor_has_positions(const mcor_input* input)
 {
   return input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && input->positions.data &&
     (unsigned)input->positions.type <= MCOR_FLOAT64;
 }
 
-static mcor_findings mcor_spread_of(mcor_context* context, const mcor_input* input)
+/* Finds the ranges of the particles along x, y, z: first of the fluid, then of the solids that play
+ * a part. An axis is measured only until two values of the fluid differ: the fluid is then not flat
+ * along this axis, and its exact extent does not matter. If positions cannot be read,
+ * mcor_check_input says later what is wrong. */
+static mcor_findings mcor_find_spread(const mcor_input* input)
 {
-  mcor_input given = *input;
-  mcor_spread_job job = { .input = &given };
-  given.positions.components = 3;
-  const int slices = mcor_has_positions(input)
-    ? mcor_parallel_for(context, input->count, MCOR_LIGHT_GRAIN, mcor_extent_slice, &job)
-    : 0;
-  return mcor_merge_findings(job.slices, slices);
-}
-
-/* Chooses the plane. Particles on a line, or at a point, do not tell their plane, so none is chosen
- * unless the caller sets two dimensions. */
-static mcor_plane mcor_plane_of(const mcor_findings* spread, int dimension)
-{
-  mcor_plane plane = { 0 };
-  int constant = 0;
+  mcor_findings spread = mcor_no_findings();
+  const int64_t count = mcor_has_positions(input) ? input->count : 0;
   for (int a = 0; a < 3; ++a)
   {
-    const double low = fmin(spread->least[a], spread->least[3 + a]),
-                 high = fmax(spread->most[a], spread->most[3 + a]);
-    constant += low == high;
-    plane = low == high ? (mcor_plane){ a + 1, low + 0.0 } : plane; /* never -0 */
+    for (int64_t i = 0; i < count && !(spread.least[a] < spread.most[a]); ++i)
+    {
+      const double x = mcor_array_at(&input->positions, i, a);
+      const bool solid = input->solid && input->solid[i], finite = isfinite(x);
+      if (mcor_is_present(input, i) && (finite || !solid))
+      {
+        mcor_add_range(&spread, solid ? 3 + a : a, finite ? x : -DBL_MAX, finite ? x : DBL_MAX);
+      }
+    }
   }
-  return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
-}
-
-int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
-{
-  mcor_findings spread = mcor_spread_of(NULL, input);
-  if (ranks &&
-    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.least, 6) ||
-      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.most, 6)))
-  {
-    return 3; /* another rank failed */
-  }
-  return dimension == 2 || (dimension == 0 && mcor_plane_of(&spread, 0).axis > 0) ? 2 : 3;
+  return spread;
 }
 
 /* Names the first particle off the plane (a solid one if all fluid shares a plane). */
@@ -138,29 +75,34 @@ static mcor_status mcor_refuse_plane(
  * of the spacing that they would have if spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
-/* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
+/* Drops a plane that rounding made: its coordinate is so large that single precision rounds it by
  * about the particles' spacing, and most of the tested particles have a twin. */
-static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* input,
-  const mcor_findings* spread, const mcor_plane* plane, bool* rounding)
+static mcor_status mcor_drop_rounded_plane(
+  mcor_context* context, const mcor_input* input, mcor_plane* plane)
 {
-  const mcor_array* positions = &input->positions;
+  const mcor_array* x = &input->positions;
+  const int axes[2] = { mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1) };
   int64_t counts[3] = { 0 }; /* particles; sampled ones; sampled ones with a twin */
+  double area = 1;
+  if (plane->at == 0 || (double)(float)plane->at != plane->at)
+  {
+    return MCOR_OK;
+  }
   for (int64_t i = 0; i < input->count; ++i)
   {
     counts[0] += mcor_is_present(input, i);
   }
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts, 1));
-  double area = 1;
   for (int a = 0; a < 2; ++a)
   {
-    const int axis = mcor_plane_axis(plane, a);
-    area *= fmax(spread->most[axis], spread->most[3 + axis]) -
-      fmin(spread->least[axis], spread->least[3 + axis]);
+    double range[2];
+    mcor_find_range(context, x, input->solid,
+      input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT, input->count, axes[a], range);
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, &range[0], 1));
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, &range[1], 1));
+    area *= range[1] - range[0];
   }
-  const double spacing = sqrt(area / (double)(counts[0] > 0 ? counts[0] : 1));
-  *rounding = plane->at != 0 && (double)(float)plane->at == plane->at &&
-    ldexp(1, ilogb(plane->at) - 23) > MCOR_COARSE_SHARE * spacing;
-  if (!*rounding)
+  if (ldexp(1, ilogb(plane->at) - 23) <= MCOR_COARSE_SHARE * sqrt(area / (double)counts[0]))
   {
     return MCOR_OK;
   }
@@ -169,18 +111,14 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
     bool has_twin = false;
     for (int64_t k = 0; k < input->count && !has_twin; ++k)
     {
-      has_twin = k != i;
-      for (int a = 0; a < 2 && has_twin; ++a)
-      {
-        const int axis = mcor_plane_axis(plane, a);
-        has_twin = mcor_array_at(positions, i, axis) == mcor_array_at(positions, k, axis);
-      }
+      has_twin = k != i && mcor_array_at(x, i, axes[0]) == mcor_array_at(x, k, axes[0]) &&
+        mcor_array_at(x, i, axes[1]) == mcor_array_at(x, k, axes[1]);
     }
     counts[1] += mcor_is_present(input, i);
     counts[2] += mcor_is_present(input, i) && has_twin;
   }
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts + 1, 2));
-  *rounding = 2 * counts[2] > counts[1];
+  plane->axis = 2 * counts[2] > counts[1] ? 0 : plane->axis;
   return MCOR_OK;
 }
 
@@ -204,28 +142,35 @@ static mcor_status mcor_look_for_plane(
   {
     return MCOR_OK;
   }
-  mcor_findings spread = mcor_spread_of(context, input);
+  mcor_findings spread = mcor_find_spread(input);
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.least, 6));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.most, 6));
-  const mcor_plane plane = mcor_plane_of(&spread, options->dimension);
-  bool rounding = false;
-  if (plane.axis > 0 && options->dimension == 0)
-  {
-    MCOR_TRY(mcor_is_rounding(context, input, &spread, &plane, &rounding));
-  }
-  mcor_set_plane(context, rounding ? (mcor_plane){ 0 } : plane);
-  const bool some = spread.least[0] <= spread.most[0] || spread.least[3] <= spread.most[3];
-  int planes = 0;
+  mcor_plane plane = { 0 };
+  int constant = 0, fluid_planes = 0;
   bool apart = false; /* the fluid lies in one plane and the solids in another, so two dimensions
                        * were meant */
   for (int a = 0; a < 3; ++a)
   {
+    const double low = fmin(spread.least[a], spread.least[3 + a]),
+                 high = fmax(spread.most[a], spread.most[3 + a]);
     const bool in_plane = spread.least[a] == spread.most[a];
-    planes += in_plane;
+    constant += low == high;
+    plane = low == high ? (mcor_plane){ a + 1, low + 0.0 } : plane; /* never -0 */
+    fluid_planes += in_plane;
     apart = apart || (in_plane && spread.least[3 + a] == spread.most[3 + a]);
   }
-  const bool refused = options->dimension == 2 ? some : !rounding && planes == 1 && apart;
-  return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
+  if (options->dimension == 0 && constant != 1)
+  {
+    plane.axis = 0; /* particles on a line, or at a point, do not tell their plane */
+  }
+  if (options->dimension == 0 && plane.axis > 0)
+  {
+    MCOR_TRY(mcor_drop_rounded_plane(context, input, &plane));
+  }
+  mcor_set_plane(context, plane);
+  const bool some = spread.least[0] <= spread.most[0] || spread.least[3] <= spread.most[3];
+  const bool refuses = options->dimension == 2 ? some : constant == 0 && fluid_planes == 1 && apart;
+  return refuses && plane.axis == 0 ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
 }
 
 mcor_status mcor_find_plane(
@@ -236,4 +181,19 @@ mcor_status mcor_find_plane(
   MCOR_TRY(mcor_look_for_plane(context, &flat->input, options));
   flat->options.dimension = context->space.axes;
   return MCOR_OK;
+}
+
+int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
+{
+  const mcor_options options = { .dimension = dimension, .ranks = ranks };
+  mcor_context* context = dimension == 0 ? mcor_make_bare_context(&options) : NULL;
+  int axes = dimension == 2 ? 2 : 3;
+  if (context)
+  {
+    mcor_flat flat;
+    mcor_find_plane(context, input, &options, &flat); /* if it fails, there is no plane */
+    axes = context->space.axes;
+  }
+  mcor_free_context(context);
+  return axes;
 }

@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 int mcor_is_given(const mcor_array* array)
@@ -133,6 +134,16 @@ mcor_findings mcor_merge_findings(const mcor_findings* slices, int count)
   return all;
 }
 
+mcor_context* mcor_make_bare_context(const mcor_options* options)
+{
+  mcor_context* context = calloc(1, sizeof *context);
+  if (context)
+  {
+    context->run.options = options;
+  }
+  return context;
+}
+
 mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found)
 {
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found->sums, MCOR_SUMS));
@@ -190,40 +201,28 @@ double mcor_largest(
 
 typedef struct mcor_legal_job
 {
-  const mcor_array* array;
-  bool positive;
+  mcor_array all; /* the elements of all components */
+  double least;
   bool illegal[MCOR_SLICES];
 } mcor_legal_job;
 
-/* Compilers vectorise this loop. */
-#define MCOR_TEST_ALL(type, most)                                                                  \
-  for (int64_t i = first; i < last; ++i)                                                           \
-  {                                                                                                \
-    const type x = ((const type*)job->array->data)[i];                                             \
-    illegal |= !((x <= most) & (positive ? x > 0 : x >= -most));                                   \
-  }
-
-MCOR_VECTOR_LOOPS static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
-  const bool positive = job->positive;
-  int illegal = 0;
-  if (job->array->type == MCOR_FLOAT64)
+  double x[MCOR_CHUNK];
+  for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
-    MCOR_TEST_ALL(double, DBL_MAX)
+    mcor_read_array(&job->all, first, count, 0, x);
+    job->illegal[slice] |= !mcor_is_all_within(x, count, job->least, DBL_MAX);
   }
-  else
-  {
-    MCOR_TEST_ALL(float, FLT_MAX)
-  }
-  job->illegal[slice] = illegal;
 }
 
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
-  mcor_legal_job job = { .array = array, .positive = positive };
+  mcor_legal_job job = { .all = *array, .least = positive ? DBL_TRUE_MIN : -DBL_MAX };
+  job.all.components = 1;
   const int slices = array->data
     ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
     : 0;

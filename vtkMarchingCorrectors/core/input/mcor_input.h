@@ -127,6 +127,9 @@ static inline void mcor_add_range(mcor_findings* found, int k, double low, doubl
   found->most[k] = mcor_most(found->most[k], high);
 }
 mcor_findings mcor_merge_findings(const mcor_findings* slices, int count);
+/* Makes a context without a device, for functions of mcor.h that have none: it has threads and ranks,
+ * and keeps an error. NULL: memory ran out. Free it with mcor_free_context. */
+mcor_context* mcor_make_bare_context(const mcor_options* options);
 /* Merges ranges and sums of all ranks, but not `first`. */
 mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 
@@ -189,22 +192,12 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 /* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, one axis' factor. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
-/* mcor_measure_sample.c. Samples this rank's particles, into context->samples, and looks whether
- * all positions are finite, those of absent particles, too. most_fluid: the most samples of fluid;
- * fewer take less time. */
-mcor_status mcor_sample_own(
-  mcor_context* context, const mcor_input* input, int most_fluid, bool* all_finite);
-/* Joins the samples of all ranks. Samples this rank's particles first, unless this call has done
- * so. */
+/* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
+ * most samples of fluid; fewer take less time. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
 /* The most fluid particles whose neighbours are counted while all particles are measured; each is a
  * bit of a mask. */
 #define MCOR_WATCHED 32
-/* Returns the usual `most_fluid`. */
-static inline int mcor_most_samples(const mcor_input* input)
-{
-  return input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED;
-}
 
 /* Hashes a position: particles with the least hashes stand for all. The second function adds a
  * sample to a list if its hash is among the least. */
@@ -238,7 +231,7 @@ static inline bool mcor_needs_density(const mcor_input* input)
 /* Reads the volumes of at most MCOR_CHUNK particles; where they are computed, the masses, or 1. */
 void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out);
 
-/* mcor_find_plane.c. Whether positions can be read. */
+/* mcor_find_plane.c. Whether there are positions that can be read. */
 bool mcor_has_positions(const mcor_input* input);
 
 /* mcor_measure_median.c. Compares two doubles, for qsort. */

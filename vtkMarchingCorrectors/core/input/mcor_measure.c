@@ -58,17 +58,13 @@ static void mcor_find_normal(mcor_watch* watch)
   double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
   for (int s = 0; s < watch->count; ++s)
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      from[s][a] = watch->sample[s].x[a] - watch->sample[0].x[a];
-    }
+    mcor_subtract(watch->sample[s].x, watch->sample[0].x, from[s]);
     h = fmin(h, watch->sample[s].h);
     if (mcor_dot(from[s], from[s]) > mcor_dot(along, along))
     {
       memcpy(along, from[s], sizeof along);
     }
   }
-  const double length = sqrt(mcor_dot(along, along));
   for (int s = 0; s < watch->count; ++s)
   {
     double cross[3];
@@ -78,16 +74,13 @@ static void mcor_find_normal(mcor_watch* watch)
       memcpy(normal, cross, sizeof normal);
     }
   }
-  const double size = sqrt(mcor_dot(normal, normal));
+  const double length = sqrt(mcor_dot(along, along)), size = mcor_normalise(normal);
   bool in_plane = length > MCOR_BROAD * h && size > MCOR_BROAD * h * length;
   for (int s = 0; s < watch->count && in_plane; ++s)
   {
-    in_plane = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h * size;
+    in_plane = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h;
   }
-  for (int a = 0; a < 3 && in_plane; ++a)
-  {
-    watch->normal[a] = normal[a] / size;
-  }
+  memcpy(watch->normal, normal, in_plane ? sizeof normal : 0);
 }
 
 static bool mcor_has_normal(const mcor_watch* watch)
@@ -96,42 +89,39 @@ static bool mcor_has_normal(const mcor_watch* watch)
 }
 
 /* Watches the positions of a chunk. low, high: their bounds. */
-static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK],
-  const double low[3], const double high[3])
+static void mcor_watch_positions(
+  mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
+  const double(*x)[MCOR_CHUNK] = chunk->x;
   double* beyond = watch->beyond[slice];
-  for (int i = 0; i < count && mcor_has_normal(watch); ++i)
+  uint32_t any = UINT32_MAX, reached[MCOR_CHUNK]; /* bits: the samples that may reach the chunk,
+                                                   * each particle */
+  for (int i = 0; i < chunk->count && mcor_has_normal(watch); ++i)
   {
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  uint32_t chunk = 0, reached[MCOR_CHUNK]; /* bits: samples that may reach the chunk, each
-                                            * particle */
-  for (int s = 0; s < watch->count && count > 0; ++s)
+  for (int a = 0; a < 3; ++a)
   {
-    const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
-    bool reaches = true;
-    for (int a = 0; a < 3; ++a)
+    const int last = mcor_watch_cell(watch, a, high[a]);
+    uint32_t along = 0;
+    for (int c = mcor_watch_cell(watch, a, low[a]); c <= last; ++c)
     {
-      reaches = reaches && low[a] - at[a] <= reach && at[a] - high[a] <= reach;
+      along |= watch->reached[a][c];
     }
-    chunk |= (uint32_t)reaches << s;
-  }
-  if (!chunk)
-  {
-    return;
+    any &= along;
   }
   for (int a = 0; a < 3; ++a)
   {
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < chunk->count && any; ++i)
     {
       const uint32_t along = watch->reached[a][mcor_watch_cell(watch, a, x[a][i])];
       reached[i] = a > 0 ? reached[i] & along : along;
     }
   }
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < chunk->count && any; ++i)
   {
     uint32_t bits = reached[i];
     for (int s = 0; bits; ++s, bits >>= 1)
@@ -244,7 +234,7 @@ enum
   MCOR_REACHES = 0, /* positions minus and plus support radii: x, y, z */
   MCOR_PLACES = 3,  /* positions of fluid particles: x, y, z */
   MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
-  MCOR_SUPPORTS = 7,
+  MCOR_KERNELS = 7, /* lengths of the kernels of all particles in use */
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* factors of the smoothing lengths of fluid particles */
@@ -258,23 +248,21 @@ enum
 /* The most that one factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all lengths
- * are the same, only the extreme places count, because rounding keeps the order of numbers. */
-static void mcor_measure_chunk(const mcor_places* chunk, bool is_widened, bool solids, double reach,
+/* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all kernels
+ * are equally long, only the extreme places count, because rounding keeps the order of numbers. */
+static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach,
   const double low[3], const double high[3], mcor_findings* r)
 {
-  double h_min = DBL_MAX, h_max = -DBL_MAX;
-  mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
-  double least = h_min, most = h_max;
-  if (is_widened)
+  double least = DBL_MAX, most = -DBL_MAX;
+  mcor_widen_range(chunk->length, chunk->count, &least, &most);
+  mcor_add_range(r, MCOR_KERNELS, least, most);
+  if (!solids)
   {
-    least = DBL_MAX;
-    most = -DBL_MAX;
-    mcor_widen_range(chunk->length, chunk->count, &least, &most);
+    mcor_widen_range(chunk->h, chunk->count, &r->least[MCOR_LENGTHS], &r->most[MCOR_LENGTHS]);
   }
   for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
-    const double* x = chunk->x[a];
+    double below[MCOR_CHUNK], above[MCOR_CHUNK], unused[2] = { -DBL_MAX, DBL_MAX };
     mcor_add_range(r, MCOR_SPOTS + a, low[a], high[a]);
     if (!solids)
     {
@@ -285,20 +273,14 @@ static void mcor_measure_chunk(const mcor_places* chunk, bool is_widened, bool s
       mcor_add_range(r, MCOR_REACHES + a, low[a] - least * reach, high[a] + least * reach);
       continue;
     }
-    double below[MCOR_CHUNK], above[MCOR_CHUNK], unused[2] = { -DBL_MAX, DBL_MAX };
     for (int i = 0; i < chunk->count; ++i)
     {
       const double support = chunk->length[i] * reach;
-      below[i] = x[i] - support;
-      above[i] = x[i] + support;
+      below[i] = chunk->x[a][i] - support;
+      above[i] = chunk->x[a][i] + support;
     }
     mcor_widen_range(below, chunk->count, &r->least[MCOR_REACHES + a], &unused[0]);
     mcor_widen_range(above, chunk->count, &unused[1], &r->most[MCOR_REACHES + a]);
-  }
-  if (chunk->count > 0)
-  {
-    mcor_add_range(r, MCOR_SUPPORTS, least * reach, most * reach);
-    mcor_add_range(r, MCOR_LENGTHS, solids ? DBL_MAX : h_min, solids ? -DBL_MAX : h_max);
   }
 }
 
@@ -384,11 +366,11 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
       r.sums[k] += part[k].count;
       if (k == 0 || !input->ignore_solids)
       {
-        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x, low, high);
+        mcor_watch_positions(&job->watch, slice, &part[k], low, high);
       }
       if (k == 0 || context->kept.uses_solids)
       {
-        mcor_measure_chunk(&part[k], is_widened, k == 1, job->reach, low, high, &r);
+        mcor_measure_chunk(&part[k], k == 1, job->reach, low, high, &r);
       }
     }
   }
@@ -441,8 +423,8 @@ static mcor_status mcor_measure_particles(
   }
   m->h_min = r->least[MCOR_LENGTHS];
   m->h_max = r->most[MCOR_LENGTHS];
-  m->support_min = r->least[MCOR_SUPPORTS];
-  m->support_max = r->most[MCOR_SUPPORTS];
+  m->support_min = r->least[MCOR_KERNELS] * job.reach;
+  m->support_max = r->most[MCOR_KERNELS] * job.reach;
   m->widening_sum = r->sums[MCOR_FACTOR_SUM];
   m->widening_min = m->widening_sum > 0 ? r->least[MCOR_FACTORS] : 0;
   m->widening_max = m->widening_sum > 0 ? r->most[MCOR_FACTORS] : 0;
@@ -465,7 +447,8 @@ mcor_status mcor_measure_input(
     *m = options->globals->measured;
     return mcor_measure_lattice(context, options);
   }
-  MCOR_TRY(mcor_choose_samples(context, input, mcor_most_samples(input)));
+  MCOR_TRY(mcor_choose_samples(
+    context, input, input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED));
   if (input->estimate_smoothing_length)
   {
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));

@@ -3,13 +3,10 @@
 
 /* Chooses a few particles that stand for all: the particles whose positions have the least hashes.
  * So it does not matter in which order particles come, or how ranks share them. From such a sample
- * one smoothing length is estimated for particles that have none. The pass that samples also looks
- * for positions that are not finite. Two more passes then measure and stage the particles. */
+ * one smoothing length is estimated for particles that have none. */
 
 #include "mcor_input.h"
 
-#include <float.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +52,6 @@ typedef struct mcor_sampling
   const mcor_context* context;
   const mcor_input* input;
   mcor_sample_list found[MCOR_SLICES][2]; /* as in the context's samples */
-  bool not_finite[MCOR_SLICES];           /* whether any position is not finite */
 } mcor_sampling;
 
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
@@ -67,10 +63,6 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
     mcor_read_positions(input, first, count, x);
-    for (int a = 0; a < 3; ++a)
-    {
-      job->not_finite[slice] |= !mcor_is_all_within(x[a], count, -DBL_MAX, DBL_MAX);
-    }
     for (int i = 0; i < count; ++i) /* a loop of its own, so that processors hash several at once */
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
@@ -98,8 +90,22 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-mcor_status mcor_sample_own(
-  mcor_context* context, const mcor_input* input, int most_fluid, bool* all_finite)
+/* Joins a list with the lists of all ranks. */
+static mcor_status mcor_join_samples(mcor_context* context, mcor_sample_list* list)
+{
+  const mcor_sample_list own = *list;
+  const void* all = NULL;
+  int64_t count = 0;
+  MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
+  list->count = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    mcor_add_sample(list, (const mcor_sample*)all + i);
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
 {
   mcor_sampling* job = calloc(1, sizeof *job);
   MCOR_TRY(mcor_allocated(context, job));
@@ -122,38 +128,10 @@ mcor_status mcor_sample_own(
         mcor_add_sample(&context->samples[k], &job->found[s][k].of[i]);
       }
     }
+    MCOR_THEN(status, mcor_join_samples(context, &context->samples[k]));
   }
-  *all_finite = true;
-  for (int s = 0; s < slices; ++s)
-  {
-    *all_finite = *all_finite && !job->not_finite[s];
-  }
-  context->run.is_sampled = status == MCOR_OK;
   free(job);
   return status;
-}
-
-mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
-{
-  if (!context->run.is_sampled)
-  {
-    bool unused;
-    MCOR_TRY(mcor_sample_own(context, input, most_fluid, &unused));
-  }
-  context->run.is_sampled = false;
-  for (int k = 0; k < 2; ++k)
-  {
-    const mcor_sample_list own = context->samples[k];
-    const void* all = NULL;
-    int64_t count = 0;
-    MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
-    context->samples[k].count = 0;
-    for (int64_t i = 0; i < count; ++i)
-    {
-      mcor_add_sample(&context->samples[k], (const mcor_sample*)all + i);
-    }
-  }
-  return MCOR_OK;
 }
 
 /* ---- One smoothing length for all ---- */
@@ -249,23 +227,19 @@ double mcor_cube_root(double value)
  * lattice with as many particles within the distance of its 32nd neighbour. */
 static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, double* estimate)
 {
-  double spacing[MCOR_SAMPLES], largest[3];
-  int exponent = 0, most = INT_MIN;
+  double spacing[MCOR_SAMPLES], largest = 0;
+  int exponent;
   for (int i = 0; i < context->samples[1].count; ++i)
   {
     mcor_add_sample(&job->samples, &context->samples[1].of[i]);
   }
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(context, job->input, &job->input->positions, a);
+    largest = fmax(largest, mcor_largest(context, job->input, &job->input->positions, a));
   }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
-  for (int a = 0; a < 3; ++a)
-  {
-    frexp(largest[a], &exponent);
-    most = exponent > most ? exponent : most;
-  }
-  job->scale = ldexp(1, most > -1000 ? -most : 1000);
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, &largest, 1));
+  frexp(largest, &exponent);
+  job->scale = ldexp(1, exponent > -1000 ? -exponent : 1000);
   const int samples = job->samples.count;
   MCOR_TRY(mcor_parallel_run(context, samples, 1, mcor_near_slice, job, NULL));
   const void* found;

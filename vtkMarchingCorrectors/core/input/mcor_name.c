@@ -111,36 +111,18 @@ int mcor_view_priority(const char* name, int components, int is_real, int varies
                                                                 : 4;
 }
 
-/* Finds the first array with this name and number of values. */
-static const double* mcor_find_values(
-  const mcor_field_data* arrays, int count, const char* usual, int64_t values, int* which)
+/* Returns the index of the first array with this name and number of values; -1: none. */
+static int mcor_find_values(
+  const mcor_field_data* arrays, int count, const char* usual, int64_t values)
 {
   for (int i = 0; i < count; ++i)
   {
-    if (arrays[i].name && arrays[i].values && arrays[i].count == values &&
-      mcor_is_usual_name(arrays[i].name, usual))
+    if (arrays[i].values && arrays[i].count == values && mcor_is_usual_name(arrays[i].name, usual))
     {
-      *which = i;
-      return arrays[i].values;
+      return i;
     }
   }
-  return NULL;
-}
-
-/* Whether the bounds give a period along at least one axis; along others, their length may be 0. */
-static bool mcor_are_periods(const double bounds[6])
-{
-  bool some = false;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double length = bounds[2 * a + 1] - bounds[2 * a];
-    if (!isfinite(length) || length < 0)
-    {
-      return false;
-    }
-    some = some || length > 0;
-  }
-  return some;
+  return -1;
 }
 
 /* The first four arrays may give a period, and are tried in this order; the last belongs to `box`.
@@ -154,27 +136,31 @@ static const struct
 
 int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which)
 {
-  int found, type_at;
-  which = which ? which : &found;
+  int unused;
+  which = which ? which : &unused;
   /* SPH-EXA's types of the sides of `box`; 0: open, 1: periodic, 2: fixed */
-  const double* type = mcor_find_values(arrays, count, "boundarytype", 3, &type_at);
+  const int type = mcor_find_values(arrays, count, "boundarytype", 3);
   for (int u = 0; u < 4; ++u)
   {
-    const int values = mcor_period_arrays[u].values;
-    const double* of = mcor_find_values(arrays, count, mcor_period_arrays[u].name, values, which);
+    const int values = mcor_period_arrays[u].values,
+              at = mcor_find_values(arrays, count, mcor_period_arrays[u].name, values);
+    bool is_period = at >= 0, some = false; /* some: along at least one axis; others may be open */
     double bounds[6] = { 0 };
-    for (int a = 0; a < 3 && of; ++a)
+    for (int a = 0; a < 3 && is_period; ++a)
     {
-      const bool open = u == 3 && !(type && type[a] == 1);
+      const double* of = arrays[at].values;
+      const bool open = u == 3 && !(type >= 0 && arrays[type].values[a] == 1);
       bounds[2 * a] = values == 6 && !open ? of[2 * a] : 0;
       bounds[2 * a + 1] = open ? 0 : values == 6 ? of[2 * a + 1] : of[values == 1 ? 0 : a];
+      const double length = bounds[2 * a + 1] - bounds[2 * a];
+      is_period = isfinite(length) && length >= 0;
+      some = some || length > 0;
     }
-    if (mcor_are_periods(bounds))
+    if (is_period && some)
     {
-      for (int i = 0; i < 6; ++i)
-      {
-        period[i] = values == 6 ? bounds[i] : i < 3 ? bounds[2 * i + 1] : 0;
-      }
+      const double lengths[6] = { bounds[1], bounds[3], bounds[5] };
+      memcpy(period, values == 6 ? bounds : lengths, sizeof bounds);
+      *which = at;
       return values == 6 ? 6 : 3;
     }
   }

@@ -119,16 +119,12 @@ static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
 }
 
 /* Measures the bounds of all ranks' particles, and cuts them to MCOR_MOST_WIDTHS around the middle
- * half of a sample. */
+ * half of a sample. bounds: the ranges along x, y, z. */
 static mcor_status mcor_measure_extent(
-  mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
+  mcor_context* context, mcor_neighbour_job* job, mcor_findings* bounds)
 {
   mcor_sample_list own = { .most = MCOR_SAMPLES }, samples = { .most = MCOR_SAMPLES };
-  for (int a = 0; a < 3; ++a)
-  {
-    low[a] = INFINITY;
-    high[a] = -INFINITY;
-  }
+  *bounds = mcor_no_findings();
   for (int64_t i = 0; i < job->count; ++i)
   {
     const double* x = job->sorted[i].x;
@@ -136,14 +132,12 @@ static mcor_status mcor_measure_extent(
     mcor_add_place(&own, &place);
     for (int a = 0; a < 3; ++a)
     {
-      low[a] = fmin(low[a], x[a]);
-      high[a] = fmax(high[a], x[a]);
+      mcor_add_range(bounds, a, x[a], x[a]);
     }
   }
   const void* all = NULL;
   int64_t count = 0;
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 3));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 3));
+  MCOR_TRY(mcor_reduce_findings(context, bounds));
   MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
   for (int64_t i = 0; i < count; ++i)
   {
@@ -162,29 +156,28 @@ static mcor_status mcor_measure_extent(
     quarter[a][1] = values[n - 1 - n / 4];
     width = fmax(width, quarter[a][1] - quarter[a][0]);
   }
+  const double most = width > 0 ? MCOR_MOST_WIDTHS * width : INFINITY;
   for (int a = 0; a < 3 && n > 0; ++a)
   {
-    if (width > 0)
-    {
-      low[a] = fmax(low[a], quarter[a][0] - MCOR_MOST_WIDTHS * width);
-      high[a] = fmin(high[a], quarter[a][1] + MCOR_MOST_WIDTHS * width);
-    }
-    job->extent = fmax(job->extent, fmax(high[a] - low[a], job->period[a]));
+    double *low = &bounds->least[a], *high = &bounds->most[a];
+    *low = fmax(*low, quarter[a][0] - most);
+    *high = fmin(*high, quarter[a][1] + most);
+    job->extent = fmax(job->extent, fmax(*high - *low, job->period[a]));
   }
   return MCOR_OK;
 }
 
 static mcor_status mcor_sort_neighbours(mcor_context* context, mcor_neighbour_job* job)
 {
-  double low[3], high[3];
-  MCOR_TRY(mcor_measure_extent(context, job, low, high));
+  mcor_findings bounds;
+  MCOR_TRY(mcor_measure_extent(context, job, &bounds));
   const double scale = job->extent > 0 ? ldexp(1, 62) / job->extent : 0;
   for (int64_t i = 0; i < job->count; ++i)
   {
     for (int a = 0; a < 3; ++a)
     {
-      const double x = fmin(fmax(job->sorted[i].x[a], low[a]), high[a]);
-      job->sorted[i].place[a] = (uint64_t)((x - low[a]) * scale);
+      const double x = fmin(fmax(job->sorted[i].x[a], bounds.least[a]), bounds.most[a]);
+      job->sorted[i].place[a] = (uint64_t)((x - bounds.least[a]) * scale);
     }
   }
   qsort(job->sorted, (size_t)job->count, sizeof *job->sorted, mcor_compare_neighbours);
@@ -482,13 +475,12 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
 /* Runs the job in a context without a device, which keeps the error. job.eta is 0 for densities. */
 static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor_message* why)
 {
-  mcor_context* context = calloc(1, sizeof *context);
+  mcor_context* context = mcor_make_bare_context(job->options);
   *why = MCOR_NO_MESSAGE;
   if (!context)
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  context->run.options = job->options;
   mcor_status status = mcor_check_neighbours(context, eta, job);
   int slices = 0;
   if (status == MCOR_OK && (job->input->count > 0 || job->options->ranks))
@@ -503,7 +495,7 @@ static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor
     status = mcor_allocated(context, !job->failed[s]);
   }
   *why = mcor_last_message(context);
-  free(context);
+  mcor_free_context(context);
   return status;
 }
 

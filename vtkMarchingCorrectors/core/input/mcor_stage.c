@@ -123,38 +123,32 @@ static int mcor_images_of(
     staging->reach, at, mcor_reach_of(staging->reach, h, chunk->level[i]), images);
 }
 
-/* Marks the particles that may reach the box, by one test of each coordinate that the box
- * limits. Only few of them fail the exact test of their images later. */
-static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count)
+/* Marks the particles of [first, last) that may reach the box, by one test of each coordinate that
+ * has no period. Only few of them fail the exact test of their images later. */
+static void mcor_mark_near(const mcor_staging* staging, int64_t first, int64_t last)
 {
   const mcor_reach_box* reach = staging->reach;
   const mcor_lattice* lattice = &staging->context->lattice;
-  double x[MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
-  uint8_t* near = staging->images + first;
-  memset(near, 1, (size_t)count);
-  mcor_read_smoothing_length(staging->context, staging->input, first, count, h);
-  mcor_widen_lengths(staging->input, first, count, h, length);
-  for (int i = 0; i < count; ++i)
+  mcor_places p;
+  for (; mcor_read_places(staging->context, staging->input, first, last, &p) > 0; first += p.count)
   {
-    const int level = mcor_tree_level_of(h[i], staging->context->measure.h_min, reach->top);
-    h[i] = mcor_reach_of(reach, length[i], level) * lattice->cube;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const double origin = (double)lattice->origin[a], rounding = 1 + reach->radius;
-    const double low = (reach->low[a] - rounding) * lattice->cube + origin * lattice->edge[a];
-    const double high = (reach->high[a] + rounding) * lattice->cube + origin * lattice->edge[a];
-    const double edge = mcor_edge_of(lattice, a);
-    if (reach->period[a] > 0 ||
-      (reach->low[a] <= (double)lattice->first[a] * edge &&
-        reach->high[a] >= (double)lattice->last[a] * edge))
+    uint8_t* near = staging->images + first;
+    memset(near, 1, (size_t)p.count);
+    for (int i = 0; i < p.count; ++i)
     {
-      continue;
+      const int level = mcor_tree_level_of(p.h[i], staging->context->measure.h_min, reach->top);
+      p.length[i] = mcor_reach_of(reach, p.length[i], level) * lattice->cube;
     }
-    mcor_read_array(&staging->input->positions, first, count, a, x);
-    for (int i = 0; i < count; ++i)
+    for (int a = 0; a < 3; ++a)
     {
-      near[i] &= (x[i] + h[i] >= low) & (x[i] - h[i] <= high);
+      const double origin = (double)lattice->origin[a] * lattice->edge[a],
+                   rounding = 1 + reach->radius;
+      const double low = (reach->low[a] - rounding) * lattice->cube + origin,
+                   high = (reach->high[a] + rounding) * lattice->cube + origin;
+      for (int i = 0; i < p.count && reach->period[a] == 0; ++i)
+      {
+        near[i] &= (p.x[a][i] + p.length[i] >= low) & (p.x[a][i] - p.length[i] <= high);
+      }
     }
   }
 }
@@ -182,9 +176,9 @@ static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last
   {
     used -= !mcor_is_used(staging->context, staging->input, i);
   }
-  for (int64_t begin = first; begin < last && staging->reach; begin += MCOR_CHUNK)
+  if (staging->reach)
   {
-    mcor_mark_near(staging, begin, mcor_chunk_of(last - begin));
+    mcor_mark_near(staging, first, last);
   }
   for (int64_t begin = first;
        staging->reach && (chunk.count = mcor_next_chunk(staging, &begin, last)) > 0;
@@ -210,31 +204,6 @@ int mcor_spared_bits(const mcor_context* context, double support, double cube, i
   frexp(1.0001 * support / cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
   const int bits = exponent + context->lattice.fix_bits - digits;
   return bits > 0 ? bits : 0;
-}
-
-/* Whether all numbers are the same as one. */
-MCOR_VECTOR_LOOPS static bool mcor_is_all_one(const double* x, int count, double one)
-{
-  int64_t differ = 0; /* as wide as the numbers, so that compilers vectorise the loop */
-  for (int i = 0; i < count; ++i)
-  {
-    differ |= x[i] == one ? 0 : 1;
-  }
-  return !differ;
-}
-
-/* Writes the inverse scaled lengths of a chunk's kernels, in cubes. */
-MCOR_VECTOR_LOOPS static void mcor_invert_lengths(
-  const mcor_context* context, const mcor_stage_chunk* chunk, double* inv_h)
-{
-  const double scaled_cube = context->lattice.cube / context->run.options->h_scale;
-  const double* h = chunk->h;
-  const bool one = mcor_is_all_one(h, chunk->count, h[0]); /* if so, one division is enough */
-  const double inverse = scaled_cube / h[0];
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    inv_h[i] = one ? inverse : scaled_cube / h[i];
-  }
 }
 
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
@@ -322,7 +291,8 @@ static void mcor_stage_chunk_at(
 {
   const mcor_context* context = staging->context;
   const mcor_lattice* lattice = &context->lattice;
-  const double limit = mcor_weight_limit(context);
+  const double limit = mcor_weight_limit(context),
+               scaled_cube = lattice->cube / context->run.options->h_scale;
   const int count = chunk->count, weighed = mcor_needs_density(staging->input) ? 0 : count;
   double inv_h[MCOR_CHUNK], weight[MCOR_CHUNK];
   bool changed = slice->changed || *to + count > slice->to + slice->used ||
@@ -337,7 +307,10 @@ static void mcor_stage_chunk_at(
   {
     return;
   }
-  mcor_invert_lengths(context, chunk, inv_h);
+  for (int i = 0; i < count; ++i)
+  {
+    inv_h[i] = scaled_cube / chunk->h[i];
+  }
   for (int i = 0; i < weighed; ++i)
   {
     weight[i] = chunk->size[i] * inv_h[i] * inv_h[i] * inv_h[i]; /* too large if the volume is huge */
@@ -353,13 +326,6 @@ static void mcor_stage_chunk_at(
   if (!heavy)
   {
     mcor_store_stage_chunk(staging, chunk, inv_h, *to);
-    if (*to == slice->to)
-    {
-      slice->inv_h = inv_h[0];
-      slice->size = chunk->size[0];
-    }
-    slice->one_inv_h = slice->one_inv_h && mcor_is_all_one(inv_h, count, slice->inv_h);
-    slice->one_size = slice->one_size && mcor_is_all_one(chunk->size, count, slice->size);
     *to += count;
   }
 }
@@ -411,7 +377,6 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   int64_t to = slice->to, begin = first;
   mcor_stage_chunk chunk, out;
   slice->heavy = -1;
-  slice->one_inv_h = slice->one_size = true;
   out.count = 0;
   while (
     slice->heavy < 0 && !slice->changed && (chunk.count = mcor_next_chunk(staging, &begin, last)) > 0)
@@ -489,8 +454,6 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
     mcor_needs_density(staging->input) ? 100 * pow(options->h_scale, -3) : 0;
   MCOR_FAIL_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(H_SCALE_TOO_SMALL), options->h_scale);
-  const mcor_stage_slice* one = NULL; /* the first slice with images */
-  staging->one_inv_h = staging->one_size = true;
   for (int i = 0; i < slices; ++i)
   {
     const mcor_stage_slice* slice = &staging->slices[i];
@@ -500,11 +463,6 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
       (long long)slice->heavy, slice->largest_weight,
       context->cl.real_size == sizeof(float) ? "single" : "double");
     context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
-    one = slice->used > 0 && !one ? slice : one;
-    staging->one_inv_h =
-      staging->one_inv_h && (slice->used == 0 || (slice->one_inv_h && slice->inv_h == one->inv_h));
-    staging->one_size =
-      staging->one_size && (slice->used == 0 || (slice->one_size && slice->size == one->size));
   }
   return MCOR_OK;
 }
@@ -512,7 +470,6 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
 static void mcor_find_reaching(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
-  const mcor_reach_box* reach = staging->reach;
   mcor_stage_chunk chunk;
   double farthest = 0;
   for (; (chunk.count = mcor_chunk_of(last - first)) > 0; first += chunk.count)
@@ -520,12 +477,12 @@ static void mcor_find_reaching(void* data, int slice, int64_t first, int64_t las
     mcor_read_stage_places(staging, first, &chunk);
     for (int i = 0; i < chunk.count; ++i)
     {
-      const double support = mcor_reach_of(reach, chunk.h[i], chunk.level[i]);
-      const double at[3] = { chunk.x[0][i] * reach->unit, chunk.x[1][i] * reach->unit,
-        chunk.x[2][i] * reach->unit };
+      const double support = mcor_reach_of(staging->reach, chunk.h[i], chunk.level[i]);
       mcor_images images;
-      farthest = support > farthest && mcor_list_images(reach, at, support, &images) > 0 ? support
-                                                                                         : farthest;
+      if (support > farthest && mcor_images_of(staging, &chunk, i, &images) > 0)
+      {
+        farthest = support;
+      }
     }
   }
   staging->slices[slice].farthest = farthest;
@@ -535,27 +492,33 @@ mcor_status mcor_stage(mcor_staging* staging)
 {
   mcor_context* context = staging->context;
   const mcor_options* options = context->run.options;
+  const mcor_input* input = staging->input;
+  const mcor_measure* m = &context->measure;
+  const bool one_volume = !input->volume.data && !input->mass.data && !input->density.data;
   mcor_reach_box reach;
-  staging->size_scale = mcor_size_scale(context, staging->input);
-  staging->h_max = 1.000001 * context->measure.support_max / options->h_scale /
-    mcor_support_factor(options->sph_kernel);
+  /* Solids' lengths are not measured, and their sizes are negative. */
+  staging->one_inv_h = !input->solid && !mcor_is_given(&input->widening) && m->h_min == m->h_max;
+  staging->one_size = !input->solid && one_volume && (staging->one_inv_h || !context->space.flat);
+  staging->size_scale = mcor_size_scale(context, input);
+  staging->h_max =
+    1.000001 * m->support_max / options->h_scale / mcor_support_factor(options->sph_kernel);
   if (mcor_find_reach(context, &reach))
   {
     staging->reach = &reach;
     const double widest = context->run.widest;
-    const bool computes = mcor_needs_density(staging->input);
+    const bool computes = mcor_needs_density(input);
     /* Whether the reach is widened at all. */
     const bool widens = mcor_reach_around(options, computes, widest, 1, 2) > 0;
-    const int slices = widens ? mcor_parallel_for(context, staging->input->count, MCOR_HEAVY_GRAIN,
-                                  mcor_find_reaching, staging)
-                              : 0;
+    const int slices = widens
+      ? mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging)
+      : 0;
     double farthest = 0;
     for (int s = 0; s < slices; ++s)
     {
       farthest = fmax(farthest, staging->slices[s].farthest);
     }
     reach.radius = mcor_reach_around(options, computes, widest, farthest, 2);
-    staging->images = malloc((size_t)staging->input->count + 1);
+    staging->images = malloc((size_t)input->count + 1);
     MCOR_TRY(mcor_allocated(context, staging->images));
   }
   const mcor_status status = mcor_stage_all(staging);

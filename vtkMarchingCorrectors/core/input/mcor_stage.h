@@ -13,8 +13,6 @@ typedef struct mcor_stage_slice
   int64_t heavy;    /* the first particle whose weight is too large, or -1 */
   bool changed;     /* values differ from the measured ones: another thread writes to the arrays */
   double largest_weight; /* if there is a heavy particle, its weight */
-  double inv_h, size;       /* values of the first image */
-  bool one_inv_h, one_size; /* whether all images have these */
   double farthest;          /* the largest reach, in cubes, of the particles that reach the box */
 } mcor_stage_slice;
 
@@ -35,7 +33,7 @@ typedef struct mcor_staging
   double h_max;             /* the greatest unscaled length of a kernel that was measured, with
                              * rounding */
   mcor_reach_box* reach;    /* NULL: all particles are needed */
-  bool one_inv_h, one_size; /* whether all elements of these arrays are the same */
+  bool one_inv_h, one_size; /* whether all elements of these arrays are known to be the same */
   uint8_t* images;          /* by particle: whether an image is staged; NULL without reach */
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;

@@ -11,29 +11,18 @@
 /* From this number of cells in the fluid on, a run is called huge. */
 #define MCOR_HUGE_CELLS 1e9
 
-static bool mcor_has_one_length(const mcor_input* input)
+/* Returns the smoothing lengths, which count as 1 if they are to be estimated. */
+static mcor_array mcor_lengths_of(const mcor_input* input)
 {
-  return input->estimate_smoothing_length || !input->smoothing_length.data;
-}
-
-static double mcor_length_at(const mcor_input* input, int64_t i)
-{
-  return input->estimate_smoothing_length ? 1.0 : mcor_array_at(&input->smoothing_length, i, 0);
+  return input->estimate_smoothing_length ? (mcor_array){ .constant = 1 } : input->smoothing_length;
 }
 
 double mcor_least_smoothing_length(const mcor_input* input)
 {
-  double least = INFINITY;
-  const bool is_one = mcor_has_one_length(input);
-  for (int64_t i = 0; i < input->count && !(is_one && isfinite(least)); ++i)
-  {
-    if (!input->solid || !input->solid[i])
-    {
-      const double h = mcor_length_at(input, i);
-      least = h < least ? h : least;
-    }
-  }
-  return least;
+  const mcor_array lengths = mcor_lengths_of(input);
+  double range[2];
+  mcor_find_range(NULL, &lengths, input->solid, MCOR_SKIP_SOLIDS, input->count, 0, range);
+  return range[0] <= range[1] ? range[0] : INFINITY;
 }
 
 double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least)
@@ -47,9 +36,8 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   /* Sums h^3 (in a plane h^2) over the fluid in the box. h: a particle's smoothing length or
    * support radius, halved once for each level of the particle's cubes. */
   const bool has_box = mcor_has_box(options) != 0;
-  const mcor_array positions = mcor_positions_of(input);
-  const bool one_for_all =
-    mcor_has_one_length(input) && !input->solid && !has_box && input->count > 1;
+  const mcor_array positions = mcor_positions_of(input), lengths = mcor_lengths_of(input);
+  const bool one_for_all = !lengths.data && !input->solid && !has_box && input->count > 1;
   const int levels = options->filled || options->capping ? 0 : options->level_limit;
   double cubes = 0.0;
   for (int64_t i = 0; i < (one_for_all ? 1 : input->count); ++i)
@@ -61,7 +49,7 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
       /* a flat box holds particles in its plane */
       counts = x >= side[0] && (x < side[1] || x == side[0]);
     }
-    double h = mcor_length_at(input, i);
+    double h = mcor_array_at(&lengths, i, 0);
     for (int level = 0; level < levels && h >= 2.0 * least; ++level)
     {
       h *= 0.5;

@@ -45,15 +45,6 @@ static bool mcor_is_wendland(mcor_sph_kernel kernel)
 /* Volumes that fill the supports this many times over are not in the unit of the positions. */
 #define MCOR_MOST_FILLED 10.0
 
-/* Suggests the kernel for which this ratio of smoothing length to spacing would be usual: the
- * quintic spline, which reaches farther, for few neighbours; a Wendland kernel for many. */
-static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
-{
-  return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
-    : !few && !mcor_is_wendland(kernel) && ratio <= MCOR_MOST_RATIO_WENDLAND       ? "wendland"
-                                                                                   : "";
-}
-
 static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -91,7 +82,12 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
                        : "Perhaps the array holds the support radius (then use "
                          "{smoothing_length_is_support_radius}), or is not in the unit of the "
                          "positions.";
-  const char* likely = spacing > 0 ? mcor_likely_kernel(kernel, near, few) : "";
+  /* The kernel for which this ratio of smoothing length to spacing would be usual: the quintic
+   * spline, which reaches farther, for few neighbours; a Wendland kernel for many. */
+  const char* likely = spacing == 0 ? ""
+    : few && kernel != MCOR_QUINTIC_SPLINE && near >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
+    : !few && !wendland && near <= MCOR_MOST_RATIO_WENDLAND                    ? "wendland"
+                                                                               : "";
   char times[100] = "no other particle is within that";
   if (spacing > 0)
   {
@@ -234,8 +230,11 @@ static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
-  if (o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && n->filled_median > 0 &&
-    n->filled_median <= o->node_threshold)
+  if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o))
+  {
+    return MCOR_NO_MESSAGE;
+  }
+  if (n->filled_median > 0 && n->filled_median <= o->node_threshold)
   {
     return mcor_say(MCOR_SAY(NODES_DISCARD_ALL), o->node_threshold, n->filled_median);
   }
@@ -246,8 +245,7 @@ static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
     is_between =
       is_between || (n->scalar_min < o->iso_values[i] && o->iso_values[i] < n->scalar_max);
   }
-  return is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
-      !mcor_has_box(o) && o->node_threshold > 0
+  return is_between && extent[0] + extent[1] + extent[2] > 0 && o->node_threshold > 0
     ? mcor_say(MCOR_SAY(ISO_NOT_REACHED), o->node_threshold)
     : MCOR_NO_MESSAGE;
 }
@@ -350,10 +348,7 @@ static bool mcor_is_explained(mcor_warning warning, const mcor_suspicion* s)
   const bool follows = warning == MCOR_WARN_TRIMMED || warning == MCOR_WARN_PRECISION ||
     warning == MCOR_WARN_TOLERANCE || warning == MCOR_WARN_FAR;
   mcor_message cause = follows ? mcor_warn_neighbours(s) : MCOR_NO_MESSAGE;
-  if (!cause.text && warning == MCOR_WARN_TOLERANCE)
-  {
-    cause = mcor_warn_precision(s);
-  }
+  cause = warning == MCOR_WARN_TOLERANCE && !cause.text ? mcor_warn_precision(s) : cause;
   const bool is_explained = cause.text != NULL;
   mcor_free_message(&cause);
   return is_explained;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 class vtkDataArray;
@@ -72,6 +73,10 @@ std::vector<std::string> ReadPieces(const std::string& file);
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
 std::vector<double> ListTimesInText(const std::string& file);
 ///@}
+
+/// The names of types in .ply files, and VTK's types. A type's usual name comes first.
+using PlyType = std::pair<View, int>;
+extern const std::vector<PlyType> PlyTypes;
 
 /// Reads the vertices of a .ply file with all of their properties, which VTK's own reader leaves out.
 vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t);

@@ -103,7 +103,7 @@ public:
     this->Check(gas->GetPoints(), "it has no positions");
     if (this->Masses[0] != 0.0)
     {
-      vtkNew<vtkDoubleArray> masses;
+        vtkNew<vtkDoubleArray> masses;
       masses->SetName("Masses");
       masses->SetNumberOfValues(this->Counts[0]);
       masses->Fill(this->Masses[0]);

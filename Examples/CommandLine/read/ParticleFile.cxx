@@ -9,18 +9,21 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
-#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkIdList.h"
 #include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHSay.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -30,7 +33,6 @@
 #include <set>
 #include <utility>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -131,22 +133,9 @@ const Kind* KindOf(const Formats& formats, const std::string& file)
   return format ? &format->Process : nullptr;
 }
 
-Data Read(File file, const Formats& formats = ParticleFormats, std::size_t step = 0)
-{
-  CheckRegularFile(file);
-  const Kind* kind = KindOf(formats, file);
-  Require(kind, file + " is not a " + ListEndings(formats) + " file");
-  RequireToRead(step == 0 || kind->Read == ReadHdf || kind->Read == ReadText, file,
-    "it has no step " + std::to_string(step));
-  Data data;
-  ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
-  return data;
-}
-
-/// Checks that arrays have `count` elements. Makes their names fit for sentences and for the
-/// surface's file, because names in a legacy file may hold any bytes. kind: the elements, in words.
-/// Throws std::runtime_error.
-void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
+/// Checks that arrays have `count` values. Makes their names fit for sentences and for the
+/// surface's file, because names in a legacy file may hold any bytes. kind: what has the values, in words.
+void CheckArrays(File file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
   for (vtkAbstractArray* array : ArraysOf(arrays))
   {
@@ -165,10 +154,22 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
   }
 }
 
-void CheckAllArrays(const std::string& file, vtkDataSet* data)
+Data Read(File file, const Formats& formats, std::size_t step = 0)
 {
-  CheckArrays(file, data->GetPointData(), data->GetNumberOfPoints(), " points");
-  CheckArrays(file, data->GetCellData(), data->GetNumberOfCells(), " cells");
+  CheckRegularFile(file);
+  const Kind* kind = KindOf(formats, file);
+  Require(kind, file + " is not a " + ListEndings(formats) + " file");
+  RequireToRead(step == 0 || kind->Read == ReadHdf || kind->Read == ReadText, file,
+    "it has no step " + std::to_string(step));
+  Data data;
+  ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
+  auto* set = vtkDataSet::SafeDownCast(data);
+  if (set && set->GetNumberOfPoints() > 0)
+  {
+    CheckArrays(file, set->GetPointData(), set->GetNumberOfPoints(), " points");
+    CheckArrays(file, set->GetCellData(), set->GetNumberOfCells(), " cells");
+  }
+  return data;
 }
 
 /// Returns the array; if --only chooses words in it, its texts become numbers, see ChosenWords().
@@ -195,13 +196,11 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns only the points and their arrays. Cells would cost memory for each particle; nobody uses or
-/// checks them, or anything else in the data.
-vtkSmartPointer<vtkPointSet> TakeParticles(
-  const std::string& file, vtkPointSet* all, bool haveVertices)
+/// Returns only the points and their arrays. Cells would cost memory for each particle; nobody uses
+/// them, or anything else in the data.
+vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
-  CheckAllArrays(file, all);
   const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
@@ -216,7 +215,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   particles->SetPoints(data->GetPoints());
   for (vtkAbstractArray* array : ArraysOf(data->GetPointData()))
   {
-    particles->GetPointData()->AddArray(AsNumbers(file, array));
+    particles->GetPointData()->AddArray(array);
   }
   for (vtkAbstractArray* array : ArraysOf(data->GetFieldData()))
   {
@@ -226,6 +225,28 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
     }
   }
   return particles;
+}
+
+/// Leaves out particles that are copies of another part's.
+void DropCopies(vtkPolyData* part)
+{
+  vtkUnsignedCharArray* marks = part->GetPointGhostArray();
+  if (!marks)
+  {
+    return;
+  }
+  vtkNew<vtkIdList> kept;
+  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+  {
+    if (!(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
+    {
+      kept->InsertNextId(i);
+    }
+  }
+  vtkNew<vtkPointData> arrays;
+  vtkSPHTakeTuples(part->GetPointData(), kept, arrays);
+  part->SetPoints(vtkSPHTakePoints(part->GetPoints(), kept));
+  part->GetPointData()->ShallowCopy(arrays);
 }
 
 /// Splits NAME#N, step N of the file NAME, into name and number, unless a file has the whole name.
@@ -238,27 +259,6 @@ std::pair<std::string, std::size_t> StepOf(const std::string& name)
   return isNumber && !fs::exists(name, error)
     ? std::make_pair(name.substr(0, at), std::strtoull(name.c_str() + at + 1, nullptr, 10))
     : std::make_pair(name, 0ull);
-}
-
-/// Adds the data of a file if they have points. Throws std::runtime_error.
-void ReadSet(const std::string& name, ParticleSets& sets)
-{
-  const auto [file, step] = StepOf(name);
-  const vtkSmartPointer<vtkDataObject> data = Read(file, ParticleFormats, step);
-  vtkPointSet* points = vtkPointSet::SafeDownCast(data);
-  const std::string what = data ? std::string("a ") + data->GetClassName() : "no VTK data";
-  Require(points, vtkSPHSay(MCOR_SAY(NO_PARTICLES_IN), file.c_str(), what.c_str()));
-  if (points->GetNumberOfPoints() > 0)
-  {
-    const bool haveVertices = vtkSPHHaveVertices(points);
-    sets.HaveVertices = sets.HaveVertices || haveVertices;
-    sets.Files.push_back(file);
-    sets.Sets.emplace_back(points);
-    if (haveVertices)
-    {
-      sets.Sets.back() = TakeParticles(file, points, true); // cells need not be kept
-    }
-  }
 }
 
 /// Returns the files that a list of pieces names; for any other file, the file itself.
@@ -291,15 +291,12 @@ std::map<std::string, std::vector<std::string>>& ChosenWords()
 
 void CheckRegularFile(const std::string& file)
 {
-  std::error_code error;
-  RequireToRead(!fs::is_directory(file, error), file, "it is a directory");
-  RequireToRead(
-    !fs::exists(file, error) || fs::is_regular_file(file, error), file, "it is not a regular file");
   struct stat status = {};
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  const bool isOpen = descriptor >= 0 && fstat(descriptor, &status) == 0;
-  RequireToRead(isOpen, file, std::strerror(errno));
-  close(descriptor);
+  const bool isReadable = stat(file.c_str(), &status) == 0 && access(file.c_str(), R_OK) == 0;
+  const std::string problem = std::strerror(errno);
+  RequireToRead(!S_ISDIR(status.st_mode), file, "it is a directory");
+  RequireToRead(status.st_mode == 0 || S_ISREG(status.st_mode), file, "it is not a regular file");
+  RequireToRead(isReadable, file, problem);
   Sources().emplace(status.st_dev, status.st_ino);
 }
 
@@ -320,37 +317,6 @@ void ReadWithCare(const std::string& file, const std::function<void()>& read)
   {
   }
   FailToRead(file, "it needs more memory than is available; it may be damaged");
-}
-
-std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data)
-{
-  std::vector<vtkAbstractArray*> arrays;
-  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
-  {
-    arrays.push_back(data->GetAbstractArray(i));
-  }
-  return arrays;
-}
-
-std::vector<std::string> NamesOf(vtkFieldData* data)
-{
-  std::vector<std::string> names;
-  for (vtkAbstractArray* array : ArraysOf(data))
-  {
-    names.emplace_back(array->GetName() ? array->GetName() : "");
-  }
-  return names;
-}
-
-void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<double>& numbers)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  for (const double number : numbers)
-  {
-    array->InsertNextValue(number);
-  }
-  data->AddArray(array);
 }
 
 std::string ParticleFileEndings()
@@ -424,6 +390,7 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
     const std::vector<std::string> parts = ListParts(file);
     all.insert(all.end(), parts.begin(), parts.end());
   }
+  sets.AreParts = files.size() > 1 || all != files;
   const auto endOf = [&all, count](int ranks)
   {
     const auto n = static_cast<std::size_t>(count);
@@ -431,27 +398,69 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
   };
   for (std::size_t i = endOf(rank); i < endOf(rank + 1); ++i)
   {
-    ReadSet(all[i], sets);
+    const auto [file, step] = StepOf(all[i]);
+    const Data data = Read(file, ParticleFormats, step);
+    vtkSmartPointer<vtkPointSet> points = vtkPointSet::SafeDownCast(data);
+    const std::string what = data ? std::string("a ") + data->GetClassName() : "no VTK data";
+    Require(points, vtkSPHSay(MCOR_SAY(NO_PARTICLES_IN), file.c_str(), what.c_str()));
+    if (points->GetNumberOfPoints() > 0)
+    {
+      if (vtkSPHHaveVertices(points))
+      {
+        sets.HaveVertices = true;
+        points = TakeParticles(file, points, true); // cells need not be kept
+      }
+      sets.Sets.emplace_back(file, points);
+    }
   }
-  sets.IsList = files.size() > 1 || all != files;
   return sets;
 }
 
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
 {
-  std::vector<vtkSmartPointer<vtkPointSet>> parts;
-  for (std::size_t i = 0; i < sets.Sets.size(); ++i)
+  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  std::map<std::string, std::set<int>> types; // the types that an array has in the parts
+  for (const auto& [file, points] : sets.Sets)
   {
-    const auto part = TakeParticles(sets.Files[i], sets.Sets[i], sets.HaveVertices);
-    parts.insert(parts.end(), part->GetNumberOfPoints() > 0 ? 1 : 0, part);
+    const vtkSmartPointer<vtkPolyData> part = TakeParticles(file, points, sets.HaveVertices);
+    if (part->GetNumberOfPoints() == 0)
+    {
+      continue;
+    }
+    for (vtkAbstractArray* array : ArraysOf(part->GetPointData()))
+    {
+      const vtkSmartPointer<vtkAbstractArray> values = AsNumbers(file, array);
+      part->GetPointData()->AddArray(values);
+      types[array->GetName()].insert(values->GetDataType());
+    }
+    if (!sets.AreParts)
+    {
+      return part;
+    }
+    DropCopies(part);
+    parts.push_back(part);
   }
-  if (parts.empty())
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (const vtkSmartPointer<vtkPolyData>& part : parts)
   {
-    const auto none = vtkSmartPointer<vtkPolyData>::New();
-    none->SetPoints(vtkNew<vtkPoints>());
-    return none;
+    for (vtkAbstractArray* array : ArraysOf(part->GetPointData()))
+    {
+      const std::set<int>& found = types[array->GetName()];
+      if (found.size() > 1 && !found.count(VTK_STRING))
+      {
+        vtkNew<vtkDoubleArray> values; // arrays that have different types would be left out
+        values->DeepCopy(array);
+        part->GetPointData()->AddArray(values);
+      }
+    }
+    blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
   }
-  return sets.IsList || parts.size() > 1 ? JoinParts(parts) : parts.front();
+  const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
+  if (!parts.empty())
+  {
+    joined->SetFieldData(parts.front()->GetFieldData());
+  }
+  return joined;
 }
 
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file)
@@ -463,6 +472,5 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file)
   Require(count <= VTK_INT_MAX,
     file + " has " + std::to_string(count) + " points; at most " + std::to_string(VTK_INT_MAX) +
       " can be probed at once");
-  CheckAllArrays(file, set);
   return set;
 }

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct stat;
@@ -16,6 +17,8 @@ class vtkDataSet;
 class vtkFieldData;
 class vtkPointSet;
 struct vtkSPHPeriod;
+
+// All functions that read throw std::runtime_error with one sentence.
 
 /// Lists arrays, or their names; "" stands for an array without a name.
 std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data);
@@ -31,23 +34,19 @@ std::string ParticleFileEndings();
 /// ... for these words in their order, 0 for other words.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
-/// Reads particles and their arrays from files that each hold a part of them. Leaves out arrays
-/// that some files lack, and particles that a part marks as another part's (vtkGhostType). Throws
-/// std::runtime_error with one sentence if a file cannot be read or is damaged, or, without
-/// `mayBeEmpty`, if there are no points. If VTK's reader crashes over a file, the program ends with
-/// a sentence. Names of arrays are made fit to print.
+/// Reads particles from files that each hold a part of them, as ReadSets() and JoinSets() do. Without
+/// `mayBeEmpty`, there must be points. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, bool mayBeEmpty = false);
 
 /// Lists the times of the steps in a file; empty if the file tells no times. The steps can be read
-/// as FILE#0, FILE#1, ...; for such a name, lists only this step's time. Throws std::runtime_error.
+/// as FILE#0, FILE#1, ...; for such a name, lists only this step's time.
 std::vector<double> ListTimes(const std::string& name);
 
 /// Returns the time between steps that these files store as `dt`; 0: a file has none, or they differ.
 double StoredTimeStep(const std::vector<std::string>& files);
 
-/// Reads the particles that --walls names, as one set; null if there are none. Throws
-/// std::runtime_error.
+/// Reads the particles that --walls names, as one set; null if there are none.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
 /// Opens these files, and the files of their parts, before they are read, so that IsSource() knows
@@ -62,38 +61,33 @@ bool IsSource(const struct stat& file);
 /// vertices, the points of meshes without vertices are no particles.
 struct ParticleSets
 {
-  std::vector<std::string> Files;
-  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< the data of each file that has points
+  std::vector<std::pair<std::string, vtkSmartPointer<vtkPointSet>>>
+    Sets; ///< files that have points
   bool HaveVertices = false;
-  bool IsList = false; ///< pieces may hold copies of other pieces' particles
+  bool AreParts =
+    false; ///< the files are parts of one set, which may hold copies of other parts' particles
 };
 
 /// Reads the part of process `rank` of `count`: its share of the files, and of the pieces that they
 /// list, in order.
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
-/// Joins the sets to one; there may be no particles.
+/// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out
+/// particles that a part marks as copies of another part's (vtkGhostType).
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
-/// Reads a data set of any class, as carefully as ReadParticles(). Makes names of arrays fit to print; all else stays
-/// as it is.
+/// Reads a data set of any class, as carefully as ReadParticles().
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
-
-/// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
-/// that a part marks as copies of another part's ("vtkGhostType").
-vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts);
 
 /// Name of the array that AddWalls() makes: 0 for fluid, 1 for walls.
 extern const char* const WallArrayName;
 
 /// Returns the fluid, followed by the walls; the fluid itself if `walls` is null. Keeps the fluid's
 /// arrays of numbers. If walls lack an array, they get the fluid's median: only the smoothing
-/// length and the arrays that give volumes matter for solids, which take part in no field. Throws
-/// std::runtime_error.
+/// length and the arrays that give volumes matter for solids, which take part in no field.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
-/// Returns the period for "--periodic auto". Throws std::runtime_error with the problem, or because no period was
-/// found.
+/// Returns the period for "--periodic auto". Fails with the problem, or because no period was found.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
 /// Returns a hint if --periodic is not given although the data tell a period, else "".

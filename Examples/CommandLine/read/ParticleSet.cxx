@@ -11,21 +11,16 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectors.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHArrays.h"
-#include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHSay.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -35,51 +30,8 @@ const char* const WallArrayName = "IsWall";
 namespace
 {
 
-/// Returns the part without copies of other parts' particles.
-vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
-{
-  auto own = vtkSmartPointer<vtkPolyData>::New();
-  own->ShallowCopy(part);
-  vtkUnsignedCharArray* marks = part->GetPointGhostArray();
-  if (!marks)
-  {
-    return own;
-  }
-  vtkNew<vtkIdList> kept;
-  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
-  {
-    if (!(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
-    {
-      kept->InsertNextId(i);
-    }
-  }
-  own->SetPoints(vtkSPHTakePoints(part->GetPoints(), kept));
-  own->GetPointData()->Initialize();
-  vtkSPHTakeTuples(part->GetPointData(), kept, own->GetPointData());
-  return own;
-}
-
-/// Returns each component's median; 0 for vtkGhostType, because walls are not copies.
-std::vector<double> Median(vtkDataArray* array)
-{
-  const bool isGhost = std::string(array->GetName()) == vtkDataSetAttributes::GhostArrayName();
-  std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
-  std::vector<double> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
-  for (std::size_t c = 0; c < median.size() && !isGhost; ++c)
-  {
-    for (std::size_t i = 0; i < values.size(); ++i)
-    {
-      values[i] = array->GetComponent(static_cast<vtkIdType>(i), static_cast<int>(c));
-    }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    median[c] = *middle;
-  }
-  return median;
-}
-
-/// Returns one array in the fluid's type: the fluid's values, then the walls', or the fluid's
-/// median for walls without a fitting array.
+/// Returns one array in the fluid's type: the fluid's values, then the walls'. Walls without a
+/// fitting array get each component's median; 0 in vtkGhostType, because walls are not copies.
 vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
 {
   const vtkIdType count = fluid->GetNumberOfTuples();
@@ -89,10 +41,21 @@ vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, v
   all->SetNumberOfTuples(count + wallCount);
   all->InsertTuples(0, count, 0, fluid);
   const bool haveOwn = walls && walls->GetNumberOfComponents() == fluid->GetNumberOfComponents();
-  const std::vector<double> median = haveOwn ? std::vector<double>() : Median(fluid);
-  for (vtkIdType i = 0; i < wallCount; ++i)
+  const bool haveMedian =
+    !haveOwn && std::string(fluid->GetName()) != vtkDataSetAttributes::GhostArrayName();
+  for (int c = 0; c < fluid->GetNumberOfComponents(); ++c)
   {
-    all->SetTuple(count + i, haveOwn ? walls->GetTuple(i) : median.data());
+    std::vector<double> values(static_cast<std::size_t>(haveMedian ? count : 1));
+    for (std::size_t i = 0; haveMedian && i < values.size(); ++i)
+    {
+      values[i] = fluid->GetComponent(static_cast<vtkIdType>(i), c);
+    }
+    const auto median = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), median, values.end());
+    for (vtkIdType i = 0; i < wallCount; ++i)
+    {
+      all->SetComponent(count + i, c, haveOwn ? walls->GetComponent(i, c) : *median);
+    }
   }
   return all;
 }
@@ -139,35 +102,35 @@ vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places)
   return data;
 }
 
-vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts)
+std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data)
 {
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  std::map<std::string, std::set<int>> types; // the types of each array
-  for (const vtkSmartPointer<vtkPointSet>& part : parts)
+  std::vector<vtkAbstractArray*> arrays;
+  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
   {
-    const vtkSmartPointer<vtkPolyData> own = Own(part);
-    for (vtkAbstractArray* array : ArraysOf(own->GetPointData()))
-    {
-      types[array->GetName()].insert(array->GetDataType());
-    }
-    blocks->SetBlock(blocks->GetNumberOfBlocks(), own);
+    arrays.push_back(data->GetAbstractArray(i));
   }
-  for (unsigned b = 0; b < blocks->GetNumberOfBlocks(); ++b)
+  return arrays;
+}
+
+std::vector<std::string> NamesOf(vtkFieldData* data)
+{
+  std::vector<std::string> names;
+  for (vtkAbstractArray* array : ArraysOf(data))
   {
-    vtkPointData* arrays = vtkPolyData::SafeDownCast(blocks->GetBlock(b))->GetPointData();
-    for (vtkAbstractArray* array : ArraysOf(arrays))
-    {
-      if (types[array->GetName()].size() > 1 && !types[array->GetName()].count(VTK_STRING))
-      {
-        vtkNew<vtkDoubleArray> values; // VTK would leave out arrays that have different types
-        values->DeepCopy(array);
-        arrays->AddArray(values);
-      }
-    }
+    names.emplace_back(array->GetName() ? array->GetName() : "");
   }
-  const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
-  joined->SetFieldData(parts.front()->GetFieldData());
-  return joined;
+  return names;
+}
+
+void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<double>& numbers)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  for (const double number : numbers)
+  {
+    array->InsertNextValue(number);
+  }
+  data->AddArray(array);
 }
 
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
@@ -194,10 +157,8 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
   vtkNew<vtkUnsignedCharArray> marks;
   marks->SetName(WallArrayName);
   marks->SetNumberOfTuples(count + wallCount);
-  for (vtkIdType i = 0; i < count + wallCount; ++i)
-  {
-    marks->SetValue(i, i < count ? 0 : 1);
-  }
+  marks->Fill(0.0);
+  std::fill_n(marks->GetPointer(count), wallCount, 1);
   all->GetPointData()->AddArray(marks);
   all->SetFieldData(fluid->GetFieldData());
   return all;

@@ -14,21 +14,21 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <tuple>
 
 namespace
 {
 
-std::vector<std::string> NumberedNames(std::size_t count)
+/// Returns columns for values without names: x, y, z, Column4, ...
+Table NumberedColumns(std::size_t count)
 {
-  std::vector<std::string> names;
+  Table table;
   for (std::size_t c = 0; c < count; ++c)
   {
-    names.push_back(c < 3 ? std::string(1, "xyz"[c]) : "Column" + std::to_string(c + 1));
+    table.emplace_back(c < 3 ? std::string(1, "xyz"[c]) : "Column" + std::to_string(c + 1));
   }
-  return names;
+  return table;
 }
 
 bool AreNumbers(const std::vector<View>& cells)
@@ -87,9 +87,9 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
       lines.Check(count <= mostColumns, " has " + std::to_string(count) + " columns");
       const std::vector<View> words = WordsOf(comment);
       const bool isHead = !AreNumbers(cells);
-      table = TableOf(isHead                            ? NamesOf(cells)
-          : words.size() == count && !AreNumbers(words) ? NamesOf(words)
-                                                        : NumberedNames(count));
+      table = isHead                                  ? ColumnsOf(cells)
+        : words.size() == count && !AreNumbers(words) ? ColumnsOf(words)
+                                                      : NumberedColumns(count);
       if (isHead)
       {
         continue;
@@ -102,8 +102,8 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
   // Without names, the first three columns are positions if blanks separate the columns.
   if (positions.empty() && separator == ' ' && table.size() > 1)
   {
+    positions = { 0, 1, 2 };
     positions.resize(std::min<std::size_t>(table.size(), 3));
-    std::iota(positions.begin(), positions.end(), std::size_t(0));
   }
   return ParticlesOf(file, table, positions);
 }
@@ -142,10 +142,10 @@ std::vector<double> NumbersOf(View text)
   return numbers;
 }
 
-/// Returns names of columns from the names, types and widths in Properties=species:S:1:pos:R:3:...
-std::vector<std::string> PropertiesOf(const Lines& lines, const std::string& text)
+/// Returns columns from the names, types and widths in Properties=species:S:1:pos:R:3:...
+Table PropertiesOf(const Lines& lines, const std::string& text)
 {
-  std::vector<std::string> names;
+  Table table;
   const std::vector<View> parts = Split(text, ':');
   for (std::size_t p = 0; p + 2 < parts.size(); p += 3)
   {
@@ -155,18 +155,18 @@ std::vector<std::string> PropertiesOf(const Lines& lines, const std::string& tex
       "its Properties give " + name + " " + std::string(parts[p + 2]) + " columns");
     for (vtkTypeInt64 c = 0; c < width; ++c)
     {
-      names.push_back(name + (width == 1 ? "" : ":" + std::to_string(c)));
+      table.emplace_back(name + (width == 1 ? "" : ":" + std::to_string(c)));
     }
   }
-  return names;
+  return table;
 }
 
 /// What a file says of one of its steps, before the step's particles.
 struct Step
 {
   vtkTypeInt64 Count = 0;
-  std::vector<std::string> Names; ///< empty: the first row decides how many there are
-  std::vector<double> Cell;       ///< the cell's three sides, as vectors; empty: it has none
+  Table Columns;            ///< empty: the first row decides how many there are
+  std::vector<double> Cell; ///< the cell's three sides, as vectors; empty: it has none
   std::array<double, 3> Origin = {};
   std::array<bool, 3> Periodic = {};
   double Time = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not given
@@ -190,7 +190,7 @@ bool FindXyzStep(Lines& lines, Step& step)
     vtkSPHSay(MCOR_SAY(STEP_WITHOUT_COUNT), lines.File.c_str(), lines.Where().c_str()));
   lines.Need("the second line of a step");
   std::map<std::string, std::string> values = ValuesOf(lines.Get());
-  step.Names = PropertiesOf(lines, values["properties"]);
+  step.Columns = PropertiesOf(lines, values["properties"]);
   step.Cell = NumbersOf(values["lattice"]);
   const std::vector<View> words = Split(values["pbc"], ' ');
   const std::vector<double> origin = NumbersOf(values["origin"]), time = NumbersOf(values["time"]);
@@ -289,7 +289,7 @@ bool FindDumpStep(Lines& lines, Step& step)
     }
     else if (StartsWith(line, "ITEM: ATOMS"))
     {
-      step.Names = NamesOf({ words.begin() + 2, words.end() });
+      step.Columns = ColumnsOf({ words.begin() + 2, words.end() });
       return true;
     }
     else if (line == "ITEM: UNITS")
@@ -307,32 +307,34 @@ bool FindDumpStep(Lines& lines, Step& step)
 
 /// Returns the columns of a step's positions: x, or unwrapped xu; or xs or xsu, shares of the cell,
 /// which are replaced by positions first.
-std::vector<std::size_t> PositionsOf(const std::string& file, Table& table, const Step& step)
+std::vector<std::size_t> PositionsOf(const std::string& file, Step& step)
 {
-  for (const char* kind : { "u", "s", "su" })
+  Table& table = step.Columns;
+  const std::vector<std::size_t> unwrapped = FindAxes(table, "u"), scaled = FindAxes(table, "s");
+  const std::vector<std::size_t> shares = scaled.size() < 3 ? FindAxes(table, "su") : scaled;
+  if (FindAxes(table, "").size() == 3 || (unwrapped.size() < 3 && shares.size() < 3))
   {
-    const std::vector<std::size_t> positions = FindAxes(table, kind);
-    if (positions.size() < 3 || FindAxes(table, "").size() == 3)
-    {
-      continue;
-    }
-    RequireToRead(*kind == 'u' || !step.Cell.empty(), file,
-      "its positions are shares of a box (xs, ys, zs), and it has no box");
-    for (std::size_t row = 0; row < table.front().Numbers.size() && *kind == 's'; ++row)
-    {
-      std::array<double, 3> place = step.Origin;
-      for (std::size_t k = 0; k < 9; ++k)
-      {
-        place[k % 3] += table[positions[k / 3]].Numbers[row] * step.Cell[k];
-      }
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        table[positions[a]].Numbers[row] = place[a];
-      }
-    }
-    return positions;
+    return FindPositions(file, table);
   }
-  return FindPositions(file, table);
+  if (unwrapped.size() == 3)
+  {
+    return unwrapped;
+  }
+  RequireToRead(
+    !step.Cell.empty(), file, "its positions are shares of a box (xs, ys, zs), and it has no box");
+  for (std::size_t row = 0; row < table.front().Numbers.size(); ++row)
+  {
+    std::array<double, 3> place = step.Origin;
+    for (std::size_t k = 0; k < 9; ++k)
+    {
+      place[k % 3] += table[shares[k / 3]].Numbers[row] * step.Cell[k];
+    }
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      table[shares[a]].Numbers[row] = place[a];
+    }
+  }
+  return shares;
 }
 
 /// Returns the cell for the field data: six bounds, 0 for axes without a period; or, if a side with a
@@ -371,27 +373,25 @@ StepFinder FinderOf(const std::string& file)
                 : nullptr;
 }
 
-/// Where the steps of a file begin, as ListTimesInText() has found, and the file's size then. A
-/// film thus reads a step without going through all earlier steps.
-struct Steps
-{
-  std::size_t Size = 0;
-  std::vector<Lines> Begins;
-};
-std::map<std::string, Steps> KnownSteps;
+/// Where the steps of a file begin, as ListTimesInText() has found. A film thus reads a step without
+/// going through all earlier steps.
+std::map<std::string, std::vector<Lines>> KnownSteps;
 
 /// Returns the lines of a file from one of its steps on.
 Lines LinesFrom(const std::string& file, std::size_t number)
 {
-  Lines lines(file);
-  Steps& steps = KnownSteps[file];
-  if (number > 0 && steps.Size != lines.GetRest().size())
+  const Lines lines(file);
+  if (number == 0)
+  {
+    return lines;
+  }
+  const std::vector<Lines>& known = KnownSteps[file];
+  if (known.empty() || known.front().GetRest().size() != lines.GetRest().size()) // it has grown
   {
     ListTimesInText(file);
   }
-  RequireToRead(
-    number == 0 || number < steps.Begins.size(), file, "it has no step " + std::to_string(number));
-  return number == 0 ? lines : steps.Begins[number];
+  RequireToRead(number < known.size(), file, "it has no step " + std::to_string(number));
+  return known[number];
 }
 
 vtkSmartPointer<vtkDataObject> ReadStep(
@@ -399,8 +399,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
 {
   Lines lines = LinesFrom(file, number);
   Step step;
+  Table& table = step.Columns;
   RequireToRead(find(lines, step), file, "it has no step " + std::to_string(number));
-  Table table = TableOf(step.Names);
   for (vtkTypeInt64 i = 0; i < step.Count; ++i)
   {
     lines.Need("all particles of a step");
@@ -408,9 +408,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
     if (table.empty())
     {
       const bool hasSpecies = cells.size() > 3;
-      std::vector<std::string> names = NumberedNames(cells.size() - hasSpecies);
-      names.insert(names.begin(), hasSpecies, "species");
-      table = TableOf(names);
+      table = NumberedColumns(cells.size() - hasSpecies);
+      table.insert(table.begin(), hasSpecies, Column("species"));
     }
     AddRow(table, lines, cells, ' ');
   }
@@ -426,9 +425,9 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");
-  table = table.empty() ? TableOf({ "x", "y", "z" }) : table;
-  const vtkSmartPointer<vtkPolyData> particles =
-    ParticlesOf(file, table, PositionsOf(file, table, step));
+  table = table.empty() ? NumberedColumns(3) : table;
+  const std::vector<std::size_t> positions = PositionsOf(file, step);
+  const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(file, table, positions);
   const std::vector<double> period = PeriodOf(step);
   if (period != std::vector<double>(6))
   {
@@ -455,10 +454,10 @@ std::vector<double> ListTimesInText(const std::string& file)
   const StepFinder find = FinderOf(file);
   Lines lines(file);
   Step step;
-  Steps known = { lines.GetRest().size(), {} };
+  std::vector<Lines> begins;
   try
   {
-    for (known.Begins.push_back(lines); find && find(lines, step); known.Begins.push_back(lines))
+    for (begins.push_back(lines); find && find(lines, step); begins.push_back(lines))
     {
       times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
       for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
@@ -478,6 +477,6 @@ std::vector<double> ListTimesInText(const std::string& file)
     times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
   // A file of one step does not stay mapped into memory: a film may have more files than a process may map.
-  KnownSteps[file] = times.size() > 1 ? known : Steps();
+  KnownSteps[file] = times.size() > 1 ? begins : std::vector<Lines>();
   return times;
 }

@@ -5,63 +5,31 @@
 #include "Text.h"
 #include "TextTable.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkSPHSay.h"
+#include "vtkSetGet.h"
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <set>
+
+const std::vector<PlyType> PlyTypes = { { "char", VTK_SIGNED_CHAR }, { "uchar", VTK_UNSIGNED_CHAR },
+  { "short", VTK_SHORT }, { "ushort", VTK_UNSIGNED_SHORT }, { "int", VTK_INT },
+  { "uint", VTK_UNSIGNED_INT }, { "float", VTK_FLOAT }, { "double", VTK_DOUBLE },
+  { "char", VTK_CHAR }, { "int8", VTK_SIGNED_CHAR }, { "uint8", VTK_UNSIGNED_CHAR },
+  { "int16", VTK_SHORT }, { "uint16", VTK_UNSIGNED_SHORT }, { "int32", VTK_INT },
+  { "uint32", VTK_UNSIGNED_INT }, { "float32", VTK_FLOAT }, { "float64", VTK_DOUBLE } };
 
 namespace
 {
-
-/// How a type of numbers is stored in the file.
-struct NumberKind
-{
-  std::size_t Size;
-  double (*Read)(const char* bytes); ///< bytes in this machine's order
-  bool IsWhole;
-};
-
-template <typename T>
-NumberKind KindOf()
-{
-  return { sizeof(T),
-    [](const char* bytes)
-    {
-      T value;
-      std::memcpy(&value, bytes, sizeof(T));
-      return static_cast<double>(value);
-    },
-    std::is_integral_v<T> };
-}
-
-const std::map<std::string, NumberKind> NumberKinds = {
-  { "char", KindOf<std::int8_t>() },
-  { "int8", KindOf<std::int8_t>() },
-  { "uchar", KindOf<std::uint8_t>() },
-  { "uint8", KindOf<std::uint8_t>() },
-  { "short", KindOf<std::int16_t>() },
-  { "int16", KindOf<std::int16_t>() },
-  { "ushort", KindOf<std::uint16_t>() },
-  { "uint16", KindOf<std::uint16_t>() },
-  { "int", KindOf<std::int32_t>() },
-  { "int32", KindOf<std::int32_t>() },
-  { "uint", KindOf<std::uint32_t>() },
-  { "uint32", KindOf<std::uint32_t>() },
-  { "float", KindOf<float>() },
-  { "float32", KindOf<float>() },
-  { "double", KindOf<double>() },
-  { "float64", KindOf<double>() },
-};
 
 /// An element of the head, such as the vertices, with its properties.
 struct Element
 {
   std::string Name;
   vtkTypeInt64 Count = 0;
-  std::vector<std::string> Names;
-  std::vector<NumberKind> Kinds;
+  Table Columns;
+  std::vector<int> Types; ///< of VTK
   bool HasLists = false;
 };
 
@@ -78,7 +46,8 @@ std::vector<Element> ReadHead(Lines& lines, std::string& form)
     const View first = words.empty() ? "comment" : words[0];
     Element* last = elements.empty() ? nullptr : &elements.back();
     vtkTypeInt64 count = 0;
-    const auto kind = NumberKinds.find(words.size() == 3 ? std::string(words[1]) : "");
+    const auto type = std::find_if(PlyTypes.begin(), PlyTypes.end(),
+      [&words](const PlyType& each) { return words.size() == 3 && each.first == words[1]; });
     if (first == "format" && words.size() > 1)
     {
       form = words[1];
@@ -87,10 +56,10 @@ std::vector<Element> ReadHead(Lines& lines, std::string& form)
     {
       elements.push_back({ std::string(words[1]), count, {}, {}, false });
     }
-    else if (first == "property" && last && kind != NumberKinds.end())
+    else if (first == "property" && last && type != PlyTypes.end())
     {
-      last->Names.emplace_back(words[2]);
-      last->Kinds.push_back(kind->second);
+      last->Columns.emplace_back(std::string(words[2]));
+      last->Types.push_back(type->second);
     }
     else if (first == "property" && last && words.size() > 1 && words[1] == "list")
     {
@@ -106,30 +75,40 @@ std::vector<Element> ReadHead(Lines& lines, std::string& form)
   return elements;
 }
 
+template <typename T>
+double NumberIn(const char* bytes)
+{
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return static_cast<double>(value);
+}
+
 /// Takes rows of bytes from the beginning of `bytes` into columns.
-void TakeRows(
-  const std::string& file, View& bytes, const Element& element, bool isSwapped, Table& table)
+void TakeRows(const std::string& file, View& bytes, Element& element, bool isSwapped)
 {
   for (vtkTypeInt64 i = 0; i < element.Count; ++i)
   {
-    for (std::size_t c = 0; c < table.size(); ++c)
+    for (std::size_t c = 0; c < element.Columns.size(); ++c)
     {
-      const NumberKind& kind = element.Kinds[c];
+      const int type = element.Types[c];
+      const std::size_t size = vtkAbstractArray::GetDataTypeSize(type);
       char number[8];
-      if (bytes.copy(number, kind.Size) < kind.Size)
+      double value = 0.0;
+      if (bytes.copy(number, size) < size)
       {
         FailToRead(
           file, "it ends before all of its " + std::to_string(element.Count) + " vertices");
       }
-      bytes.remove_prefix(kind.Size);
-      if (isSwapped)
+      bytes.remove_prefix(size);
+      std::reverse(number, number + (isSwapped ? size : 0));
+      switch (type)
       {
-        std::reverse(number, number + kind.Size);
+        vtkTemplateMacro(value = NumberIn<VTK_TT>(number));
       }
-      table[c].Numbers.push_back(kind.Read(number));
-      if (kind.IsWhole)
+      element.Columns[c].Numbers.push_back(value);
+      if (type != VTK_FLOAT && type != VTK_DOUBLE)
       {
-        table[c].Whole.push_back(static_cast<vtkTypeInt64>(table[c].Numbers.back()));
+        element.Columns[c].Whole.push_back(static_cast<vtkTypeInt64>(value));
       }
     }
   }
@@ -140,27 +119,30 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
 {
   Lines lines(file);
   std::string form;
-  const std::vector<Element> elements = ReadHead(lines, form);
+  std::vector<Element> elements = ReadHead(lines, form);
   const bool isText = form == "ascii";
   const std::uint16_t one = 1;
   const bool isLittle = *reinterpret_cast<const char*>(&one) == 1;
   RequireToRead(isText || form == "binary_little_endian" || form == "binary_big_endian", file,
     "its format '" + form + "' is not known");
   View bytes = lines.GetRest();
-  for (const Element& element : elements)
+  for (Element& element : elements)
   {
     const bool isVertex = element.Name == "vertex";
-    RequireToRead(!element.Names.empty() || element.HasLists || element.Count == 0, file,
+    RequireToRead(!element.Columns.empty() || element.HasLists || element.Count == 0, file,
       "its element " + element.Name + " has no properties");
     Require(!element.HasLists || (!isVertex && element.Count == 0),
       vtkSPHSay(MCOR_SAY(PLY_LISTS), file.c_str(), element.Name.c_str()));
-    const std::set<std::string> names(element.Names.begin(), element.Names.end());
-    Require(!isVertex || names.size() == element.Names.size(),
-      vtkSPHSay(MCOR_SAY(PLY_NAMES), file.c_str()));
-    Table table = TableOf(element.Names);
+    Table& table = element.Columns;
+    std::set<std::string> names;
+    for (const Column& column : table)
+    {
+      Require(names.insert(column.Name).second || !isVertex,
+        vtkSPHSay(MCOR_SAY(PLY_NAMES), file.c_str()));
+    }
     if (!isText)
     {
-      TakeRows(file, bytes, element, isLittle == (form == "binary_big_endian"), table);
+      TakeRows(file, bytes, element, isLittle == (form == "binary_big_endian"));
     }
     for (vtkTypeInt64 i = 0; isText && i < element.Count; ++i)
     {
@@ -169,7 +151,7 @@ vtkSmartPointer<vtkDataObject> ReadPly(const std::string& file, std::size_t)
     }
     if (isVertex)
     {
-      return ParticlesOf(file, table, {});
+      return ParticlesOf(file, table, FindPositions(file, table));
     }
   }
   FailToRead(file, "it has no vertices");

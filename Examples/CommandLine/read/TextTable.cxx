@@ -148,11 +148,6 @@ void Column::Add(View cell)
   this->Numbers.push_back(isNumber ? number : none);
 }
 
-Table TableOf(const std::vector<std::string>& names)
-{
-  return { names.begin(), names.end() };
-}
-
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator)
 {
   if (cells.size() != table.size())
@@ -209,19 +204,14 @@ std::string ListNames(const Table& table)
   return list;
 }
 
-/// An array, and the columns of its components.
-struct Array
-{
-  std::string Name;
-  std::vector<std::size_t> Columns;
-};
+using Indices = std::vector<std::size_t>;
 
-/// Lists arrays, each by its first column: an array of one column, or a vector, if the names of
-/// columns tell components.
-std::map<std::size_t, Array> FindArrays(
-  const Table& table, const std::vector<std::size_t>& positions = {})
+/// Lists arrays, by name and columns, in the order of their first columns: an array of one column, or
+/// a vector, if the names of columns tell components.
+std::map<std::size_t, std::pair<std::string, Indices>> FindArrays(
+  const Table& table, const Indices& positions = {})
 {
-  std::map<std::size_t, Array> arrays;
+  std::map<std::size_t, std::pair<std::string, Indices>> arrays;
   std::map<std::string, std::map<int, std::size_t>> vectors; // columns by name and component
   for (std::size_t c = 0; c < table.size(); ++c)
   {
@@ -246,20 +236,20 @@ std::map<std::size_t, Array> FindArrays(
     const bool isUsual = count == 2 || count == 3 || count == 6 || count == 9;
     if (isUsual && components.rbegin()->first == static_cast<int>(count) - 1)
     {
-      Array vector = { base, {} };
+      Indices columns;
       for (const auto& [component, column] : components)
       {
-        vector.Columns.push_back(column);
+        columns.push_back(column);
         arrays.erase(column);
       }
-      arrays[*std::min_element(vector.Columns.begin(), vector.Columns.end())] = vector;
+      arrays[*std::min_element(columns.begin(), columns.end())] = { base, columns };
     }
   }
   return arrays;
 }
 
 vtkSmartPointer<vtkDoubleArray> JoinColumns(
-  const Table& table, const std::vector<std::size_t>& columns, int components)
+  const Table& table, const Indices& columns, int components)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
   const std::size_t rows = table[columns[0]].Numbers.size();
@@ -287,29 +277,25 @@ vtkSmartPointer<ArrayT> ArrayWith(const std::vector<ValueT>& values)
 }
 
 vtkSmartPointer<vtkAbstractArray> ArrayOf(
-  const std::string& file, const Table& table, const std::vector<std::size_t>& columns)
+  const std::string& file, const Table& table, const Indices& columns)
 {
   const Column& first = table[columns[0]];
-  if (columns.size() > 1)
-  {
-    return JoinColumns(table, columns, static_cast<int>(columns.size()));
-  }
-  if (!first.Words.empty())
+  if (columns.size() == 1 && !first.Words.empty())
   {
     return ArrayWith<vtkStringArray>(first.Words);
   }
   const bool areLarge = std::any_of(first.Numbers.begin(), first.Numbers.end(),
     [](double number) { return std::abs(number) >= 9007199254740992.0; }); // from here on, doubles are 2 apart
   const bool isIdentifier = vtkSPHTellsApart(first.Name.c_str()); // it numbers particles or their kinds
-  if ((isIdentifier || areLarge) && !first.Whole.empty())
+  if (columns.size() == 1 && (isIdentifier || areLarge) && !first.Whole.empty())
   {
     return ArrayWith<vtkTypeInt64Array>(first.Whole);
   }
-  RequireToRead(!isIdentifier || !areLarge, file,
+  RequireToRead(columns.size() > 1 || !isIdentifier || !areLarge, file,
     "its column " + first.Name +
       " has numbers from 2^53 on, where some of it are not whole or are 2^63 and more: different "
       "ones would become equal");
-  return JoinColumns(table, columns, 1);
+  return JoinColumns(table, columns, static_cast<int>(columns.size()));
 }
 
 }
@@ -335,11 +321,11 @@ std::vector<std::size_t> FindPositions(const std::string& file, const Table& tab
   int best = VTK_INT_MAX;
   for (const auto& [first, array] : FindArrays(table))
   {
-    const std::size_t count = array.Columns.size();
-    const int rank = vtkSPHPositionPriority(array.Name.c_str());
-    if ((count == 2 || count == 3) && rank >= 0 && rank < best)
+    const auto& [name, columns] = array;
+    const int rank = vtkSPHPositionPriority(name.c_str());
+    if ((columns.size() == 2 || columns.size() == 3) && rank >= 0 && rank < best)
     {
-      found = array.Columns;
+      found = columns;
       best = rank;
     }
   }
@@ -356,9 +342,8 @@ std::vector<std::size_t> FindPositions(const std::string& file, const Table& tab
 }
 
 vtkSmartPointer<vtkPolyData> ParticlesOf(
-  const std::string& file, const Table& table, std::vector<std::size_t> positions)
+  const std::string& file, const Table& table, const std::vector<std::size_t>& positions)
 {
-  positions = positions.empty() ? FindPositions(file, table) : positions;
   RequireToRead(!positions.empty(), file,
     "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
     "Points:2; there are " +
@@ -372,16 +357,16 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   const vtkSmartPointer<vtkPolyData> particles = PointsAt(JoinColumns(table, positions, 3));
   for (const auto& [first, each] : FindArrays(table, positions))
   {
-    const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(file, table, each.Columns);
-    array->SetName(each.Name.c_str());
+    const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(file, table, each.second);
+    array->SetName(each.first.c_str());
     particles->GetPointData()->AddArray(array);
   }
   return particles;
 }
 
-std::vector<std::string> NamesOf(const std::vector<View>& cells)
+Table ColumnsOf(const std::vector<View>& cells)
 {
-  std::vector<std::string> names;
+  Table table;
   std::set<std::string> taken;
   for (const View cell : cells)
   {
@@ -391,12 +376,12 @@ std::vector<std::string> NamesOf(const std::vector<View>& cells)
       inside.size() != 2 || View("012345678xyzXYZ").find(inside[0]) == View::npos;
     std::string name(
       Trimmed(cell.substr(0, std::min(cell.find(" ["), isUnit ? bracket : View::npos))));
-    name = name.empty() ? "Column" + std::to_string(names.size() + 1) : name;
+    name = name.empty() ? "Column" + std::to_string(table.size() + 1) : name;
     while (!taken.insert(name).second)
     {
       name += "_";
     }
-    names.push_back(name);
+    table.emplace_back(name);
   }
-  return names;
+  return table;
 }

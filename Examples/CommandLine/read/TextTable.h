@@ -68,7 +68,6 @@ struct Column
 
 using Table = std::vector<Column>;
 
-Table TableOf(const std::vector<std::string>& names);
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
 /// Returns the columns x, y and z, with these letters behind the names, as far as they exist.
@@ -78,11 +77,11 @@ std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
 /// and z exist, unless two of them are the whole table.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
-/// Makes particles of a table. positions: their columns; if empty, names tell them.
+/// Makes particles of a table, whose positions are in these columns.
 vtkSmartPointer<vtkPolyData> ParticlesOf(
-  const std::string& file, const Table& table, std::vector<std::size_t> positions);
+  const std::string& file, const Table& table, const std::vector<std::size_t>& positions);
 
-/// Returns names of columns, without units in brackets; no two are the same.
-std::vector<std::string> NamesOf(const std::vector<View>& cells);
+/// Returns columns with these names, without units in brackets; no two names are the same.
+Table ColumnsOf(const std::vector<View>& cells);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "Failures.h"
 #include "Text.h"
+#include "TextTable.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -11,6 +12,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkXMLDataElement.h"
 #include "vtkXMLDataParser.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLPolyDataReader.h"
@@ -19,11 +21,12 @@
 #include "vtkXMLUnstructuredGridReader.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -69,48 +72,30 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks the counts in an XML file's tags. A piece has numbers of points and cells; an array has
-/// the number of values for each point or cell.
-void CheckXmlSizes(const std::string& file, View text)
+/// Checks the counts in an XML file's elements. A piece has numbers of points and cells; an array has the number of
+/// values for each of `points`, the points of the last piece.
+void CheckXmlSizes(
+  const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
-  const bool isPacked = text.substr(0, 1000).find("compressor") != View::npos;
-  // A byte holds eight bits at most. Packed, it may hold more: 7,000 zeros by LZMA, the best packer
-  // that VTK reads.
-  const double most = static_cast<double>(text.size()) * (isPacked ? 1e4 : 8.0);
-  double elements = 0.0;
-  for (std::size_t begin = 0; (begin = text.find('<', begin)) != View::npos;)
+  for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
   {
-    const std::size_t end = std::min(text.find('>', begin), text.size());
-    const View tag = text.substr(begin, end - begin);
-    begin = end;
-    if (tag.substr(0, 13) == "<AppendedData")
+    const View name = element->GetAttributeName(i);
+    const std::vector<double> numbers = Numbers(element->GetAttributeValue(i));
+    if (name.substr(0, 8) == "NumberOf" && !numbers.empty())
     {
-      return;
+      const bool isWidth = name == "NumberOfComponents";
+      CheckSize(file, most, name, numbers[0], isWidth ? std::max(points, 1.0) : 1.0);
+      points = name == "NumberOfPoints" ? numbers[0] : points;
     }
-    for (std::size_t equals = 0; (equals = tag.find('=', equals + 1)) != View::npos;)
+    const bool isExtent = name == "Extent" || name == "WholeExtent";
+    for (std::size_t a = 1; isExtent && a < numbers.size(); a += 2)
     {
-      const std::size_t open = tag.find_first_of("\"'", equals);
-      const std::size_t close = open == View::npos ? open : tag.find(tag[open], open + 1);
-      if (close == View::npos)
-      {
-        break;
-      }
-      const std::size_t start = tag.find_last_of(" \t\r\n", equals) + 1;
-      const View name = tag.substr(start, equals - start);
-      const std::vector<double> numbers = Numbers(tag.substr(open + 1, close - open - 1));
-      equals = close;
-      if (name.substr(0, 8) == "NumberOf" && !numbers.empty())
-      {
-        const bool isWidth = name == "NumberOfComponents";
-        CheckSize(file, most, name, numbers[0], isWidth ? std::max(elements, 1.0) : 1.0);
-        elements = name == "NumberOfPoints" ? numbers[0] : elements;
-      }
-      const bool isExtent = name == "Extent" || name == "WholeExtent";
-      for (std::size_t a = 1; isExtent && a < numbers.size(); a += 2)
-      {
-        CheckSize(file, most, name, std::min(numbers[a] - numbers[a - 1] + 1.0, 0.0));
-      }
+      CheckSize(file, most, name, std::min(numbers[a] - numbers[a - 1] + 1.0, 0.0));
     }
+  }
+  for (int i = 0; i < element->GetNumberOfNestedElements(); ++i)
+  {
+    CheckXmlSizes(file, most, element->GetNestedElement(i), points);
   }
 }
 
@@ -118,20 +103,13 @@ void CheckXmlSizes(const std::string& file, View text)
 std::vector<std::string> DeclaringWords(View line)
 {
   const auto isPrinted = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r'; };
-  std::vector<std::string> words;
   if (line.empty() || line.size() >= 300 || std::strchr("0123456789-. \r", line[0]) ||
     !std::all_of(line.begin(), line.end(), isPrinted))
   {
-    return words;
+    return {};
   }
-  std::istringstream stream{ std::string(line) };
-  for (std::string word; stream >> word;)
-  {
-    std::transform(word.begin(), word.end(), word.begin(),
-      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    words.push_back(word);
-  }
-  return words;
+  std::istringstream words(Small(line));
+  return { std::istream_iterator<std::string>(words), {} };
 }
 
 bool AreDigits(View word)
@@ -164,6 +142,7 @@ void CheckLegacy(const std::string& file, View text)
   static const Words cells = { "vertices", "lines", "polygons", "triangle_strips", "cells" };
   static const Words counted = { "points", "cell_types", "x_coordinates", "y_coordinates",
     "z_coordinates", "field", "lookup_table" };
+  static const Words unlimited = { "point_data", "cell_data", "dimensions" }; // an image may have no values
   // VTK's reader crashes if other words stand where a type must stand.
   static const Words types = { "bit", "char", "signed_char", "unsigned_char", "short",
     "unsigned_short", "int", "unsigned_int", "long", "unsigned_long", "vtkidtype", "vtktypeint64",
@@ -220,16 +199,12 @@ void CheckLegacy(const std::string& file, View text)
       fields = numbers.back();
     }
     const bool isSection = first == "point_data" || first == "cell_data";
-    const bool hasAttribute = attributes.count(first) > 0;
+    const bool isUnlimited = unlimited.count(first) > 0, hasAttribute = attributes.count(first) > 0;
     for (const double number : numbers)
     {
-      if (isSection || first == "dimensions") // an image may have no values
+      if (isUnlimited || hasAttribute || cells.count(first) || counted.count(first))
       {
-        CheckSize(file, most, first, std::min(number, 0.0));
-      }
-      if (hasAttribute || cells.count(first) || counted.count(first))
-      {
-        CheckSize(file, most, first, number);
+        CheckSize(file, isUnlimited ? std::numeric_limits<double>::infinity() : most, first, number);
       }
       section = isSection ? first : section;
       elements = isSection ? number : elements;
@@ -276,13 +251,14 @@ protected:
 };
 vtkStandardNewMacro(PromptParser);
 
+/// A reader that checks the counts in a file before it takes memory for them.
 template <typename ReaderT>
-class PromptReader : public ReaderT
+class CarefulReader : public ReaderT
 {
 public:
   static vtkSmartPointer<vtkXMLReader> New()
   {
-    auto* reader = new PromptReader;
+    auto* reader = new CarefulReader;
     reader->InitializeObjectBase();
     return vtk::TakeSmartPointer<vtkXMLReader>(reader);
   }
@@ -296,14 +272,26 @@ protected:
     }
     this->XMLParser = PromptParser::New();
   }
+
+  int ReadVTKFile(vtkXMLDataElement* root) override
+  {
+    const std::string file = this->FileName ? this->FileName : "";
+    const std::size_t size = file.empty() ? this->InputString.size() : BytesOf(file)->size();
+    // A byte holds eight bits at most. Packed, it may hold more: 7,000 zeros by LZMA, the best packer
+    // that VTK reads.
+    const double most = static_cast<double>(size) * (root->GetAttribute("compressor") ? 1e4 : 8.0);
+    double points = 0.0;
+    CheckXmlSizes(file, most, root, points);
+    return ReaderT::ReadVTKFile(root);
+  }
 };
 
 const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = {
-  { ".vtp", PromptReader<vtkXMLPolyDataReader>::New },
-  { ".vtu", PromptReader<vtkXMLUnstructuredGridReader>::New },
-  { ".vti", PromptReader<vtkXMLImageDataReader>::New },
-  { ".vtr", PromptReader<vtkXMLRectilinearGridReader>::New },
-  { ".vts", PromptReader<vtkXMLStructuredGridReader>::New },
+  { ".vtp", CarefulReader<vtkXMLPolyDataReader>::New },
+  { ".vtu", CarefulReader<vtkXMLUnstructuredGridReader>::New },
+  { ".vti", CarefulReader<vtkXMLImageDataReader>::New },
+  { ".vtr", CarefulReader<vtkXMLRectilinearGridReader>::New },
+  { ".vts", CarefulReader<vtkXMLStructuredGridReader>::New },
 };
 
 // ---- Times ----
@@ -339,19 +327,6 @@ std::string FieldOfLegacy(const std::string& head)
     "\nPOINTS 0 float\n";
 }
 
-std::vector<double> NumberOf(vtkDataObject* data, const std::vector<std::string>& names)
-{
-  for (const std::string& name : names)
-  {
-    vtkDataArray* array = data ? data->GetFieldData()->GetArray(name.c_str()) : nullptr;
-    if (array && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0)))
-    {
-      return { array->GetComponent(0, 0) };
-    }
-  }
-  return {};
-}
-
 }
 
 FileBytes BytesOf(const std::string& file)
@@ -375,7 +350,6 @@ FileBytes BytesOf(const std::string& file)
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t)
 {
   const FileBytes bytes = BytesOf(file);
-  CheckXmlSizes(file, *bytes);
   // VTK reads appended data that end too early without an error, and the rest of the arrays then has
   // random values.
   const View end = bytes->substr(bytes->size() - std::min<std::size_t>(bytes->size(), 256));
@@ -410,7 +384,7 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
   const std::string head(BytesOf(file)->substr(0, 1 << 16)); // field data farther behind are ignored
   const bool isLegacy = head.compare(0, 5, "# vtk") == 0;
   const std::string text = isLegacy ? FieldOfLegacy(head) : FieldOfXml(head);
-  std::vector<double> number;
+  vtkSmartPointer<vtkDataObject> data;
   const auto read = [&]
   {
     if (isLegacy)
@@ -421,16 +395,15 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
       reader->SetBinaryInputString(text.data(), static_cast<int>(text.size()));
       reader->ReadAllFieldsOn();
       reader->Update();
-      number = NumberOf(reader->GetOutput(), names);
+      data = reader->GetOutput();
     }
     else if (text.find("\"appended\"") == std::string::npos)
     {
-      CheckXmlSizes(file, text);
-      vtkNew<vtkXMLPolyDataReader> reader;
+      const auto reader = CarefulReader<vtkXMLPolyDataReader>::New();
       reader->ReadFromInputStringOn();
       reader->SetInputString(text);
       reader->Update();
-      number = NumberOf(reader->GetOutput(), names);
+      data = reader->GetOutputDataObject(0);
     }
   };
   if (!text.empty())
@@ -438,19 +411,27 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
     FailureOf([&] { ReadWithCare(file, read); }); // an error is reported when the whole file is read
   }
   Messages() = {};
-  // If an XML file has field data at its end, a tag at its beginning has the least value of each
-  // array; for a single number, this is the number itself.
-  for (std::size_t i = 0; i < names.size() && number.empty(); ++i)
+  for (const std::string& name : names)
   {
-    const std::size_t at = text.find("Name=\"" + names[i] + "\"");
-    const std::size_t end = text.find('>', at), low = text.find("RangeMin=\"", at);
-    double value = 0.0;
-    if (low < end && end != std::string::npos)
+    vtkDataArray* array = data ? data->GetFieldData()->GetArray(name.c_str()) : nullptr;
+    if (array && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0)))
     {
-      const std::size_t begin = low + 10;
-      const bool isGood = ParseNumber(text.substr(begin, text.find('"', begin) - begin), value);
-      return isGood ? std::vector<double>{ value } : number;
+      return { array->GetComponent(0, 0) };
     }
   }
-  return number;
+  // If an XML file has field data at its end, a tag at its beginning has the least value of each
+  // array; for a single number, this is the number itself.
+  for (const std::string& name : names)
+  {
+    const std::size_t at = text.find("Name=\"" + name + "\"");
+    const std::size_t low = text.find("RangeMin=\"", at), close = text.find('>', at);
+    const std::size_t begin = low + 10;
+    double value = 0.0;
+    if (low < close && close != std::string::npos &&
+      ParseNumber(text.substr(begin, text.find('"', begin) - begin), value))
+    {
+      return { value };
+    }
+  }
+  return {};
 }

@@ -17,25 +17,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace
-{
-
-namespace fs = std::filesystem;
-
-/// Unless `isGood`, fails with `why` or, if it is empty, with the system's reason.
-void Check(bool isGood, const std::string& file, const std::string& why = "")
-{
-  RequireToWrite(isGood, file, why.empty() ? std::strerror(errno) : why);
-}
-
-/// The target of an output.
-struct Target
+/// An output under way: a new file that will replace the target, or bytes for a target that is kept.
+struct OutputTarget
 {
   std::string Name;    ///< as given
   std::string Path;    ///< the path behind symbolic links
   int Descriptor = -1; ///< the open descriptor, if Path names one (/dev/stdout, /dev/fd/3)
   bool Exists = false;
-  struct stat Status = {}; ///< identity of the file, if it exists
+  struct stat Status = {}; ///< identity of the target, if it exists
+  std::string Bytes;       ///< what is still to be written to a target that is kept
+  std::string File;        ///< the new file's name, while there is one
 
   /// Whether a new file replaces the target; otherwise bytes are written straight to the target.
   bool IsReplaced() const
@@ -43,6 +34,18 @@ struct Target
     return this->Descriptor < 0 && (!this->Exists || S_ISREG(this->Status.st_mode));
   }
 };
+
+namespace
+{
+
+namespace fs = std::filesystem;
+using Target = OutputTarget;
+
+/// Unless `isGood`, fails with `why` or, if it is empty, with the system's reason.
+void Check(bool isGood, const std::string& file, const std::string& why = "")
+{
+  RequireToWrite(isGood, file, why.empty() ? std::strerror(errno) : why);
+}
 
 std::string FolderOf(const std::string& path)
 {
@@ -117,13 +120,10 @@ using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 Identity Identify(const Target& target)
 {
-  struct stat folder = {};
-  if (target.Exists)
-  {
-    return { target.Status.st_dev, target.Status.st_ino, "" };
-  }
-  stat(FolderOf(target.Path).c_str(), &folder);
-  return { folder.st_dev, folder.st_ino, fs::path(target.Path).filename().string() };
+  struct stat status = target.Status;
+  const bool isFolder = !target.Exists && stat(FolderOf(target.Path).c_str(), &status) == 0;
+  return { status.st_dev, status.st_ino,
+    isFolder ? fs::path(target.Path).filename().string() : "" };
 }
 
 /// Sets mode, owner and group to those of the replaced file; for a new file, the umask decides.
@@ -166,14 +166,6 @@ bool Store(int descriptor, const std::string& bytes, const Target& target)
 }
 }
 
-/// An output under way: a new file that will replace the target, or bytes for a target that is
-/// kept.
-struct OutputFiles::Output
-{
-  Target Place;
-  std::string Bytes, File;
-};
-
 void CheckOutputs(const std::vector<std::string>& outputs)
 {
   std::set<Identity> streams, found;
@@ -204,46 +196,44 @@ OutputFiles::OutputFiles() = default;
 
 OutputFiles::~OutputFiles()
 {
-  for (const Output& output : this->Files)
+  for (const Target& target : this->Files)
   {
-    if (!output.File.empty())
+    if (!target.File.empty())
     {
-      EndTemporary(output.File);
+      EndTemporary(target.File);
     }
   }
 }
 
 void OutputFiles::Write(const std::string& file, const std::string& bytes)
 {
-  this->Files.push_back({ Find(file), "", "" });
-  Output& output = this->Files.back();
-  if (!output.Place.IsReplaced())
+  Target& target = this->Files.emplace_back(Find(file));
+  if (!target.IsReplaced())
   {
-    output.Bytes = bytes;
+    target.Bytes = bytes;
     return;
   }
-  const fs::path path = output.Place.Path;
   const std::size_t longest = 200; // a name has at most 255 bytes
-  output.File = FolderOf(path) + "/." + path.filename().string().substr(0, longest) + ".";
-  const int descriptor = MakeTemporary(output.File);
-  Check(Store(descriptor, bytes, output.Place), file);
+  const std::string name = fs::path(target.Path).filename().string();
+  target.File = FolderOf(target.Path) + "/." + name.substr(0, longest) + ".";
+  const int descriptor = MakeTemporary(target.File);
+  Check(Store(descriptor, bytes, target), file);
 }
 
 void OutputFiles::Commit()
 {
-  for (Output& output : this->Files)
+  for (Target& target : this->Files)
   {
-    const Target& target = output.Place;
     if (target.IsReplaced())
     {
-      Check(EndTemporary(output.File, target.Path), target.Name);
-      output.File.clear();
+      Check(EndTemporary(target.File, target.Path), target.Name);
+      target.File.clear();
       continue;
     }
     const int descriptor = target.Descriptor >= 0
       ? fcntl(target.Descriptor, F_DUPFD_CLOEXEC, 0)
       : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    Check(Store(descriptor, output.Bytes, target), target.Name);
+    Check(Store(descriptor, target.Bytes, target), target.Name);
   }
   this->Files.clear();
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+struct OutputTarget;
+
 /// Checks before the work, and after OpenSources() was called for all inputs, that the outputs can
 /// be written. Throws UsageError if an output is the same file as an input or another output, by
 /// whatever name or link; std::runtime_error if it cannot be written. An empty name means no output.
@@ -30,8 +32,7 @@ public:
   void Commit();
 
 private:
-  struct Output;
-  std::vector<Output> Files;
+  std::vector<OutputTarget> Files;
 };
 
 /// Writes one file by itself.

@@ -26,7 +26,6 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <sstream>
 #include <vector>
 
@@ -142,52 +141,45 @@ struct Column
   std::string Name;
 };
 
-void AddColumn(
-  std::vector<Column>& columns, vtkAbstractArray* array, int component, std::string name)
+/// Adds a column for each component of an array. Its name ends in the component's letter or, without
+/// letters, in its number.
+void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std::string& begin,
+  const std::vector<std::string>& letters = {})
 {
-  while (std::any_of(
-    columns.begin(), columns.end(), [&name](const Column& column) { return column.Name == name; }))
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
   {
-    name += "_";
+    std::string name = begin + (letters.empty() ? std::to_string(c) : letters[c]);
+    while (std::any_of(columns.begin(), columns.end(),
+      [&name](const Column& column) { return column.Name == name; }))
+    {
+      name += "_";
+    }
+    columns.push_back({ array, c, name });
   }
-  columns.push_back({ array, component, name });
 }
 
-/// A type of .ply files: its name, its size, and how a value is written. No type has 64-bit integers.
-struct PlyType
-{
-  const char* Name;
-  std::size_t Size;
-  void (*PutValue)(char*& next, double value);
-};
-
-template <typename T>
-PlyType MakePlyType(const char* name)
-{
-  return { name, sizeof(T), [](char*& next, double value) { Put(next, static_cast<T>(value)); } };
-}
-
+/// Returns the type of .ply files that holds the array's values. No type has 64-bit integers.
 PlyType FindPlyType(vtkAbstractArray* array)
 {
-  static const std::map<int, PlyType> types = { { VTK_FLOAT, MakePlyType<float>("float") },
-    { VTK_INT, MakePlyType<std::int32_t>("int") },
-    { VTK_UNSIGNED_INT, MakePlyType<std::uint32_t>("uint") },
-    { VTK_SHORT, MakePlyType<std::int16_t>("short") },
-    { VTK_UNSIGNED_SHORT, MakePlyType<std::uint16_t>("ushort") },
-    { VTK_CHAR, MakePlyType<std::int8_t>("char") },
-    { VTK_SIGNED_CHAR, MakePlyType<std::int8_t>("char") },
-    { VTK_UNSIGNED_CHAR, MakePlyType<std::uint8_t>("uchar") },
-    { VTK_BIT, MakePlyType<std::uint8_t>("uchar") } };
-  const auto found = types.find(array->GetDataType());
-  return found == types.end() ? MakePlyType<double>("double") : found->second;
+  const int type = array->GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array->GetDataType();
+  const auto found = std::find_if(
+    PlyTypes.begin(), PlyTypes.end(), [type](const PlyType& each) { return each.second == type; });
+  return found == PlyTypes.end() ? PlyType("double", VTK_DOUBLE) : *found;
+}
+
+void PutAs(int type, char*& next, double value)
+{
+  switch (type)
+  {
+    vtkTemplateMacro(Put(next, static_cast<VTK_TT>(value)));
+  }
 }
 
 /// Writes .ply, with a property for each component of each array of numbers. VTK's writer leaves
 /// out such arrays. A vector has NAME_x, NAME_y and NAME_z, as Blender and splashsurf name them.
 void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
-  const char* const axes[] = { "x", "y", "z" };
-  const char* const colorNames[] = { "red", "green", "blue" };
+  const std::vector<std::string> axes = { "x", "y", "z" };
   vtkNew<vtkFloatArray> nowhere; // for a surface without points
   nowhere->SetNumberOfComponents(3);
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
@@ -197,43 +189,41 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   colors->SetNumberOfComponents(3);
   colors->SetArray(mapped.data(), static_cast<vtkIdType>(mapped.size()), 1);
   std::vector<Column> columns;
-  for (int c = 0; c < 3; ++c)
+  AddColumns(
+    columns, surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), "", axes);
+  if (normals)
   {
-    AddColumn(
-      columns, surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), c, axes[c]);
+    AddColumns(columns, normals, "n", axes);
   }
-  for (int c = 0; normals && c < 3; ++c)
+  if (colored)
   {
-    AddColumn(columns, normals, c, std::string("n") + axes[c]);
-  }
-  for (int c = 0; colored && c < 3; ++c)
-  {
-    AddColumn(columns, colors, c, colorNames[c]);
+    AddColumns(columns, colors, "", { "red", "green", "blue" });
   }
   for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
   {
     std::string name = array->GetName();
     std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    const bool isHeld = vtkDataArray::SafeDownCast(array) && array != normals; // no place for texts
     const int components = array->GetNumberOfComponents();
-    for (int c = 0; isHeld && c < components; ++c)
+    if (vtkDataArray::SafeDownCast(array) && array != normals) // there is no place for texts
     {
-      const std::string letter = components <= 3 ? axes[c] : std::to_string(c);
-      AddColumn(columns, array, c, name + (components == 1 ? "" : "_" + letter));
+      components == 1 ? AddColumns(columns, array, name, { "" })
+                      : AddColumns(columns, array, name + "_",
+                          components <= 3 ? axes : std::vector<std::string>());
     }
   }
   const vtkIdType points = surface->GetNumberOfPoints(), triangles = surface->GetNumberOfPolys();
   std::ostringstream head;
-  std::vector<PlyType> types;
+  std::vector<int> types;
   std::size_t size = 0;
   head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
        << points;
   for (const Column& column : columns)
   {
-    types.push_back(FindPlyType(column.Array));
-    size += types.back().Size;
-    head << "\nproperty " << types.back().Name << " " << column.Name;
+    const auto [name, type] = FindPlyType(column.Array);
+    types.push_back(type);
+    size += vtkAbstractArray::GetDataTypeSize(type);
+    head << "\nproperty " << name << " " << column.Name;
   }
   head << "\nelement face " << triangles
        << "\nproperty list uchar uint vertex_indices\nend_header\n";
@@ -245,7 +235,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
     for (std::size_t c = 0; c < columns.size(); ++c)
     {
       auto* array = static_cast<vtkDataArray*>(columns[c].Array);
-      types[c].PutValue(next, array->GetComponent(i, columns[c].Component));
+      PutAs(types[c], next, array->GetComponent(i, columns[c].Component));
     }
   }
   ForCells(surface->GetPolys(),
@@ -263,19 +253,19 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   std::vector<Column> columns = { { nullptr, 0, "Line" } };
-  for (int c = 0; surface->GetPoints() && c < 3; ++c)
+  if (surface->GetPoints())
   {
-    AddColumn(columns, surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
+    AddColumns(columns, surface->GetPoints()->GetData(), "", { "X", "Y", "Z" });
   }
   // Vectors come first, because their columns' names are made of the arrays' names.
   for (const bool isVector : { true, false })
   {
     for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
     {
-      const int components = array->GetNumberOfComponents();
-      for (int c = 0; (components > 1) == isVector && c < components; ++c)
+      if ((array->GetNumberOfComponents() > 1) == isVector)
       {
-        AddColumn(columns, array, c, array->GetName() + (isVector ? ":" + std::to_string(c) : ""));
+        isVector ? AddColumns(columns, array, std::string(array->GetName()) + ":")
+                 : AddColumns(columns, array, array->GetName(), { "" });
       }
     }
   }

@@ -89,13 +89,19 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """If the program did not look at these files first, the readers of VTK 9.1 and 9.3 would crash."""
-        for name in ("inline.vtp", "appended.vtu"):
-            with self.subTest(name):
-                data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')
-                self.cannot_read(self.run_with(name, data), name, "NumberOfPoints is -1; it may be damaged")
-        data = self.forms["binary.vtk"].replace(b"POINT_DATA 27", b"POINT_DATA 2700000")
-        self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "point_data is 2700000, more than")
+        """A damaged count is refused, so that VTK's readers do not crash, and no more memory is taken than a file of some kilobytes can need."""
+        huge = "more than a file of its size can hold; it may be damaged$"
+        for name, good, bad, why in (
+                ("inline.vtp", b'NumberOfPoints="27"', b'NumberOfPoints="-1"', "NumberOfPoints is -1; it may be damaged"),
+                ("appended.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="-1"', "NumberOfPoints is -1; it may be damaged"),
+                ("inline.vtp", b'Components="1"', b'Components="2147483647"', huge),
+                ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"', huge),
+                ("binary.vtk", b"POINT_DATA 27", b"POINT_DATA 2700000", "point_data is 2700000, " + huge),
+                ("binary.vtk", b"Density 1 27", b"Density 2147483647 27", huge),
+                ("ascii.vtk", b"POINTS 27", b"POINTS 2000000000", huge), ("ascii.vtk", b"POINTS 27", b"POINTS 26", "")):
+            with self.subTest(name, bad=bad):
+                self.assertIn(good, self.forms[name])
+                self.cannot_read(self.run_with(name, self.forms[name].replace(good, bad)), name, why)
         data = (b"# vtk DataFile Version 3.0\ntitle 1 2 words\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTIME 1 1 double\n0.5\n"
                 b"POINTS 2 float\n0 0 0 1 0 0\nVERTICES 2 4\n1 0 1 1\n")
         self.run_with("small.vtk", data, lambda *_, source: self.run_good("--list-arrays", source))
@@ -106,18 +112,6 @@ class DamagedFiles(CommandLineTest):
                                (b"1 0 1 1", b"1 0.5 1 1", "its vertices are no whole numbers"), (b"FieldData 1", b"FieldData 1x", "its FIELD"),
                                (b"VERTICES 2 4", b"VERTICES 20 40", "vertices is 40, more"), (b"POINTS 2", b"POINTS 20", "points is 20, more")):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
-
-    def test_huge_numbers(self):
-        """The program allocates no more memory than a file of some kilobytes can need."""
-        for name, good, bad in (
-                ("inline.vtp", b'Components="1"', b'Components="2147483647"'),
-                ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"'),
-                ("binary.vtk", b"Density 1 27", b"Density 2147483647 27"),
-                ("ascii.vtk", b"POINTS 27", b"POINTS 2000000000")):
-            with self.subTest(name):
-                self.assertIn(good, self.forms[name])
-                result = self.run_with(name, self.forms[name].replace(good, bad))
-                self.cannot_read(result, name, "more than a file of its size can hold; it may be damaged$")
 
     def test_crash_of_the_reader(self):
         """The program survives any crash of VTK's XML library. Here another library replaces it, which aborts, faults or recurses."""
@@ -163,11 +157,6 @@ class DamagedFiles(CommandLineTest):
                                       env={**os.environ, "POCL_CACHE_DIR": str(kept)})
                 self.assertEqual(result.returncode, 1)
                 self.assertRegex(result.stderr.splitlines()[-1], rf"^marching-correctors: .*(remove the folder {kept}|set POCL_CACHE_DIR)")
-
-    def test_wrong_sizes(self):
-        """A file with an array that has fewer entries than there are points is refused, so that the filter never sees it."""
-        data = self.forms["ascii.vtk"].replace(b"POINTS 27", b"POINTS 26")
-        self.cannot_read(self.run_with("ascii.vtk", data), "ascii.vtk", "")
 
 
 if __name__ == "__main__":

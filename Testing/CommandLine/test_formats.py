@@ -11,13 +11,6 @@ from command_line_test import CommandLineTest, main
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def box_of(path):
-    """Returns (smallest, largest) of each coordinate of an ASCII .obj file."""
-    points = [tuple(map(float, line.split()[1:4])) for line in path.read_text().splitlines()
-              if line.startswith("v ")]
-    return [(min(p[c] for p in points), max(p[c] for p in points)) for c in range(3)]
-
-
 class Formats(CommandLineTest):
     """Tests surfaces as .stl, .ply and .obj, and particles from .pvtp, .pvtu and .vtkhdf."""
 
@@ -40,41 +33,38 @@ class Formats(CommandLineTest):
         self.assertGreater(sum(a * b for a, b in zip(numbers[:3], numbers[3:6])), 0)  # outwards
         self.assertGreater(points, 0)
 
+    def read_ply(self, *options):
+        """Makes a .ply file, whose triangles must be good. Returns its points, each a dictionary from property to value."""
+        head, body = self.extract_as(".ply", *options).split(b"end_header\n", 1)
+        points, triangles = map(int, re.findall(rb"element \w+ (\d+)", head))
+        properties = [line.split()[1:] for line in head.decode().split("element face")[0].splitlines() if line[:8] == "property"]
+        row = struct.Struct("<" + "".join({"float": "f", "double": "d", "uchar": "B"}[kind] for kind, _ in properties))
+        self.assertEqual(len(body), row.size * points + 13 * triangles)
+        cells = list(struct.iter_unpack("<B3i", body[row.size * points:]))
+        self.assertTrue(all(n == 3 and len(set(corners)) == 3 and min(corners) >= 0 and max(corners) < points for n, *corners in cells))
+        self.assertGreater(points, 100)
+        return [{name: value for (_, name), value in zip(properties, values)} for values in row.iter_unpack(body[:row.size * points])]
+
     def test_ply(self):
-        points, triangles = self.counts()
-        data = self.extract_as(".ply", "--output-precision", "single", "--no-attributes")
-        head, body = data.split(b"end_header\n", 1)
-        self.assertIn(f"element vertex {points}\n".encode(), head)
-        self.assertIn(f"element face {triangles}\n".encode(), head)
-        self.assertEqual(len(body), 24 * points + 13 * triangles)
-        for i in range(points):
-            values = struct.unpack_from("=6f", body, 24 * i)
-            self.assertAlmostEqual(sum(n * n for n in values[3:]), 1, delta=1e-5)
-            self.assertGreater(sum(x * n for x, n in zip(values[:3], values[3:])), 0)
-        for i in range(triangles):
-            n, *corners = struct.unpack_from("=B3i", body, 24 * points + 13 * i)
-            self.assertEqual(n, 3)
-            self.assertTrue(all(0 <= c < points for c in corners) and len(set(corners)) == 3)
+        points, _ = self.counts()
+        found = self.read_ply("--output-precision", "single", "--no-attributes")
+        self.assertEqual(len(found), points)
+        for point in found:
+            self.assertEqual(list(point), ["x", "y", "z", "nx", "ny", "nz"])
+            self.assertAlmostEqual(sum(point["n" + axis] ** 2 for axis in "xyz"), 1, delta=1e-5)
+            self.assertGreater(sum(point[axis] * point["n" + axis] for axis in "xyz"), 0)
 
     def test_ply_arrays(self):
         """Properties in a .ply file have the types that the arrays have in a .vtp file. An array whose name is taken already gets another one."""
         self.arrays.update({"x": [1.5] * len(self.points), "a b": list(range(len(self.points)))})
         files.write_vtp(self.input, self.points, self.arrays)
-        data = self.extract_as(".ply")
-        head, body = data.split(b"end_header\n", 1)
-        properties = [line.split()[1:] for line in head.decode().split("element face")[0].splitlines() if line[:8] == "property"]
-        names = [name for _, name in properties]
-        self.assertEqual(names[:6], ["x", "y", "z", "nx", "ny", "nz"])
-        self.assertTrue({"Velocity_x", "Velocity_y", "Velocity_z", "x_", "a_b"} < set(names), names)
-        self.assertNotIn("IsoValue", names)
-        row = struct.Struct("<" + "".join({"float": "f", "double": "d"}[kind] for kind, _ in properties))
-        points = int(head.split(b"element vertex ")[1].split()[0])
-        self.assertGreater(points, 100)
-        for i in range(points):
-            values = dict(zip(names, row.unpack_from(body, i * row.size)))
-            self.assertAlmostEqual(values["x_"], 1.5)
+        for point in self.read_ply():
+            self.assertEqual(list(point)[:6], ["x", "y", "z", "nx", "ny", "nz"])
+            self.assertTrue({"Velocity_x", "Velocity_y", "Velocity_z", "x_", "a_b"} < set(point), point)
+            self.assertNotIn("IsoValue", point)
+            self.assertAlmostEqual(point["x_"], 1.5)
             for axis in "xyz":  # The velocity equals the position; at the surface the mean has particles on one side only.
-                self.assertAlmostEqual(values["Velocity_" + axis], values[axis], delta=0.1)
+                self.assertAlmostEqual(point["Velocity_" + axis], point[axis], delta=0.1)
         self.assertIn(b"property double IsoValue\n", self.extract_as(".ply", "--iso", "0.4,0.5").split(b"end_header")[0])
 
     def test_obj(self):
@@ -83,7 +73,8 @@ class Formats(CommandLineTest):
         kinds = [line.split(" ", 1)[0] for line in lines]
         self.assertEqual([kinds.count(k) for k in ("v", "vn", "f")], [points, points, triangles])
         self.assertTrue(all(re.fullmatch(r"f (\d+)//\1 (\d+)//\2 (\d+)//\3", x) for x in lines if x[0] == "f"))
-        self.assertLess(abs(box_of(self.output)[0][0] + box_of(self.output)[0][1]), 1e-3)
+        xs = [float(line.split()[1]) for line in lines if line[:2] == "v "]
+        self.assertLess(abs(min(xs) + max(xs)), 1e-3)
 
     def test_obj_digits(self):
         """Nine digits are written, so that every float is read back exactly."""
@@ -91,26 +82,16 @@ class Formats(CommandLineTest):
         files.write_vtp(self.input, self.points, self.arrays)
         self.extract_as(".obj", "--output-precision", "single")
         found = [tuple(map(float, line.split()[1:])) for line in self.output.read_text().splitlines() if line[:2] == "v "]
-        data = self.extract_as(".ply", "--output-precision", "single", "--no-attributes")
-        start = data.index(b"end_header\n") + len(b"end_header\n")
-        self.assertGreater(len(found), 100)
-        for i, place in enumerate(found):
-            self.assertEqual(struct.pack("=3f", *place), data[start + 24 * i:start + 24 * i + 12])
+        points = self.read_ply("--output-precision", "single", "--no-attributes")
+        single = struct.Struct("3f")
+        self.assertEqual([single.unpack(single.pack(*place)) for place in found], [(p["x"], p["y"], p["z"]) for p in points])
 
     def test_colors(self):
         """A .ply file has the array of --color-by as colours. Other formats say that they leave it out."""
-        points, triangles = self.counts()
-        self.output = self.directory / "surface.ply"
-        self.extract_good("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7",
-                          "--attributes", "Velocity", "--output-precision", "single")
-        head, body = self.output.read_bytes().split(b"end_header\n", 1)
-        self.assertIn(b"property uchar red\nproperty uchar green\nproperty uchar blue\n", head)
-        self.assertEqual(len(body), 51 * points + 13 * triangles)
-        speeds = []
-        for i in range(points):
-            x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 51 * i)
-            speeds.append(((x * x + y * y + z * z) ** 0.5, green))
-        speeds.sort()  # The speed is nearly the distance from the centre, and the green of the colours grows with it.
+        points = self.read_ply("--color-by", "Velocity", "--color-range", "0.46,0.7", "--attributes", "Velocity", "--output-precision", "single")
+        self.assertGreater(set(points[0]), {"red", "green", "blue"})
+        # The speed is nearly the distance from the centre, and the green of the colours grows with it.
+        speeds = sorted((p["x"] ** 2 + p["y"] ** 2 + p["z"] ** 2, p["green"]) for p in points)
         self.assertLess(speeds[0][1], 100)
         self.assertEqual(speeds[-1][1], 247)  # Values beyond the range have the last colour.
         for ending, hint in ((".obj", "--no-attributes"), (".stl", ".vtp keeps all, .ply those of numbers")):

@@ -83,6 +83,10 @@ class RealFiles(CommandLineTest):
         self.assertEqual((large > 900, small), (True, 2))
         self.volume(file, *H, "--only", "Kind=99", words="No particle is left by Kind=99, so there is no fluid")
         self.volume(file, *H, "--within", "0,0,0,0,0,0", words="No particle is within 0,0,0,0,0,0, so there is no fluid")
+        words = "".join("O\n" if place[2] < 0.6 else "N\n" for place in near)  # Texts of particles that are vertices.
+        file.with_suffix(".vtk").write_bytes(files.legacy(near, cells="VERTICES 1000 2000\n" + "".join(f"1 {i}\n" for i in range(1000))) +
+                                             f"POINT_DATA 1000\nFIELD f 1\nspecies 1 1000 string\n{words}".encode())
+        self.assertAlmostEqual(self.volume(file.with_suffix(".vtk"), *H, "--only", "species=O"), 0.6, delta=0.06)
         self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=1:a"], "finite number")],
                         *FREE, *H, "--only", source=file)
         self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice"), (["Kind=a"], "chooses a text, and the array has numbers")], *FREE, *H, "--only", source=file)

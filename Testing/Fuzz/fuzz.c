@@ -92,11 +92,11 @@ mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
   return *context;
 }
 
-int fuzz_finite(const double* values, int64_t count)
+int fuzz_finite(const void* values, int64_t count, size_t width)
 {
   for (int64_t i = 0; values && i < count; ++i)
   {
-    if (!isfinite(values[i]))
+    if (!isfinite(width == sizeof(float) ? ((const float*)values)[i] : ((const double*)values)[i]))
     {
       return 0;
     }

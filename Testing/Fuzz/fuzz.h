@@ -55,18 +55,17 @@ typedef struct fuzz_call
 double* fuzz_array(fuzz_call* call, int slot, size_t count);
 
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
-int fuzz_finite(const double* values, int64_t count);
+/* Whether all floats, or doubles, by their width in bytes, are finite. */
+int fuzz_finite(const void* values, int64_t count, size_t width);
 void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
-/* In fuzz_modules.c. The first sets box, period, walls and cubes of the call; the second tests global values, ranks,
- * probe and derivatives with it. */
+/* In fuzz_modules.c. fuzz_regions sets box, period, walls and cubes of the call; fuzz_flatten moves its particles into a
+ * plane; the others test global values, ranks, probe, derivatives and gauges with it. */
 void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
-void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
-
-/* In fuzz_plane.c. The first tests gauges of the call; the second moves its particles into a plane. */
-void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);
 void fuzz_flatten(unsigned how, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);
 
 #endif

@@ -120,18 +120,6 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   call->iso[1] = fuzz_value(bytes);
 }
 
-static int fuzz_finite_floats(const float* values, int64_t count)
-{
-  for (int64_t i = 0; values && i < count; ++i)
-  {
-    if (!isfinite(values[i]))
-    {
-      return 0;
-    }
-  }
-  return 1;
-}
-
 static void fuzz_check_lines(const mcor_surface* s)
 {
   const int64_t n = s->line_count;
@@ -152,16 +140,16 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   const int64_t n = s->point_count;
   FUZZ_CHECK(n >= 0 && s->triangle_count >= 0);
   FUZZ_CHECK(s->line_offsets || n <= 3 * s->triangle_count);
-  FUZZ_CHECK(fuzz_finite(s->points, 3 * n));
-  FUZZ_CHECK(fuzz_finite(s->gradients, 3 * n));
-  FUZZ_CHECK(fuzz_finite_floats(s->normals, 3 * n));
-  FUZZ_CHECK(fuzz_finite_floats(s->weight_sum, n));
-  FUZZ_CHECK(fuzz_finite_floats(s->boundary_eigenvalue, n));
-  FUZZ_CHECK(fuzz_finite_floats(s->residual, n));
-  FUZZ_CHECK(fuzz_finite_floats(s->correction_length, n));
+  FUZZ_CHECK(fuzz_finite(s->points, 3 * n, sizeof(double)));
+  FUZZ_CHECK(fuzz_finite(s->gradients, 3 * n, sizeof(double)));
+  FUZZ_CHECK(fuzz_finite(s->normals, 3 * n, sizeof(float)));
+  FUZZ_CHECK(fuzz_finite(s->weight_sum, n, sizeof(float)));
+  FUZZ_CHECK(fuzz_finite(s->boundary_eigenvalue, n, sizeof(float)));
+  FUZZ_CHECK(fuzz_finite(s->residual, n, sizeof(float)));
+  FUZZ_CHECK(fuzz_finite(s->correction_length, n, sizeof(float)));
   for (int a = 0; a < s->attribute_count; ++a)
   {
-    FUZZ_CHECK(fuzz_finite(s->attributes[a], n * (a ? 3 : 1)));
+    FUZZ_CHECK(fuzz_finite(s->attributes[a], n * (a ? 3 : 1), sizeof(double)));
   }
   for (int64_t t = 0; t < s->triangle_count; ++t)
   {
@@ -232,6 +220,7 @@ static void fuzz_change(unsigned what, fuzz_call* call)
 {
   mcor_input* in = &call->input;
   mcor_options* o = &call->options;
+  mcor_array* const arrays[] = { &in->volume, &in->mass, &in->density };
   switch (what % 22)
   {
     case 0:
@@ -288,13 +277,10 @@ static void fuzz_change(unsigned what, fuzz_call* call)
       in->estimate_smoothing_length = !in->estimate_smoothing_length;
       break;
     case 16:
-      in->volume = mcor_is_given(&in->volume) ? (mcor_array){ 0 } : in->smoothing_length;
-      break;
     case 17:
-      in->mass = mcor_is_given(&in->mass) ? (mcor_array){ 0 } : in->smoothing_length;
-      break;
     case 18:
-      in->density = mcor_is_given(&in->density) ? (mcor_array){ 0 } : in->smoothing_length;
+      *arrays[what % 22 - 16] =
+        mcor_is_given(arrays[what % 22 - 16]) ? (mcor_array){ 0 } : in->smoothing_length;
       break;
     case 19:
       o->level_limit = o->level_limit ? 0 : MCOR_CUBE_LEVELS - 1;

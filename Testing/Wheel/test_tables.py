@@ -281,6 +281,8 @@ class AgainstNumPy(Case):
                 at += 2 + count
             self.assert_same(io.read(self.at("p.xyz"), step=-1).positions, particles.positions)
             self.assert_refused(f"has no step {steps}", self.at("p.xyz"), step=steps)
+        self.at("p.xyz").write_text('1\ntime=" "\nO 0 0 0\n1\ntime=2\nO 0 0 0\n')
+        self.assertEqual(list(io.read(self.at("p.xyz")).times), [0, 2])  # A step without a time has its number.
 
     def test_lammps(self):
         for random in self.randoms():

@@ -74,8 +74,7 @@ void CheckSize(const std::string& file, double most, View name, double value, do
 
 /// Checks the counts in an XML file's elements. A piece has numbers of points and cells; an array has the number of
 /// values for each of `points`, the points of the last piece.
-void CheckXmlSizes(
-  const std::string& file, double most, vtkXMLDataElement* element, double& points)
+void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
   {
@@ -142,13 +141,15 @@ void CheckLegacy(const std::string& file, View text)
   static const Words cells = { "vertices", "lines", "polygons", "triangle_strips", "cells" };
   static const Words counted = { "points", "cell_types", "x_coordinates", "y_coordinates",
     "z_coordinates", "field", "lookup_table" };
-  static const Words unlimited = { "point_data", "cell_data", "dimensions" }; // an image may have no values
+  // An image may have no values.
+  static const Words unlimited = { "point_data", "cell_data", "dimensions" };
   // VTK's reader crashes if other words stand where a type must stand.
   static const Words types = { "bit", "char", "signed_char", "unsigned_char", "short",
     "unsigned_short", "int", "unsigned_int", "long", "unsigned_long", "vtkidtype", "vtktypeint64",
     "vtktypeuint64", "float", "double", "string", "utf8_string", "variant" };
   static const Words attributes = { "scalars", "vectors", "normals", "tensors", "color_scalars",
     "texture_coordinates" };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const double most = 8.0 * static_cast<double>(text.size());
   std::string section = "point_data"; // the kind of elements, points or cells
   double elements = 0.0;              // how many elements there are
@@ -204,7 +205,7 @@ void CheckLegacy(const std::string& file, View text)
     {
       if (isUnlimited || hasAttribute || cells.count(first) || counted.count(first))
       {
-        CheckSize(file, isUnlimited ? std::numeric_limits<double>::infinity() : most, first, number);
+        CheckSize(file, isUnlimited ? infinity : most, first, number);
       }
       section = isSection ? first : section;
       elements = isSection ? number : elements;

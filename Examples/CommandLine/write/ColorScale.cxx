@@ -66,30 +66,27 @@ void CheckColorName(const std::string& name, const std::vector<std::string>& nam
 
 void ColorScale::Include(vtkDataSet* data)
 {
-  vtkDataArray* array = this->ArrayOf(data) ? this->ArrayOf(data) : this->CellArrayOf(data);
   if (this->Name.empty() || data->GetNumberOfPoints() == 0)
   {
     return;
   }
+  vtkDataArray* const ofPoints = this->ArrayOf(data);
+  vtkDataArray* array = ofPoints ? ofPoints : this->CellArrayOf(data);
   if (!array)
   {
     CheckColorName(this->Name, NamesOf(data->GetPointData()));
   }
-  vtkDataArray* begins = data->GetFieldData()->GetArray("IsoValues");
+  if (this->Name == "BandValue" && data->GetFieldData()->HasArray("IsoValues"))
+  {
+    array = data->GetFieldData()->GetArray("IsoValues"); // missing bands have their colours, too
+  }
   double range[2];
-  if (this->Name == "BandValue" && begins) // missing bands have their colours, too
-  {
-    begins->GetFiniteRange(range, 0);
-  }
-  else
-  {
-    array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
-  }
+  array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
   if (this->IsGiven || !(range[0] <= range[1]))
   {
     return;
   }
-  if (array == this->ArrayOf(data))
+  if (array == ofPoints)
   {
     vtkSPHColorRange(data).Find(array, range);
   }

@@ -41,7 +41,6 @@ public:
     {
       for (vtkAbstractArray* array : ArraysOf(arrays))
       {
-        array->SetName(array->GetName() ? array->GetName() : ""); // VTK would write an address
         this->Replace(array->GetName(), [array](const char* name) { array->SetName(name); });
         for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
         {
@@ -65,7 +64,7 @@ private:
   void Replace(const char* name, const std::function<void(const char*)>& set)
   {
     const std::string before = name ? name : "", fit = EscapedForXml(before);
-    if (fit != before)
+    if (!name || fit != before) // without a name, VTK would write an address
     {
       set(fit.c_str());
       this->Undo.emplace_back([before, set] { set(before.c_str()); });

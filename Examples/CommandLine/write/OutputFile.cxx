@@ -53,24 +53,6 @@ std::string FolderOf(const std::string& path)
   return folder.empty() ? "." : folder;
 }
 
-/// Returns the number of the open descriptor that this path names; -1: it names none. Such a path
-/// must not be opened, because the file would then have a second position.
-int DescriptorOf(const std::string& path)
-{
-  const std::string number = fs::path(path).filename().string();
-  if (number.empty() || number.size() > 6 ||
-    number.find_first_not_of("0123456789") != std::string::npos)
-  {
-    return -1;
-  }
-  std::error_code ignored;
-  const std::string folder = FolderOf(path);
-  return fs::equivalent(folder, "/dev/fd", ignored) ||
-      fs::equivalent(folder, "/proc/self/fd", ignored)
-    ? std::atoi(number.c_str())
-    : -1;
-}
-
 /// Follows symbolic links, also to a file that does not exist yet. Asks the system, by the given
 /// name, whether the file may be written: the system's rules for links and for protected files then
 /// hold for replacing, too. Refuses a file that the run reads.
@@ -80,19 +62,17 @@ Target Find(const std::string& name)
   target.Name = target.Path = name;
   const int mostLinks = 40; // the limit of Linux' kernel
   std::error_code error;
-  for (int i = 0;; ++i)
+  // An open descriptor must not be opened again, because the file would then have a second position.
+  const auto isDescriptor = [&target, &error]
+  { return fs::equivalent(FolderOf(target.Path), "/proc/self/fd", error); };
+  for (int i = 0; !isDescriptor() && fs::is_symlink(target.Path, error); ++i)
   {
-    target.Descriptor = DescriptorOf(target.Path);
-    if (target.Descriptor >= 0 || !fs::is_symlink(target.Path, error))
-    {
-      break;
-    }
     Check(i < mostLinks, name, std::strerror(ELOOP));
     // operator/ leaves an absolute path as it is.
     target.Path = (FolderOf(target.Path) / fs::read_symlink(target.Path, error)).string();
   }
-  target.Exists = (target.Descriptor >= 0 ? fstat(target.Descriptor, &target.Status)
-                                          : stat(name.c_str(), &target.Status)) == 0;
+  target.Descriptor = isDescriptor() ? std::atoi(fs::path(target.Path).filename().c_str()) : -1;
+  target.Exists = stat(name.c_str(), &target.Status) == 0;
   Check(target.Exists || (errno == ENOENT && target.Descriptor < 0), name);
   Check(!target.Exists || !S_ISDIR(target.Status.st_mode), name, "it is a directory");
   Need(!target.Exists || !IsSource(target.Status), name + " would overwrite the input");

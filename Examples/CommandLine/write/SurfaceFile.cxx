@@ -141,20 +141,22 @@ struct Column
   std::string Name;
 };
 
-/// Adds a column for each component of an array. Its name ends in the component's letter or, without
-/// letters, in its number.
-void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std::string& begin,
-  const std::vector<std::string>& letters = {})
+/// Adds a column for each component of an array. Those of a vector have the mark and a letter behind
+/// the name or, if there are not enough letters, a number.
+void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std::string& name,
+  const std::string& mark, const std::vector<std::string>& letters = {})
 {
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  const auto width = static_cast<std::size_t>(array->GetNumberOfComponents());
+  for (std::size_t c = 0; c < width; ++c)
   {
-    std::string name = begin + (letters.empty() ? std::to_string(c) : letters[c]);
-    while (std::any_of(columns.begin(), columns.end(),
-      [&name](const Column& column) { return column.Name == name; }))
+    const std::string letter = width <= letters.size() ? letters[c] : std::to_string(c);
+    std::string own = width == 1 ? name : name + mark + letter;
+    while (std::any_of(
+      columns.begin(), columns.end(), [&own](const Column& column) { return column.Name == own; }))
     {
-      name += "_";
+      own += "_";
     }
-    columns.push_back({ array, c, name });
+    columns.push_back({ array, static_cast<int>(c), own });
   }
 }
 
@@ -189,27 +191,24 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   colors->SetNumberOfComponents(3);
   colors->SetArray(mapped.data(), static_cast<vtkIdType>(mapped.size()), 1);
   std::vector<Column> columns;
-  AddColumns(
-    columns, surface->GetPoints() ? surface->GetPoints()->GetData() : nowhere.Get(), "", axes);
+  vtkPoints* places = surface->GetPoints();
+  AddColumns(columns, places ? places->GetData() : nowhere.Get(), "", "", axes);
   if (normals)
   {
-    AddColumns(columns, normals, "n", axes);
+    AddColumns(columns, normals, "n", "", axes);
   }
   if (colored)
   {
-    AddColumns(columns, colors, "", { "red", "green", "blue" });
+    AddColumns(columns, colors, "", "", { "red", "green", "blue" });
   }
   for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
   {
     std::string name = array->GetName();
     std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    const int components = array->GetNumberOfComponents();
     if (vtkDataArray::SafeDownCast(array) && array != normals) // there is no place for texts
     {
-      components == 1 ? AddColumns(columns, array, name, { "" })
-                      : AddColumns(columns, array, name + "_",
-                          components <= 3 ? axes : std::vector<std::string>());
+      AddColumns(columns, array, name, "_", axes);
     }
   }
   const vtkIdType points = surface->GetNumberOfPoints(), triangles = surface->GetNumberOfPolys();
@@ -255,7 +254,7 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   std::vector<Column> columns = { { nullptr, 0, "Line" } };
   if (surface->GetPoints())
   {
-    AddColumns(columns, surface->GetPoints()->GetData(), "", { "X", "Y", "Z" });
+    AddColumns(columns, surface->GetPoints()->GetData(), "", "", { "X", "Y", "Z" });
   }
   // Vectors come first, because their columns' names are made of the arrays' names.
   for (const bool isVector : { true, false })
@@ -264,8 +263,7 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     {
       if ((array->GetNumberOfComponents() > 1) == isVector)
       {
-        isVector ? AddColumns(columns, array, std::string(array->GetName()) + ":")
-                 : AddColumns(columns, array, array->GetName(), { "" });
+        AddColumns(columns, array, array->GetName(), ":");
       }
     }
   }

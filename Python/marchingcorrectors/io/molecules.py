@@ -49,8 +49,8 @@ def read_xyz(path, step):
                                 "has; correct that number.")
             count = whole_number(path.name, lines, at)
             rows_of(path.name, lines, at + 2, count)
-            time = value_of(lines[at + 1], "time")
-            steps.append((to_number(time) if time else None, at))
+            time = to_number(value_of(lines[at + 1], "time"))  # This is NaN where the line has no time.
+            steps.append((None if time is None or time != time else time, at))
             at += 1 + count
         at += 1
     begin, times = take_step(path.name, step, steps)

@@ -8,7 +8,6 @@
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_compact.h"
-#include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_plane.h"
 

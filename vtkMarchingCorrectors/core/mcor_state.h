@@ -299,7 +299,7 @@ typedef struct mcor_run
   double widest; /* greatest factor of lengths in sums at particles, see mcor_widen.c; 0: no sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
   struct mcor_far* far; /* particles that are left out so that the lattice fits; NULL: none */
-  struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; or NULL */
+  struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.c; or NULL */
   mcor_statistics* statistics;
   mcor_iso iso;
   mcor_phase phase;

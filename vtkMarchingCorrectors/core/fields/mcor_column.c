@@ -192,28 +192,20 @@ static void mcor_fill_nodes(const mcor_column_job* job)
   const int n = column->cells, width = n + 1;
   for (int l = 0; l <= n; ++l)
   {
-    double sum = 0;
+    double sum = 0, values = 0;
     for (int k = 0; k <= n; ++k)
     {
       double* node = column->nodes + 4 * ((size_t)l * (size_t)width + (size_t)k);
       for (int g = 0; g < MCOR_CELL_POINTS && k > 0; ++g)
       {
-        const int point = n + 1 + MCOR_CELL_POINTS * (k - 1) + g;
-        sum += mcor_cell_weight[g] * job->sums[point * width + l];
+        const int point = (n + 1 + MCOR_CELL_POINTS * (k - 1) + g) * width + l;
+        sum += mcor_cell_weight[g] * job->sums[point];
+        values += mcor_cell_weight[g] * job->values[point];
       }
       node[0] = sum;
       node[1] = job->sums[k * width + l];
+      node[2] = values;
       node[3] = job->values[k * width + l];
-    }
-    double values = 0;
-    for (int k = 0; k <= n; ++k)
-    {
-      for (int g = 0; g < MCOR_CELL_POINTS && k > 0; ++g)
-      {
-        const int point = n + 1 + MCOR_CELL_POINTS * (k - 1) + g;
-        values += mcor_cell_weight[g] * job->values[point * width + l];
-      }
-      column->nodes[4 * ((size_t)l * (size_t)width + (size_t)k) + 2] = values;
     }
   }
   const size_t count = (size_t)width * (size_t)width;

@@ -26,7 +26,7 @@
  * M'4 has, make sums a little larger than that product. */
 #define MCOR_FLUX_ROOM 8
 /* Greatest difference between the two results of a piece, relative to its area times the scale in
- * mcor_flux_result. A piece that is small beside the section may differ by more (MCOR_FLUX_SMALL),
+ * mcor_settle_piece. A piece that is small beside the section may differ by more (MCOR_FLUX_SMALL),
  * because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
@@ -36,18 +36,6 @@
 /* Weights bend by about 4 / h^2. So a weight between samples may differ from the nearest sample by
  * this number times (longest side / h)^2. */
 #define MCOR_FLUX_BEND 0.125
-
-/* Data that differ between triangles and lines. The first samples of a piece are its corners; the
- * last sample is its middle. */
-#define MCOR_FLUX_POINTS 7
-#define MCOR_FLUX_PARTS 4
-struct mcor_flux_form
-{
-  int corners, points;
-  double place[MCOR_FLUX_POINTS][3]; /* where samples are: weights of the corners */
-  double share[2][MCOR_FLUX_POINTS]; /* each sample's share of an integral, in both rules */
-  int part[MCOR_FLUX_PARTS][3];      /* the samples that are the corners of each part */
-};
 
 static const mcor_flux_form mcor_flux_forms[2] = {
   { 3, 7,
@@ -89,31 +77,27 @@ static double mcor_longest_side(const mcor_flux_job* job, const mcor_flux_piece*
   return sqrt(longest);
 }
 
-/* Whether halving makes a side shorter. Far from the origin, doubles may not tell the middle of a
- * side from its ends. */
-static bool mcor_can_halve(const mcor_flux_piece* piece, int side, double length)
-{
-  const double *from = piece->corner[side], *to = piece->corner[(side + 1) % 3];
-  double middle[3], ways[2][3];
-  mcor_point_between(from, to, 0.5, middle);
-  mcor_subtract(middle, from, ways[0]);
-  mcor_subtract(to, middle, ways[1]);
-  return sqrt(fmax(mcor_dot(ways[0], ways[0]), mcor_dot(ways[1], ways[1]))) < 0.75 * length;
-}
-
-/* Replaces a piece by its halves. */
-static mcor_status mcor_halve_piece(mcor_flux_job* job, const mcor_flux_piece* piece)
+/* Appends the halves of a piece. *is_halved becomes false, and nothing is appended, where that makes
+ * the longest side no shorter: far from the origin, doubles may not tell the middle of a side from
+ * its ends. */
+static mcor_status mcor_halve_piece(
+  mcor_flux_job* job, const mcor_flux_piece* piece, bool* is_halved)
 {
   mcor_flux_piece halves[2] = { *piece, *piece };
   int side = 0;
-  mcor_longest_side(job, piece, &side);
+  const double length = mcor_longest_side(job, piece, &side);
   const int next = (side + 1) % 3;
-  double middle[3];
+  double middle[3], ways[2][3];
   mcor_point_between(piece->corner[side], piece->corner[next], 0.5, middle);
+  mcor_subtract(middle, piece->corner[side], ways[0]);
+  mcor_subtract(piece->corner[next], middle, ways[1]);
+  *is_halved = sqrt(fmax(mcor_dot(ways[0], ways[0]), mcor_dot(ways[1], ways[1]))) < 0.75 * length;
   memcpy(halves[0].corner[next], middle, sizeof middle);
   memcpy(halves[1].corner[side], middle, sizeof middle);
-  MCOR_APPEND(job->base.context, &job->pieces, halves[0]);
-  MCOR_APPEND(job->base.context, &job->pieces, halves[1]);
+  for (int i = 0; i < 2 && *is_halved; ++i)
+  {
+    MCOR_APPEND(job->base.context, &job->parts, halves[i]);
+  }
   return MCOR_OK;
 }
 
@@ -150,34 +134,41 @@ static void mcor_place_sample(
   }
 }
 
-/* Takes pieces from the list until the batch is full. Halves pieces that are longer than a cell;
- * drops pieces that no particle is near, and cells that another rank owns. */
+/* Takes pieces until the batch is full. Halves pieces that are longer than a cell; drops pieces that
+ * no particle is near, and cells that another rank owns. */
 static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
 {
   mcor_context* context = job->base.context;
-  const int most = MCOR_GAUGE_BATCH / job->form->points;
+  const int most = MCOR_LEVEL_BATCH / job->form->points;
   const double cell = MCOR_FLUX_CELL * job->smoothing_length;
-  for (*count = 0; *count < most && job->pieces.count > 0;)
+  for (*count = 0; *count < most && (job->parts.count > 0 || job->next < job->pieces.count);)
   {
-    mcor_flux_piece piece = job->pieces.of[--job->pieces.count];
+    mcor_flux_piece piece =
+      job->parts.count > 0 ? job->parts.of[--job->parts.count] : job->pieces.of[job->next++];
     if (piece.depth == 0)
     {
       double middle[3];
       int side = 0;
+      bool is_halved = false;
       mcor_place_sample(job->form, &piece, job->form->points - 1, middle);
       const bool is_near = mcor_is_near(job, &piece);
-      const double length = mcor_longest_side(job, &piece, &side), cells = length / cell;
+      const double cells = mcor_longest_side(job, &piece, &side) / cell;
       MCOR_FAIL_IF(is_near && cells > MCOR_FLUX_MOST_ALONG, context, MCOR_INVALID_ARGUMENT,
         MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece.section).text, cells,
         context->measure.h_min, MCOR_FLUX_MOST_ALONG);
-      if (is_near && cells > 1 && mcor_can_halve(&piece, side, length))
+      if (is_near && cells > 1)
       {
-        MCOR_TRY(mcor_halve_piece(job, &piece));
+        MCOR_TRY(mcor_halve_piece(job, &piece, &is_halved));
+      }
+      if (is_halved)
+      {
         continue;
       }
+      const double size = mcor_piece_size(job, &piece);
+      job->found[piece.section].near += is_near && job->is_counting ? size : 0;
       if (!is_near || !mcor_owns_point(&job->base, middle))
       {
-        job->area_done += mcor_piece_size(job, &piece);
+        job->area_done += size;
         continue;
       }
       MCOR_FAIL_IF(++job->cells > MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
@@ -187,31 +178,6 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
     job->batch[(*count)++] = piece;
   }
   return MCOR_OK;
-}
-
-/* Fails if there are too many cells, before time is spent on any of them. */
-static mcor_status mcor_count_cells(mcor_flux_job* job)
-{
-  const int64_t count = job->pieces.count;
-  mcor_flux_piece* all = malloc((size_t)count * sizeof *all + 1);
-  mcor_status status = mcor_allocated(job->base.context, all);
-  if (status == MCOR_OK && count > 0)
-  {
-    memcpy(all, job->pieces.of, (size_t)count * sizeof *all);
-  }
-  for (int taken = 1; status == MCOR_OK && taken > 0;)
-  {
-    status = mcor_report_launch(job->base.context);
-    MCOR_THEN(status, mcor_take_pieces(job, &taken));
-  }
-  if (status == MCOR_OK && count > 0)
-  {
-    memcpy(job->pieces.of, all, (size_t)count * sizeof *all);
-  }
-  free(all);
-  job->pieces.count = count;
-  job->cells = job->area_done = 0;
-  return status;
 }
 
 /* ---- integrals ---- */
@@ -273,32 +239,49 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   return is_cut;
 }
 
-/* The integrals of a piece, and what decides whether they are accurate. */
-typedef struct mcor_flux_result
-{
-  double sum[2][MCOR_FLUX_SUMS]; /* by the simpler and the better rule */
-  double scale[MCOR_FLUX_SUMS];  /* how large a sum may be for a unit of area */
-  bool is_unclear;               /* the level may cross the piece between its samples */
-  bool is_reached;
-} mcor_flux_result;
-
-/* Integrates a piece. first: its first sample. */
-static mcor_flux_result mcor_measure_piece(
-  const mcor_flux_job* job, const mcor_flux_piece* piece, int first)
+/* Integrates a piece by the simpler and the better rule; weight, value: of its samples. Returns
+ * whether the level cuts the piece. */
+static bool mcor_integrate_piece(const mcor_flux_job* job, const double* weight,
+  double value[][MCOR_FLUX_SUMS], double size, double sum[2][MCOR_FLUX_SUMS])
 {
   static const int corners[3] = { 0, 1, 2 };
   const mcor_flux_form* form = job->form;
-  const double *weight = job->weight + first, *density = job->density + first,
-               size = mcor_piece_size(job, piece);
-  double value[MCOR_FLUX_POINTS][MCOR_FLUX_SUMS];
-  double nearest = INFINITY, speed = job->speed_floor, dense = job->density_floor;
-  mcor_flux_result result = { .is_reached = false };
-  bool is_inside = true, is_cut = false;
-  int side = 0;
+  bool is_inside = true;
   for (int k = 0; k < form->points; ++k)
   {
+    is_inside = is_inside && weight[k] >= job->base.level;
+  }
+  if (!is_inside)
+  {
+    for (int part = 0; part < MCOR_FLUX_PARTS; ++part)
+    {
+      mcor_add_cut(job, form->part[part], weight, value, size / MCOR_FLUX_PARTS, sum[1]);
+    }
+    return mcor_add_cut(job, corners, weight, value, size, sum[0]);
+  }
+  for (int i = 0; i < 2 * MCOR_FLUX_SUMS * form->points; ++i)
+  {
+    const int rule = i % 2, s = i / 2 % MCOR_FLUX_SUMS, k = i / (2 * MCOR_FLUX_SUMS);
+    sum[rule][s] += size * form->share[rule][k] * value[k][s];
+  }
+  return false;
+}
+
+/* Adds a piece to its section, or halves it if that may change its integrals. first: its first
+ * sample. */
+static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece, int first)
+{
+  mcor_flux_section* found = &job->found[piece->section];
+  const double *weight = job->weight + first, *density = job->density + first;
+  const double size = mcor_piece_size(job, piece), level = job->base.level;
+  const double tolerance =
+    MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->area));
+  double value[MCOR_FLUX_POINTS][MCOR_FLUX_SUMS], sum[2][MCOR_FLUX_SUMS] = { { 0 } };
+  double nearest = INFINITY, speed = job->speed_floor, dense = job->density_floor;
+  bool is_reached = false;
+  for (int k = 0; k < job->form->points; ++k)
+  {
     const double* velocity = job->velocity + (int64_t)(first + k) * job->velocity_components;
-    const double above = weight[k] - job->base.level;
     double along = 0, square = 0;
     for (int c = 0; c < job->velocity_components; ++c)
     {
@@ -310,87 +293,71 @@ static mcor_flux_result mcor_measure_piece(
     value[k][2] = density[k] * along;
     speed = fmax(speed, sqrt(square));
     dense = fmax(dense, fabs(density[k]));
-    nearest = fmin(nearest, weight[0] >= job->base.level ? above : -above);
-    is_inside = is_inside && above >= 0;
-    result.is_reached = result.is_reached || weight[k] != 0;
+    nearest = fmin(nearest, weight[0] >= level ? weight[k] - level : level - weight[k]);
+    is_reached = is_reached || weight[k] != 0;
   }
-  if (is_inside)
-  {
-    for (int i = 0; i < 2 * MCOR_FLUX_SUMS * form->points; ++i)
-    {
-      const int rule = i % 2, s = i / 2 % MCOR_FLUX_SUMS, k = i / (2 * MCOR_FLUX_SUMS);
-      result.sum[rule][s] += size * form->share[rule][k] * value[k][s];
-    }
-  }
-  else
-  {
-    is_cut = mcor_add_cut(job, corners, weight, value, size, result.sum[0]);
-    for (int part = 0; part < MCOR_FLUX_PARTS; ++part)
-    {
-      mcor_add_cut(job, form->part[part], weight, value, size / MCOR_FLUX_PARTS, result.sum[1]);
-    }
-  }
+  const bool is_cut = mcor_integrate_piece(job, weight, value, size, sum);
+  int side = 0;
   const double length = mcor_longest_side(job, piece, &side) / job->smoothing_length;
-  result.is_unclear = !is_cut && nearest < MCOR_FLUX_BEND * length * length;
-  result.scale[0] = 1;
-  result.scale[1] = speed;
-  result.scale[2] = speed * dense;
-  return result;
-}
-
-/* Adds a piece to its section, or halves it. */
-static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece, int first)
-{
-  const mcor_flux_result result = mcor_measure_piece(job, piece, first);
-  mcor_flux_section* found = &job->found[piece->section];
-  const double size = mcor_piece_size(job, piece);
-  const double tolerance =
-    MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->area));
-  bool is_settled = !result.is_unclear || piece->depth > MCOR_FLUX_UNCLEAR_DEPTH;
+  const bool may_be_cut = !is_cut && nearest < MCOR_FLUX_BEND * length * length;
+  bool is_settled = !may_be_cut || piece->depth > MCOR_FLUX_UNCLEAR_DEPTH, is_halved = false;
+  /* How large each sum may be for a unit of area. */
+  const double scale[MCOR_FLUX_SUMS] = { 1, speed, speed * dense };
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
-    const double difference = result.sum[1][s] - result.sum[0][s];
-    is_settled = is_settled && fabs(difference) <= tolerance * result.scale[s];
+    is_settled = is_settled && fabs(sum[1][s] - sum[0][s]) <= tolerance * scale[s];
   }
-  if (!is_settled && piece->depth <= MCOR_FLUX_DEPTH)
+  if (!is_settled && piece->depth++ <= MCOR_FLUX_DEPTH)
   {
-    ++piece->depth;
-    return mcor_halve_piece(job, piece);
+    MCOR_TRY(mcor_halve_piece(job, piece, &is_halved));
   }
-  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  for (int s = 0; s < MCOR_FLUX_SUMS && !is_halved; ++s)
   {
-    const double units = result.sum[1][s] / found->unit[s];
-    found->sum[s] += llrint(fmin(fmax(units, -0x1p62), 0x1p62));
+    found->sum[s] += llrint(fmin(fmax(sum[1][s] / found->unit[s], -0x1p62), 0x1p62));
   }
-  found->sum[MCOR_FLUX_SUMS] += result.is_reached;
-  job->area_done += size;
+  found->sum[MCOR_FLUX_SUMS] += is_reached && !is_halved;
+  job->area_done += is_halved ? 0 : size;
   return MCOR_OK;
 }
 
-/* Adds up all sections. */
+/* Adds up all sections. The first pass only counts cells, and fails if there are too many, before
+ * time is spent on any of them. */
 static mcor_status mcor_add_fluxes(mcor_level_job* base)
 {
   mcor_flux_job* job = (mcor_flux_job*)base;
-  const size_t n = MCOR_GAUGE_BATCH;
+  mcor_context* context = base->context;
+  const size_t n = MCOR_LEVEL_BATCH;
   double whole = 0;
   for (int64_t s = 0; s < job->section_count; ++s)
   {
     whole += job->found[s].area;
   }
+  job->smoothing_length = context->run.options->h_scale * context->measure.h_min;
   job->batch = malloc(n / (size_t)job->form->points * sizeof *job->batch);
   job->weight = malloc(5 * n * sizeof *job->weight);
-  MCOR_TRY(mcor_allocated(base->context, job->batch && job->weight));
+  MCOR_TRY(mcor_allocated(context, job->batch && job->weight));
   job->velocity = job->weight + n;
   job->density = job->velocity + 3 * n;
-  MCOR_TRY(mcor_count_cells(job));
-  for (int count = 1; count > 0;)
+  for (int pass = 0; pass < 2; ++pass)
   {
-    MCOR_TRY(mcor_report(base->context, "flux", 0.2 + 0.8 * job->area_done / whole, 1));
-    MCOR_TRY(mcor_take_pieces(job, &count));
-    MCOR_TRY(count > 0 ? mcor_sample_pieces(job, count) : MCOR_OK);
-    for (int i = 0; i < count; ++i)
+    job->is_counting = pass == 0;
+    job->cells = job->area_done = 0;
+    job->next = 0;
+    for (int count = 1; count > 0;)
     {
-      MCOR_TRY(mcor_settle_piece(job, &job->batch[i], i * job->form->points));
+      MCOR_TRY(job->is_counting
+          ? mcor_report_launch(context)
+          : mcor_report(context, "flux", 0.2 + 0.8 * job->area_done / whole, 1));
+      MCOR_TRY(mcor_take_pieces(job, &count));
+      if (job->is_counting || count == 0)
+      {
+        continue;
+      }
+      MCOR_TRY(mcor_sample_pieces(job, count));
+      for (int i = 0; i < count; ++i)
+      {
+        MCOR_TRY(mcor_settle_piece(job, &job->batch[i], i * job->form->points));
+      }
     }
   }
   return MCOR_OK;
@@ -471,22 +438,13 @@ static mcor_status mcor_flux_particles(
     MCOR_TRY(has_place ? mcor_add_section(job, s) : MCOR_OK);
   }
   MCOR_TRY(mcor_scale_flux(job));
-  if (input->count == 0 || job->section_count == 0)
-  {
-    return MCOR_OK;
-  }
   const double margin = options->globals
     ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
       0.5 * options->globals->measured.cube
     : 0;
-  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &job->around));
-  MCOR_TRY(mcor_prepare(context, input, options));
-  if (context->grid.count == 0)
-  {
-    return MCOR_OK;
-  }
-  job->smoothing_length = options->h_scale * context->measure.h_min;
-  return mcor_run_points(&job->base, input, mcor_add_fluxes);
+  return input->count == 0 || job->section_count == 0
+    ? MCOR_OK
+    : mcor_run_level(&job->base, input, options, margin, mcor_add_fluxes);
 }
 
 static mcor_status mcor_run_flux(
@@ -504,11 +462,10 @@ static mcor_status mcor_run_flux(
   MCOR_THEN(status, mcor_read_fluxes(&job, job.fluxes));
   free(job.found);
   free(job.pieces.of);
+  free(job.parts.of);
   free(job.batch);
   free(job.weight);
-  return status != MCOR_OK || input->count == 0 || job.section_count == 0
-    ? status
-    : mcor_finish_field(context);
+  return status;
 }
 
 mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
@@ -523,14 +480,14 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "sections");
   MCOR_FAIL_IF((input->attribute_count != 1 && input->attribute_count != 2) || !input->attributes,
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUX_ATTRIBUTES), input->attribute_count);
-  mcor_flux_job job = { .base = { .context = context, .who = "Fluxes", .body = mcor_run_flux },
+  mcor_flux_job job = { .base.context = context,
     .sections = sections,
     .section_count = count,
     .fluxes = fluxes,
     .velocity_components = mcor_components(&input->attributes[0]),
-    .has_density = input->attribute_count == 2,
-    .around = mcor_no_findings() };
-  const mcor_status status = mcor_call_level(&job.base, input, options, &fluxes->statistics);
+    .has_density = input->attribute_count == 2 };
+  const mcor_status status =
+    mcor_call_level(&job.base, input, options, "Fluxes", mcor_run_flux, &fluxes->statistics);
   if (status != MCOR_OK)
   {
     mcor_free_fluxes(fluxes);

@@ -6,7 +6,7 @@
 /* Flow through sections. A section is a list of pieces: triangles; in two dimensions, lines. Pieces
  * are halved until they are cells, and cells until two ways to integrate them agree. */
 
-#include "mcor_gauge.h"
+#include "mcor_level.h"
 
 /* Integrals of a section: of 1, v . n and rho v . n. */
 #define MCOR_FLUX_SUMS 3
@@ -22,12 +22,22 @@ typedef struct mcor_flux_piece
 /* Results of a section. Sums are whole numbers of units, so their order does not matter. */
 typedef struct mcor_flux_section
 {
-  double area; /* of the whole section, with and without fluid */
+  double area, near; /* of the whole section; of its cells that particles may be near */
   double unit[MCOR_FLUX_SUMS];
   int64_t sum[MCOR_FLUX_SUMS + 1]; /* the last one: how many pieces particles reach */
 } mcor_flux_section;
 
-typedef struct mcor_flux_form mcor_flux_form;
+/* Data that differ between triangles and lines. The first samples of a piece are its corners; the
+ * last sample is its middle. */
+#define MCOR_FLUX_POINTS 7
+#define MCOR_FLUX_PARTS 4
+typedef struct mcor_flux_form
+{
+  int corners, points;
+  double place[MCOR_FLUX_POINTS][3]; /* where samples are: weights of the corners */
+  double share[2][MCOR_FLUX_POINTS]; /* each sample's share of an integral, in both rules */
+  int part[MCOR_FLUX_PARTS][3];      /* the samples that are the corners of each part */
+} mcor_flux_form;
 
 typedef struct mcor_flux_job
 {
@@ -43,18 +53,22 @@ typedef struct mcor_flux_job
   bool has_density;
   double smoothing_length; /* the smallest scaled smoothing length */
   double speed_floor, density_floor;
-  mcor_flux_section* found; /* [section_count] */
-  mcor_findings around;     /* ranges along x, y, z that hold all sections */
-  double cells, area_done;  /* how many cells there were so far; area of the pieces that are done */
-  MCOR_LIST(mcor_flux_piece) pieces; /* to do */
-  mcor_flux_piece* batch;            /* pieces under way */
+  mcor_flux_section* found;          /* [section_count] */
+  MCOR_LIST(mcor_flux_piece) pieces; /* of which the sections are made */
+  bool is_counting;                  /* the first pass, which only counts cells */
+  /* In this pass: the next of the sections' pieces; parts of pieces to do before; how many cells there
+   * were so far; the area of the pieces that are done. */
+  int64_t next;
+  MCOR_LIST(mcor_flux_piece) parts;
+  double cells, area_done;
+  mcor_flux_piece* batch; /* pieces under way */
   /* Samples of the pieces in `batch`. */
   double *weight, *velocity, *density;
 } mcor_flux_job;
 
 /* mcor_flux_section.c. Checks a section and appends its pieces. */
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
-mcor_gauge_label mcor_label_section(const mcor_flux_job* job, int64_t number);
+mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number);
 
 /* mcor_flux.c. Returns the area of a triangle, or the length of a line. */
 double mcor_piece_size(const mcor_flux_job* job, const mcor_flux_piece* piece);

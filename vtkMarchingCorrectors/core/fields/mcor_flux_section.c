@@ -44,9 +44,9 @@ static double mcor_orientation(const double* points, int64_t count)
   return open == 0 && volume < 0 ? -1 : 1;
 }
 
-mcor_gauge_label mcor_label_section(const mcor_flux_job* job, int64_t number)
+mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number)
 {
-  return mcor_label_gauge(job->sections[number].name, number);
+  return mcor_label_of(job->sections[number].name, number);
 }
 
 /* Appends a triangle given in the caller's coordinates. normal: has length 1. */
@@ -60,7 +60,7 @@ static mcor_status mcor_add_triangle(mcor_flux_job* job, int64_t number, const d
     const int c = i / 3, a = i % 3;
     const double at = corners[c][mcor_plane_axis(job->plane, a)] - (a == 2 ? job->plane->at : 0);
     piece.corner[c][a] = at;
-    mcor_add_range(&job->around, a, at, at);
+    mcor_add_range(&job->base.around, a, at, at);
   }
   for (int c = 0, axis = 0; axis < 3; ++axis)
   {
@@ -263,7 +263,7 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
   static const int points[MCOR_SECTION_SHAPE_COUNT] = { 3, 2, 2, 3, 2 };
   mcor_context* context = job->base.context;
   const mcor_section* section = &job->sections[number];
-  const mcor_gauge_label label = mcor_label_section(job, number);
+  const mcor_label label = mcor_label_section(job, number);
   const int64_t n = section->point_count;
   const unsigned shape = (unsigned)section->shape;
   const bool is_list = shape == MCOR_SECTION_TRIANGLES || shape == MCOR_SECTION_LINES;

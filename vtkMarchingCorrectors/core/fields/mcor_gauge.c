@@ -1,31 +1,87 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges: where lines cross the free surface. The probe evaluates the weight sums.
+/* Gauges: where lines cross the free surface. All lines go through each step together, so the device
+ * has many points at a time.
+ *
+ * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel,
+ * so it is almost a parabola over that distance. A parabola through three samples goes beyond
+ * the middle one by at most an eighth of their differences. If the middle sample is nearer to the
+ * level than four times this, the part is looked at more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles
  * around two more samples on either side, so it finds the same crossings as one process does. */
 
-#include "mcor_gauge.h"
-#include "mcor_box.h"
+#include "mcor_level.h"
 #include "mcor_plane.h"
 #include "mcor_vector.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_GAUGE_LEVEL 0.5
 /* Samples treated together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
 /* Steps beyond a box up to which the field is evaluated. */
 #define MCOR_GAUGE_MARGIN 2.5
 #define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
 #define MCOR_GAUGE_LEAST_STEPS 4
-/* Most samples of one line. */
+/* Most samples of one line; most steps, so that doubles can tell places on the line apart. */
 #define MCOR_GAUGE_MOST (1 << 26)
+#define MCOR_GAUGE_MOST_STEPS 4e15
+#define MCOR_GAUGE_FINER 16   /* sections of a part with an extremum */
+#define MCOR_GAUGE_SECTIONS 8 /* sections of a part with a crossing */
+/* Rounds, after which an extremum is known to 1e-7 of a smoothing length, a crossing to 1e-8. */
+#define MCOR_GAUGE_EXTREMUM_ROUNDS 7
+#define MCOR_GAUGE_SOLVE_ROUNDS 8
+#define MCOR_GAUGE_NEAR 0.5
+
+/* A part of a line between two places at which the weight sum is known. Places are numbers from 0 to
+ * 1. */
+typedef struct mcor_gauge_part
+{
+  int64_t line;
+  double low, high;
+  double low_weight, high_weight;
+} mcor_gauge_part;
+
+typedef MCOR_LIST(mcor_gauge_part) mcor_gauge_parts;
+
+/* Samples of a line: at i / steps for first <= i <= last; no particle reaches the rest. */
+typedef struct mcor_gauge_samples
+{
+  int64_t line, steps, first, last;
+} mcor_gauge_samples;
+
+/* A place on a line. A record's place is a crossing or, below 0, one of these facts. */
+#define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
+#define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
+typedef struct mcor_gauge_place
+{
+  int64_t line;
+  double place;
+} mcor_gauge_place;
+
+typedef MCOR_LIST(mcor_gauge_place) mcor_gauge_places;
+
+/* A call under way: its arguments, then its results. */
+typedef struct mcor_gauge_job
+{
+  mcor_level_job base;          /* must be first */
+  const mcor_gauge_line* given; /* [line_count] */
+  mcor_gauge_line* lines;       /* [line_count] `given`, in the device's coordinates */
+  int64_t line_count;
+  mcor_gauges* gauges;
+  MCOR_LIST(mcor_gauge_samples) samples;
+  mcor_gauge_places records;
+  mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
+  mcor_gauge_parts suspects; /* parts with an extremum that may be beyond the level */
+  /* Work space: parts that are divided; where the field is evaluated; the weight sums there. */
+  mcor_gauge_parts divided;
+  mcor_gauge_places inner;
+  double* weights;
+} mcor_gauge_job;
 
 const char* mcor_gauge_state_name(mcor_gauge_state state)
 {
@@ -43,27 +99,13 @@ static double mcor_gauge_length(const mcor_gauge_line* line)
   return sqrt(mcor_dot(way, way));
 }
 
-mcor_gauge_label mcor_label_gauge(const char* name, int64_t number)
-{
-  mcor_gauge_label label;
-  if (name)
-  {
-    snprintf(label.text, sizeof label.text, "'%.70s'", name);
-  }
-  else
-  {
-    snprintf(label.text, sizeof label.text, "number %lld", (long long)number);
-  }
-  return label;
-}
-
 /* Checks a line, and turns it into the plane z = 0, if the particles lie in a plane. */
 static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->base.context;
   const mcor_plane* plane = &context->plane;
   const mcor_gauge_line* given = &job->given[number];
-  const mcor_gauge_label label = mcor_label_gauge(given->name, number);
+  const mcor_label label = mcor_label_of(given->name, number);
   const double *from = given->from, *to = given->to, length = mcor_gauge_length(given);
   mcor_gauge_line* line = &job->lines[number];
   *line = *given;
@@ -76,7 +118,7 @@ static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
     line->from[a] = from[axis] - shift;
     line->to[a] = to[axis] - shift;
     mcor_add_range(
-      &job->around, a, fmin(line->from[a], line->to[a]), fmax(line->from[a], line->to[a]));
+      &job->base.around, a, fmin(line->from[a], line->to[a]), fmax(line->from[a], line->to[a]));
   }
   MCOR_FAIL_IF(mcor_is_plane(context) && (line->from[2] != 0 || line->to[2] != 0), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(GAUGE_OUT_OF_PLANE), label.text,
@@ -88,34 +130,10 @@ static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
   return MCOR_OK;
 }
 
-/* ---- samples ---- */
-
 /* Returns the greatest distance between samples, L. */
 static double mcor_gauge_step(double h_scale, double smoothing_length_min)
 {
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
-}
-
-bool mcor_owns_point(const mcor_level_job* job, const double point[3])
-{
-  const mcor_lattice* lattice = &job->context->lattice;
-  for (int a = 0; a < 3 && job->has_box; ++a)
-  {
-    double cell = floor(point[a] / lattice->edge[a] - (double)lattice->origin[a]);
-    if (lattice->period[a] > 0)
-    {
-      cell -= floor((cell - lattice->period_first[a]) / lattice->period[a]) * lattice->period[a];
-    }
-    else
-    {
-      cell = fmin(fmax(cell, (double)lattice->first[a]), (double)lattice->last[a] - 1);
-    }
-    if (cell < job->owned[a][0] || cell >= job->owned[a][1])
-    {
-      return false;
-    }
-  }
-  return true;
 }
 
 /* Appends the samples of a line where particles may reach it. The lattice must be known. */
@@ -123,9 +141,9 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->base.context;
   const mcor_gauge_line* line = &job->lines[number];
-  const double step = mcor_gauge_step(context->run.options->h_scale, context->measure.h_min);
-  const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
   const mcor_measure* m = &context->measure;
+  const double step = mcor_gauge_step(context->run.options->h_scale, m->h_min);
+  const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
   double clip[2] = { 0, 1 }; /* the part of the line that particles may reach */
   for (int a = 0; a < 3; ++a)
   {
@@ -150,12 +168,11 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   }
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
-  const bool whole_is_countable =
-    steps < 4e15; /* so that doubles can tell places on the line apart */
-  MCOR_FAIL_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
-    MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES), mcor_label_gauge(line->name, number).text,
-    (whole_is_countable ? last - first : steps) + 1, context->measure.h_min,
-    whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
+  const bool is_countable = steps < MCOR_GAUGE_MOST_STEPS;
+  const double needed = is_countable ? last - first : steps;
+  const double most = is_countable ? MCOR_GAUGE_MOST : MCOR_GAUGE_MOST_STEPS;
+  MCOR_FAIL_IF(needed >= most, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES),
+    mcor_label_of(line->name, number).text, needed + 1, m->h_min, most);
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
   };
@@ -165,6 +182,211 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     whole.last = whole.first + 2;
   }
   MCOR_APPEND(context, &job->samples, whole);
+  return MCOR_OK;
+}
+
+/* ---- crossings ---- */
+
+/* Evaluates the weight sums at the inner places. */
+static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
+{
+  double* points = (double*)job->base.run->points->data;
+  const int64_t count = job->inner.count;
+  free(job->weights);
+  job->weights = malloc(((size_t)count + 1) * sizeof *job->weights);
+  MCOR_TRY(mcor_allocated(job->base.context, job->weights));
+  for (int64_t first = 0; first < count; first += MCOR_LEVEL_BATCH)
+  {
+    const int64_t rest = count - first;
+    const int n = rest < MCOR_LEVEL_BATCH ? (int)rest : MCOR_LEVEL_BATCH;
+    for (int i = 0; i < n; ++i)
+    {
+      const mcor_gauge_place* at = &job->inner.of[first + i];
+      const mcor_gauge_line* line = &job->lines[at->line];
+      mcor_point_between(line->from, line->to, at->place, points + 3 * i);
+    }
+    MCOR_TRY(mcor_sample_level(&job->base, job->weights + first, n));
+  }
+  return MCOR_OK;
+}
+
+/* Weight sums at evenly spaced places of a line. */
+typedef struct mcor_gauge_row
+{
+  int64_t line, count;
+  const mcor_gauge_samples* samples; /* of a line; NULL: the row is of a part */
+  double first, step, last;          /* the first place; the step; the last place */
+  const double* weight;              /* [count] */
+} mcor_gauge_row;
+
+static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
+{
+  return i + 1 == row->count ? row->last : row->first + (double)i * row->step;
+}
+
+/* Whether this call owns place i of a row. */
+static bool mcor_owns_place(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+{
+  double point[3];
+  if (!row->samples || !job->base.has_box)
+  {
+    return true;
+  }
+  const double place = (double)(row->samples->first + i) / (double)row->samples->steps;
+  mcor_point_between(job->lines[row->line].from, job->lines[row->line].to, place, point);
+  return mcor_owns_point(&job->base, point);
+}
+
+static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
+  const mcor_gauge_row* row, int64_t low, int64_t high)
+{
+  MCOR_APPEND(job->base.context, parts,
+    (mcor_gauge_part){ row->line, mcor_row_place(row, low), mcor_row_place(row, high),
+      row->weight[low], row->weight[high] });
+  return MCOR_OK;
+}
+
+/* Whether the weight sum may pass the level and come back next to sample i. Sample i must be nearer
+ * to the level than its neighbours, and on the same side of the level. */
+static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
+{
+  const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
+  const double *weight = row->weight, here = fabs(weight[i] - level);
+  double most = 0;
+  for (int64_t j = i - 1; j <= i + 1; j += 2)
+  {
+    if (j >= 0 && j <= last)
+    {
+      const double there = fabs(weight[j] - level);
+      if ((weight[j] >= level) != (weight[i] >= level) || there < here || (there == here && j < i))
+      {
+        return false;
+      }
+      most = fmax(most, there - here);
+    }
+  }
+  const double bend = weight[at - 1] - 2 * weight[at] + weight[at + 1];
+  return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
+}
+
+/* Appends the parts of a row with a crossing, and, if suspects is not NULL, the parts with an
+ * extremum to look at. */
+static mcor_status mcor_scan_row(
+  mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects)
+{
+  const double level = job->base.level;
+  for (int64_t i = 0; i < row->count; ++i)
+  {
+    const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
+    const bool crossed = (row->weight[i] >= level) != (row->weight[high] >= level);
+    const bool suspect = suspects && mcor_row_suspect(level, row, i);
+    if ((crossed || suspect) && mcor_owns_place(job, row, i))
+    {
+      MCOR_TRY(crossed ? mcor_append_part(job, &job->changed, row, i, high) : MCOR_OK);
+      MCOR_TRY(suspect ? mcor_append_part(job, suspects, row, low, high) : MCOR_OK);
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
+ * extremum. If a suspect part has crossings, they become changed parts, and its suspect extrema are
+ * dropped. one: each part keeps only its first crossing. */
+static mcor_status mcor_look_closer(
+  mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
+{
+  const bool suspects = parts == &job->suspects;
+  const mcor_gauge_parts whole = *parts;
+  *parts = job->divided;
+  job->divided = whole;
+  parts->count = job->inner.count = 0;
+  for (int64_t p = 0; p < whole.count; ++p)
+  {
+    const mcor_gauge_part* part = &whole.of[p];
+    for (int i = 1; i < sections; ++i)
+    {
+      MCOR_APPEND(job->base.context, &job->inner,
+        (mcor_gauge_place){ part->line, part->low + (part->high - part->low) * i / sections });
+    }
+  }
+  MCOR_TRY(mcor_gauge_weights(job));
+  for (int64_t p = 0; p < whole.count; ++p)
+  {
+    const mcor_gauge_part* part = &whole.of[p];
+    double weight[MCOR_GAUGE_FINER + 1];
+    weight[0] = part->low_weight;
+    memcpy(weight + 1, job->weights + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
+    weight[sections] = part->high_weight;
+    const mcor_gauge_row row = { part->line, sections + 1, NULL, part->low,
+      (part->high - part->low) / sections, part->high, weight };
+    const int64_t before = parts->count, crossings = job->changed.count;
+    MCOR_TRY(mcor_scan_row(job, &row, suspects ? parts : NULL));
+    if (job->changed.count > crossings && (suspects || one))
+    {
+      parts->count = suspects ? before : before + 1;
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Evaluates entries [first, last) of the job's samples, and appends crossings and facts to its
+ * records. */
+static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64_t last)
+{
+  job->changed.count = job->suspects.count = job->inner.count = 0;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* s = &job->samples.of[l];
+    for (int64_t i = s->first; i <= s->last; ++i)
+    {
+      MCOR_APPEND(job->base.context, &job->inner,
+        (mcor_gauge_place){ s->line, (double)i / (double)s->steps });
+    }
+  }
+  MCOR_TRY(mcor_gauge_weights(job));
+  const double* weight = job->weights;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* s = &job->samples.of[l];
+    const double begin = (double)s->first / (double)s->steps, step = 1 / (double)s->steps;
+    const int64_t end = s->last - s->first;
+    const mcor_gauge_row row = { s->line, end + 1, s, begin, step, begin + (double)end * step,
+      weight };
+    bool reached = false;
+    MCOR_TRY(mcor_scan_row(job, &row, &job->suspects));
+    for (int64_t i = 0; i <= end && !reached; ++i)
+    {
+      reached = weight[i] != 0;
+    }
+    if (reached)
+    {
+      MCOR_APPEND(
+        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
+    }
+    if (s->last == s->steps && weight[end] >= job->base.level && mcor_owns_place(job, &row, end))
+    {
+      MCOR_APPEND(
+        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
+    }
+    weight += row.count;
+  }
+  for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
+  }
+  /* Only the first round may find several crossings in a part; later ones would be rounding. */
+  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, round > 0));
+  }
+  for (int64_t p = 0; p < job->changed.count; ++p)
+  {
+    const mcor_gauge_part* part = &job->changed.of[p];
+    const double rise = part->high_weight - part->low_weight;
+    const double share = rise != 0 ? (job->base.level - part->low_weight) / rise : 0.5;
+    const double place = part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
+    MCOR_APPEND(job->base.context, &job->records, (mcor_gauge_place){ part->line, place });
+  }
   return MCOR_OK;
 }
 
@@ -201,9 +423,8 @@ static void mcor_read_line(
 static int mcor_compare_records(const void* a, const void* b)
 {
   const mcor_gauge_place *left = a, *right = b;
-  return left->line != right->line ? (left->line < right->line ? -1 : 1)
-    : left->place != right->place  ? (left->place < right->place ? -1 : 1)
-                                   : 0;
+  const int by_line = (left->line > right->line) - (left->line < right->line);
+  return by_line ? by_line : (left->place > right->place) - (left->place < right->place);
 }
 
 /* Makes the readings of all lines from the records of all ranks. */
@@ -252,6 +473,10 @@ static mcor_status mcor_read_lines(
 static mcor_status mcor_gauge_all(mcor_level_job* base)
 {
   mcor_gauge_job* job = (mcor_gauge_job*)base;
+  for (int64_t i = 0; i < job->line_count; ++i)
+  {
+    MCOR_TRY(mcor_plan_line(job, i));
+  }
   const int64_t count = job->samples.count;
   for (int64_t first = 0, last; first < count; first = last)
   {
@@ -262,89 +487,9 @@ static mcor_status mcor_gauge_all(mcor_level_job* base)
     }
     MCOR_TRY(mcor_report(base->context, "gauges", 0.2 + 0.8 * (double)first / (double)count,
       0.2 + 0.8 * (double)last / (double)count));
-    MCOR_TRY(mcor_gauge_samples_of(job, first, last));
+    MCOR_TRY(mcor_find_crossings(job, first, last));
   }
   return MCOR_OK;
-}
-
-/* The box bounds points at which the field is evaluated, not cells. */
-mcor_status mcor_bound_level(mcor_level_job* job, const mcor_input* input,
-  const mcor_options* options, double margin, const mcor_findings* around)
-{
-  mcor_context* context = job->context;
-  const bool has_box = job->has_box;
-  if (has_box && mcor_is_plane(context))
-  {
-    mcor_flatten_sides(&context->plane, job->box, job->box);
-  }
-  MCOR_FAIL_IF(has_box && margin > mcor_reach_margin(options, options->globals, 0), context,
-    MCOR_INVALID_ARGUMENT, MCOR_SAY(CUBE_TOO_SMALL_FOR_GAUGES), options->globals->measured.cube);
-  for (int a = 0; a < 3; ++a)
-  {
-    context->box.points[2 * a] = has_box ? job->box[2 * a] - margin : around->least[a];
-    context->box.points[2 * a + 1] = has_box ? job->box[2 * a + 1] + margin : around->most[a];
-  }
-  context->box.has_points = true;
-  /* Other calls may reuse the search grid, unless it is cut to these points. */
-  context->box.of_points = has_box || input->particles_version == 0 || context->run.far;
-  return MCOR_OK;
-}
-
-/* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
- * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
- * equals the level where F is exactly this share of T. Far from solids, F equals T, and the lowered
- * sum is F. */
-mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
-{
-  mcor_probe_run* run = job->run;
-  const double share = mcor_fluid_share(job->context);
-  memset(weight, 0, (size_t)count * sizeof *weight);
-  run->samples->weight_sum = weight;
-  run->weights_with_solids = job->with_solids;
-  MCOR_TRY(mcor_report_launch(job->context));
-  MCOR_TRY(mcor_probe_batch(run, 0, count));
-  for (int i = 0; i < count && job->with_solids; ++i)
-  {
-    const double fluid = weight[i], all = job->with_solids[i];
-    weight[i] = fluid == 0 || fluid == all
-      ? fluid
-      : fmin(all, job->level + (fluid - share * all) / (1 - share));
-  }
-  return MCOR_OK;
-}
-
-mcor_status mcor_run_points(
-  mcor_level_job* job, const mcor_input* input, mcor_status (*work)(mcor_level_job*))
-{
-  mcor_context* context = job->context;
-  double* places = malloc(3 * (size_t)MCOR_GAUGE_BATCH * sizeof *places);
-  uint8_t* valid = malloc(MCOR_GAUGE_BATCH);
-  mcor_samples samples = { .valid = valid };
-  const mcor_array points = { .data = places, .type = MCOR_FLOAT64, .components = 3 };
-  mcor_probe_run run = {
-    .context = context, .input = input, .points = &points, .samples = &samples
-  };
-  job->run = &run;
-  job->with_solids =
-    mcor_ends_at_solids(context) ? malloc(MCOR_GAUGE_BATCH * sizeof *places) : NULL;
-  for (int a = 0; a < 3 && job->has_box; ++a)
-  {
-    const mcor_lattice* lattice = &context->lattice;
-    const bool periodic = lattice->period[a] > 0;
-    double* cells = job->owned[a];
-    cells[0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    cells[1] = periodic ? cells[0] + lattice->period[a] : (double)lattice->last[a];
-    mcor_place_sides(lattice, a, job->box, cells);
-  }
-  mcor_status status =
-    mcor_allocated(context, places && valid && (job->with_solids || !mcor_ends_at_solids(context)));
-  MCOR_THEN(status, mcor_load_attributes(context, input, 0));
-  MCOR_THEN(status, work(job));
-  mcor_release_probe(&run);
-  free(places);
-  free(valid);
-  free(job->with_solids);
-  return status;
 }
 
 /* Makes the records from the particles of this rank. */
@@ -357,20 +502,12 @@ static mcor_status mcor_gauge_particles(
     MCOR_TRY(mcor_take_line(job, i));
   }
   MCOR_TRY(mcor_list_components(context, input, false, NULL));
-  if (input->count == 0 || job->line_count == 0)
-  {
-    return MCOR_OK;
-  }
   const double margin = options->globals
     ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
     : 0;
-  MCOR_TRY(mcor_bound_level(&job->base, input, options, margin, &job->around));
-  MCOR_TRY(mcor_prepare(context, input, options));
-  for (int64_t i = 0; i < job->line_count && context->grid.count > 0; ++i)
-  {
-    MCOR_TRY(mcor_plan_line(job, i));
-  }
-  return context->grid.count > 0 ? mcor_run_points(&job->base, input, mcor_gauge_all) : MCOR_OK;
+  return input->count == 0 || job->line_count == 0
+    ? MCOR_OK
+    : mcor_run_level(&job->base, input, options, margin, mcor_gauge_all);
 }
 
 static mcor_status mcor_run_gauge(
@@ -387,38 +524,15 @@ static mcor_status mcor_run_gauge(
     mcor_gather_records(
       context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));
   MCOR_THEN(status, mcor_read_lines(&job, all, count));
-  mcor_free_gauge_parts(&job);
   free(job.lines);
-  return status != MCOR_OK || input->count == 0 || job.line_count == 0 ? status
-                                                                       : mcor_finish_field(context);
-}
-
-mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics)
-{
-  mcor_input given = *input;
-  mcor_options own = *options;
-  job->level =
-    options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
-  MCOR_FAIL_IF(options->iso_count > 1 || !(job->level > 0) || !isfinite(job->level), job->context,
-    MCOR_INVALID_ARGUMENT, MCOR_SAY(FLUID_LEVEL), job->who);
-  if (own.wall_share == MCOR_WALL_SHARE_AUTO)
-  {
-    own.wall_share = MCOR_WALL_SHARE_MEASURED;
-  }
-  mcor_evaluate_without_scalar(&given, &own);
-  own.ranks = options->globals ? options->ranks : NULL;
-  own.outputs = 0;
-  own.node_threshold = 0;
-  job->has_box = mcor_has_box(&own);
-  if (job->has_box)
-  {
-    memcpy(job->box, own.box, sizeof own.box);
-    memset(own.box, 0, sizeof own.box);
-    given.particles_version = 0; /* a grid cut by another box must not be reused */
-  }
-  return mcor_run_call(
-    job->context, &given, &own, mcor_uses_solids(input, &own), statistics, job->body, job);
+  free(job.samples.of);
+  free(job.records.of);
+  free(job.changed.of);
+  free(job.suspects.of);
+  free(job.divided.of);
+  free(job.inner.of);
+  free(job.weights);
+  return status;
 }
 
 mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mcor_options* options,
@@ -433,12 +547,11 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "lines");
   mcor_input without = *input;
   without.attribute_count = 0;
-  mcor_gauge_job job = { .base = { .context = context, .who = "Gauges", .body = mcor_run_gauge },
-    .given = lines,
-    .line_count = count,
-    .gauges = gauges,
-    .around = mcor_no_findings() };
-  const mcor_status status = mcor_call_level(&job.base, &without, options, &gauges->statistics);
+  mcor_gauge_job job = {
+    .base.context = context, .given = lines, .line_count = count, .gauges = gauges
+  };
+  const mcor_status status =
+    mcor_call_level(&job.base, &without, options, "Gauges", mcor_run_gauge, &gauges->statistics);
   if (status != MCOR_OK)
   {
     mcor_free_gauges(gauges);

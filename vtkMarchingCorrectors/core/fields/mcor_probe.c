@@ -6,6 +6,7 @@
  * range: single precision then keeps the digits of an array with a large offset. */
 
 #include "mcor_probe.h"
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
@@ -21,6 +22,143 @@
 /* Fluid weight below which a mean has no digits; MCOR_LEAST_SUM in mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
 
+/* ---- points ---- */
+
+bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
+{
+  if (!mcor_has_box(options))
+  {
+    return false;
+  }
+  memcpy(context->box.points, options->box, sizeof options->box);
+  return context->box.of_points = true;
+}
+
+/* Points of a batch during upload, and the results of each slice of them. */
+typedef struct mcor_point_job
+{
+  const mcor_probe_run* run;
+  void *node, *offset;               /* views */
+  mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
+} mcor_point_job;
+
+/* Reads positions of points [first, first + count) of the batch, from the lattice's origin, in
+ * edges. */
+static void mcor_read_points(
+  const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
+{
+  const mcor_lattice* lattice = &run->context->lattice;
+  const mcor_box* box = &run->context->box;
+  mcor_array points = *run->points;
+  points.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double origin = (double)lattice->origin[a], step = (double)lattice->step[a];
+    mcor_read_array(&points, run->first + first, count, a, at[a]);
+    for (int i = 0; i < count; ++i)
+    {
+      at[a][i] = at[a][i] / lattice->edge[a] - origin;
+    }
+    /* MCOR_QUADRATIC's gradient is 0 exactly at a particle, but not nearby, so points are rounded
+     * as particles are. */
+    for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
+    {
+      at[a][i] = floor(at[a][i] * step + 0.5) / step;
+    }
+    /* A period includes both of its sides. Along a period, points are rounded, too, so that points
+     * a period apart have the same position. A point on a side that is not in the box is moved to
+     * the other side. */
+    const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
+    for (int i = 0; i < count && period > 0; ++i)
+    {
+      const double fixed = floor(at[a][i] * step + 0.5);
+      const bool beyond = !(fixed >= begin && fixed <= begin + period);
+      const double within = beyond ? fixed - floor((fixed - begin) / period) * period : fixed;
+      const bool off_lower = within == begin && box->first[a] > lattice->period_first[a];
+      const bool off_upper =
+        within == begin + period && box->last[a] < lattice->period_first[a] + lattice->period[a];
+      at[a][i] = (within + (off_lower ? period : off_upper ? -period : 0)) / step;
+    }
+  }
+}
+
+/* Writes nodes and offsets of points; the node is -1 if no particle may reach the point. */
+static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_point_job* job = data;
+  const mcor_context* context = job->run->context;
+  const mcor_lattice* lattice = &context->lattice;
+  mcor_findings found = mcor_no_findings();
+  double at[3][MCOR_CHUNK];
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    const int count = mcor_chunk_of(last - begin);
+    mcor_read_points(job->run, begin, count, at);
+    for (int i = 0; i < count; ++i)
+    {
+      bool located = true;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double x = at[a][i];
+        located = located && x >= (double)lattice->first[a] && x <= (double)lattice->last[a];
+      }
+      found.sums[0] += located;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double x = located ? at[a][i] : -1;
+        const cl_int node = (cl_int)x;
+        ((cl_int*)job->node)[4 * (begin + i) + a] = node;
+        mcor_put_real(context, job->offset, 4 * (begin + i) + a, x - node);
+        found.least[a] = located ? fmin(found.least[a], node) : found.least[a];
+        found.most[a] = fmax(found.most[a], node);
+      }
+    }
+  }
+  job->slices[slice] = found;
+}
+
+/* Writes the caller's points [first, last) to the device. */
+static mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
+{
+  mcor_context* context = run->context;
+  const size_t n = (size_t)(last - first), real = context->cl.real_size;
+  mcor_point_job job = { .run = run };
+  const mcor_mapping views[] = { { &run->batch.in_node, n * 4 * sizeof(cl_int), &job.node },
+    { &run->batch.in_offset, n * 4 * real, &job.offset } };
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, views[0].bytes));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, views[1].bytes));
+  int slices = 0;
+  run->first = first;
+  run->count = (int)n;
+  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &job.node);
+  MCOR_THEN(status, mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset));
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices));
+  const mcor_findings found = mcor_merge_findings(job.slices, slices);
+  run->inside = (int)found.sums[0];
+  for (int a = 0; a < 3 && run->inside > 0; ++a) /* the box of the points' bricks */
+  {
+    run->batch.first[a] = (cl_int)found.least[a] >> 2;
+    run->batch.bricks[a] = ((cl_int)found.most[a] >> 2) - run->batch.first[a] + 1;
+  }
+  return mcor_unmap_all(context, views, 2, status);
+}
+
+mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
+  int count, bool has_box, const int cells[3], const int end[3])
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t n = (size_t)count;
+  MCOR_TRY(mcor_reserve(context, &batch->in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &batch->in_offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, count, MCOR_INT(first),
+    MCOR_INT(count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
+    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(has_box),
+    MCOR_CELL_ARGS(cells, end, 0, 0), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->in_offset),
+    MCOR_BUFFER(&context->points.flags));
+}
+
 void mcor_release_probe(mcor_probe_run* run)
 {
   mcor_release_batch(run->context, &run->batch);
@@ -30,74 +168,64 @@ void mcor_release_probe(mcor_probe_run* run)
 
 /* ---- evaluation ---- */
 
-typedef struct mcor_probe_job
-{
-  const mcor_probe_run* run;
-  /* Views of the device's results. */
-  void *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
-  double threshold;
-} mcor_probe_job;
-
 /* Writes component c of the attributes on the device, and its gradient, at point i of the batch,
  * which is point `to` of the caller. weight, slope: the weight sum there, and its gradient. The
  * component's scale is a power of 2, so dividing by the scale is exact. */
 static void mcor_put_component(
-  const mcor_probe_job* job, int64_t i, int64_t to, int c, double weight, const double slope[3])
+  const mcor_probe_run* run, int64_t i, int64_t to, int c, double weight, const double slope[3])
 {
-  const mcor_context* context = job->run->context;
+  const mcor_context* context = run->context;
   const mcor_attributes* attributes = &context->attributes;
   const mcor_component* component = &attributes->varying[attributes->first + c];
-  const mcor_samples* samples = job->run->samples;
+  const mcor_samples* samples = run->samples;
   const int attribute = component->attribute;
   const int64_t at = i * attributes->count + c,
-                place = to * mcor_components(&job->run->input->attributes[attribute]) +
-    component->component;
+                place =
+                  to * mcor_components(&run->input->attributes[attribute]) + component->component;
   const double shift = component->shift, unscale = 1 / component->scale;
-  const double sum = mcor_get_real(context, job->sums, at), mean = sum / weight;
-  const bool is_sum = job->run->is_sum;
+  const double sum = mcor_get_real(context, run->view.sums, at), mean = sum / weight;
   /* Rounding must not take a mean out of the range of its values. With M'4, which is partly
    * negative, a mean may lie out of the range anyway. */
-  const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
+  const bool is_between = !run->is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
-  const double value = is_sum ? sum * unscale + shift * weight : mean * unscale + shift;
+  const double value = run->is_sum ? sum * unscale + shift * weight : mean * unscale + shift;
   samples->values[attribute][place] = value < low ? low : value > high ? high : value;
   for (int a = 0; a < 3 && samples->gradients; ++a)
   {
-    const double rise = mcor_get_real(context, job->gradients, 3 * at + a);
+    const double rise = mcor_get_real(context, run->view.gradients, 3 * at + a);
     samples->gradients[attribute][3 * place + a] =
-      (is_sum ? rise / component->scale + shift * slope[a]
-              : (rise - mean * slope[a]) / weight / component->scale) /
+      (run->is_sum ? rise / component->scale + shift * slope[a]
+                   : (rise - mean * slope[a]) / weight / component->scale) /
       context->lattice.cube;
   }
 }
 
 static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_probe_job* job = data;
-  const mcor_probe_run* run = job->run;
+  const mcor_probe_run* run = data;
   const mcor_context* context = run->context;
   const mcor_samples* samples = run->samples;
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t to = run->first + ((const cl_int*)job->order)[i];
-    const double weight = mcor_get_real(context, job->weight, i);
-    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
+    const int64_t to = run->first + ((const cl_int*)run->view.order)[i];
+    const double weight = mcor_get_real(context, run->view.weight, i);
+    const bool valid = weight >= context->run.options->node_threshold && weight > MCOR_LEAST_WEIGHT;
     double slope[3] = { 0 };
     samples->weight_sum[to] = weight;
     samples->valid[to] = valid;
     if (run->weights_with_solids)
     {
-      run->weights_with_solids[to] = mcor_get_real(context, job->weight_with_solids, i);
+      run->weights_with_solids[to] = mcor_get_real(context, run->view.weight_with_solids, i);
     }
     for (int a = 0; a < 3 && samples->weight_gradient; ++a)
     {
-      slope[a] = mcor_get_real(context, job->weight_gradient, 3 * i + a);
+      slope[a] = mcor_get_real(context, run->view.weight_gradient, 3 * i + a);
       samples->weight_gradient[3 * to + a] = slope[a] / context->lattice.cube;
     }
     for (int c = 0; c < context->attributes.count && valid; ++c)
     {
-      mcor_put_component(job, i, to, c, weight, slope);
+      mcor_put_component(run, i, to, c, weight, slope);
     }
   }
   (void)slice;
@@ -106,6 +234,7 @@ static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
 {
   mcor_context* context = run->context;
+  const mcor_grid* grid = &context->grid;
   MCOR_TRY(mcor_upload_points(run, first, last));
   if (run->inside == 0)
   {
@@ -115,21 +244,19 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
                arrays = (size_t)context->attributes.count;
   int groups;
   MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &groups));
-  MCOR_TRY(mcor_reserve(context, &run->weight, n * real));
   MCOR_TRY(mcor_reserve(context, &run->sums, n * arrays * real));
   const int cluster = MCOR_CLUSTER_OF(context->cl.lanes);
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (groups + cluster - 1) / cluster,
-    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-    MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
-    MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
-  if (run->weights_with_solids)
+  for (int solids = 0; solids <= (run->weights_with_solids != NULL); ++solids)
   {
-    MCOR_TRY(mcor_reserve(context, &run->weight_with_solids, n * real));
+    mcor_buffer* sum = solids ? &run->weight_with_solids : &run->weight;
+    const mcor_buffer* weight = solids ? &grid->trim_weight : mcor_fluid_weight(grid);
+    MCOR_TRY(mcor_reserve(context, sum, n * real));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (groups + cluster - 1) / cluster,
-      MCOR_WEIGHTED_GRID_ARGS(context, &context->grid.trim_weight), MCOR_INT(groups),
+      MCOR_WEIGHTED_GRID_ARGS(context, weight), MCOR_INT(groups),
       MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&run->batch.node),
-      MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight_with_solids), MCOR_INT(0),
-      MCOR_INT(0), MCOR_BUFFER(&context->attributes.sorted), MCOR_BUFFER(&run->sums)));
+      MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(sum),
+      MCOR_INT(solids ? 0 : context->attributes.count), MCOR_INT(grid->count),
+      MCOR_BUFFER(&context->attributes.sorted), MCOR_BUFFER(&run->sums)));
   }
   if (run->samples->weight_gradient)
   {
@@ -145,18 +272,18 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   }
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
-  mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
   const size_t solids = run->weights_with_solids ? n * real : 0;
   const size_t slopes = run->samples->weight_gradient ? n * 3 * real : 0;
-  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
-    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
-    { &run->weight_with_solids, solids, &job.weight_with_solids },
-    { &run->weight_gradient, slopes, &job.weight_gradient },
-    { &run->gradients, slopes * arrays, &job.gradients } };
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &run->view.order },
+    { &run->weight, n * real, &run->view.weight },
+    { &run->sums, n * arrays * real, &run->view.sums },
+    { &run->weight_with_solids, solids, &run->view.weight_with_solids },
+    { &run->weight_gradient, slopes, &run->view.weight_gradient },
+    { &run->gradients, slopes * arrays, &run->view.gradients } };
   const int count = sizeof views / sizeof *views;
   mcor_status status = mcor_map_all(context, views, count);
-  MCOR_THEN(status,
-    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));
+  MCOR_THEN(
+    status, mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, run, NULL));
   return mcor_unmap_all(context, views, count, status);
 }
 
@@ -311,7 +438,7 @@ static mcor_status mcor_run_probe(
   run.input = input;
   if (mcor_is_plane(context) && run.point_count > 0)
   {
-    MCOR_TRY(mcor_flatten_points(context, run.points, run.point_count, &points, &flat));
+    MCOR_TRY(mcor_flatten_positions(context, run.points, run.point_count, true, &points, &flat));
     run.points = &points;
   }
   const mcor_status status = mcor_probe_points(&run, options);

@@ -17,23 +17,26 @@ typedef struct mcor_probe_run
   bool is_sum;
   double* weights_with_solids; /* weight sums of fluid and solids at the points; NULL: not wanted */
   mcor_point_batch batch;
+  /* The device's results, and views of them. */
   mcor_buffer weight, weight_with_solids, sums, weight_gradient, gradients;
+  struct
+  {
+    void *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
+  } view;
   int64_t first;     /* first point of the batch */
   int count, inside; /* points of the batch; points of it that particles may reach */
 } mcor_probe_run;
 
-/* mcor_probe_points.c. Lets the call use only particles near options->box, which holds the caller's
- * points. Returns false if there is no box. */
+/* Lets the call use only particles near options->box, which holds the caller's points. Returns false
+ * if there is no box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes sorted particles [first, first + count) to the batch as points. If the call has a box,
  * with the cells from `cells` to `end`, points.flags tells whether each particle lies in it. */
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
-/* Writes the caller's points [first, last) to the device. */
-mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);
 
-/* mcor_probe.c. Evaluates the attributes on the device at points [first, last). */
+/* Evaluates the attributes on the device at points [first, last). */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
 /* Allocates zeros: [attribute_count] -> [count][components][numbers], NULL for attributes that are
@@ -43,5 +46,9 @@ mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
 void mcor_free_arrays(double** arrays, int count);
 /* Ends a call without a surface. */
 mcor_status mcor_finish_field(mcor_context* context);
+
+/* mcor_widen.c. Reads the volumes that were computed, [count], unit L^3, from the search grid's
+ * weights; 1 where a particle is not on the device, or not in the box. */
+mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume);
 
 #endif

@@ -7,7 +7,6 @@
 #include "mcor_project.h"
 #include "mcor_plane.h"
 #include "mcor_probe.h"
-#include "mcor_widen.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -89,24 +88,22 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
       ? 0
       : mcor_column_reach(job->context->run.options->sph_kernel, k < 3 ? job->axes[k] : unit);
   }
-  mcor_project_chunk chunk;
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  mcor_places p;
+  for (; mcor_read_places(job->context, job->input, first, last, &p) > 0; first += p.count)
   {
-    const int count = mcor_chunk_of(last - begin);
-    mcor_read_project_chunk(job, begin, count, false, &chunk);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < p.count; ++i)
     {
-      if (!chunk.counts[i])
+      if (!mcor_is_projected(job, first + i))
       {
         continue;
       }
-      const double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
+      const double x[3] = { p.x[0][i], p.x[1][i], p.x[2][i] }, h = p.length[i] * job->h_scale;
       for (int k = 0; k < 6; ++k)
       {
         const double at = k < 3 ? mcor_dot(job->axes[k], x) : x[k - 3];
-        mcor_add_range(&found, k, at - reach[k] * chunk.h[i], at + reach[k] * chunk.h[i]);
+        mcor_add_range(&found, k, at - reach[k] * h, at + reach[k] * h);
       }
-      mcor_add_range(&found, 6, chunk.h[i], chunk.h[i]);
+      mcor_add_range(&found, 6, h, h);
     }
   }
   job->slices[slice] = found;
@@ -254,11 +251,9 @@ static mcor_status mcor_run_project(
     pthread_mutex_destroy(&job->locks[i]);
   }
   free(job->locks);
+  free(job->sides);
+  free(job->corners);
   free(job->volumes);
-  for (int i = 0; i < MCOR_SLICES; ++i)
-  {
-    free(job->brushes[i].sides);
-  }
   return status;
 }
 

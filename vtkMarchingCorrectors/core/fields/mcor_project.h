@@ -61,13 +61,6 @@ typedef struct mcor_splat
   int first[2], last[2]; /* first and last pixel that the particle reaches */
 } mcor_splat;
 
-/* Work space of one thread that spreads particles. */
-typedef struct mcor_brush
-{
-  mcor_column_side* sides;
-  double* corners[2]; /* values of E at the row's lower and upper side */
-} mcor_brush;
-
 typedef struct mcor_project_job
 {
   mcor_context* context;
@@ -90,16 +83,11 @@ typedef struct mcor_project_job
   int64_t first;          /* first of the particles of this step */
   int bands;              /* number of bands of rows of the image */
   pthread_mutex_t* locks; /* [bands]; NULL in the first pass */
-  mcor_brush brushes[MCOR_SLICES];
+  /* Work space of each slice: sides of a row's pixels, and E at the row's lower and upper corners. */
+  mcor_column_side* sides; /* [MCOR_SLICES][size[0] + 1] */
+  double* corners;         /* [MCOR_SLICES][2][size[0] + 1] */
   mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;
-
-/* The particles of a chunk. */
-typedef struct mcor_project_chunk
-{
-  bool counts[MCOR_CHUNK]; /* whether a particle adds to the image */
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], amount[2][MCOR_CHUNK];
-} mcor_project_chunk;
 
 /* Whether the image shows the density, from masses or from V times density. */
 static inline bool mcor_projects_density(const mcor_input* input)
@@ -107,10 +95,15 @@ static inline bool mcor_projects_density(const mcor_input* input)
   return !input->scalar.data;
 }
 
-/* mcor_project_spread.c. Reads at most MCOR_CHUNK particles, with or without amounts. */
-void mcor_read_project_chunk(
-  const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk);
-/* Spreads all particles over the image, whose sides are known, in steps of a call. */
+/* Whether a particle adds to the image. */
+static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
+{
+  return !(job->input->solid && job->input->solid[i]) &&
+    (!job->view->counted || job->view->counted[i]);
+}
+
+/* mcor_project_spread.c. Spreads all particles over the image, whose sides are known, in steps of a
+ * call. */
 mcor_status mcor_spread_particles(mcor_project_job* job);
 
 #endif

@@ -60,26 +60,6 @@ static void mcor_read_amounts(
   }
 }
 
-void mcor_read_project_chunk(
-  const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk)
-{
-  const mcor_input* input = job->input;
-  const uint8_t *solid = input->solid, *counted = job->view->counted;
-  double h[MCOR_CHUNK];
-  mcor_read_positions(input, first, count, chunk->x);
-  mcor_read_smoothing_length(job->context, input, first, count, h);
-  mcor_widen_lengths(input, first, count, h, chunk->h);
-  if (amounts)
-  {
-    mcor_read_amounts(job, first, count, chunk->amount);
-  }
-  for (int i = 0; i < count; ++i)
-  {
-    chunk->h[i] *= job->h_scale;
-    chunk->counts[i] = !(solid && solid[first + i]) && (!counted || counted[first + i]);
-  }
-}
-
 /* ---- particles in the image ---- */
 
 /* Finds the periodic images of a particle that matter, [first, last] along each axis: images in the
@@ -147,9 +127,13 @@ static void mcor_add_pixels(int count, double amount, double lowest, const doubl
   }
 }
 
-static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, mcor_brush* brush)
+static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, int slice)
 {
   const int* size = job->out->size;
+  const size_t corners = (size_t)size[0] + 1;
+  mcor_column_side* sides = job->sides + (size_t)slice * corners;
+  double* rows[2] = { job->corners + 2 * (size_t)slice * corners, NULL };
+  rows[1] = rows[0] + corners;
   const int64_t pixels = (int64_t)size[0] * size[1];
   const int first = s->first[0], count = s->last[0] - first + 1;
   /* Rounding must not make a share negative, unless the kernel itself is partly negative. */
@@ -157,13 +141,13 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
     mcor_kernel_of(job->context->run.options->sph_kernel)->is_tensor ? -DBL_MAX : 0;
   for (int i = 0; i <= count; ++i)
   {
-    brush->sides[i] = mcor_side_of(&job->column, 0, (first + i - s->at[0]) * s->pixel[0]);
+    sides[i] = mcor_side_of(&job->column, 0, (first + i - s->at[0]) * s->pixel[0]);
   }
   for (int row = s->first[1]; row <= s->last[1] + 1; ++row)
   {
-    double *before = brush->corners[~row & 1], *now = brush->corners[row & 1];
+    double *before = rows[~row & 1], *now = rows[row & 1];
     const mcor_column_side side = mcor_side_of(&job->column, 1, (row - s->at[1]) * s->pixel[1]);
-    mcor_sum_corners(&job->column, brush->sides, count + 1, &side, now);
+    mcor_sum_corners(&job->column, sides, count + 1, &side, now);
     if (row == s->first[1])
     {
       continue;
@@ -194,33 +178,36 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
   const double area = job->out->pixel[0] * job->out->pixel[1];
-  mcor_project_chunk chunk;
+  double amount[2][MCOR_CHUNK];
+  mcor_places p;
   mcor_splat splat = { 0 };
   mcor_findings found = mcor_no_findings();
   mcor_add_range(&found, 0, 0, 0);
   mcor_add_range(&found, 1, 0, 0);
-  for (int64_t begin = job->first + first; begin < job->first + last; begin += MCOR_CHUNK)
+  const int64_t end = job->first + last;
+  int64_t begin = job->first + first;
+  for (; mcor_read_places(job->context, job->input, begin, end, &p) > 0; begin += p.count)
   {
-    const int read = mcor_chunk_of(job->first + last - begin);
-    mcor_read_project_chunk(job, begin, read, true, &chunk);
-    for (int i = 0; i < read; ++i)
+    mcor_read_amounts(job, begin, p.count, amount);
+    for (int i = 0; i < p.count; ++i)
     {
-      if (!chunk.counts[i])
+      if (!mcor_is_projected(job, begin + i))
       {
         continue;
       }
-      double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
+      double x[3] = { p.x[0][i], p.x[1][i], p.x[2][i] };
+      const double h = p.length[i] * job->h_scale;
       int from[3], until[3];
       const int64_t before = found.sums[0];
       for (int c = 0; c < job->channels; ++c)
       {
-        splat.amount[c] = chunk.amount[c][i] / area;
+        splat.amount[c] = amount[c][i] / area;
         if (!isfinite(splat.amount[c]) && begin + i < found.first)
         {
           found.first = begin + i;
         }
       }
-      const bool any = mcor_find_splats(job, x, chunk.h[i], from, until);
+      const bool any = mcor_find_splats(job, x, h, from, until);
       const int along = until[0] - from[0] + 1, across = until[1] - from[1] + 1;
       const int images = any ? along * across * (until[2] - from[2] + 1) : 0;
       for (int image = 0; image < images; ++image)
@@ -229,12 +216,12 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
           from[2] + image / along / across };
         const double place[3] = { x[0] + k[0] * job->period[0], x[1] + k[1] * job->period[1],
           x[2] + k[2] * job->period[2] };
-        if (mcor_make_splat(job, place, chunk.h[i], &splat))
+        if (mcor_make_splat(job, place, h, &splat))
         {
           ++found.sums[0];
           if (job->locks)
           {
-            mcor_spread_splat(job, &splat, &job->brushes[slice]);
+            mcor_spread_splat(job, &splat, slice);
           }
         }
       }
@@ -282,23 +269,16 @@ static mcor_status mcor_count_splats(mcor_project_job* job)
 /* Makes the work space of the second pass. */
 static mcor_status mcor_make_brushes(mcor_project_job* job)
 {
-  const size_t corners = (size_t)job->out->size[0] + 1;
+  const size_t corners = MCOR_SLICES * ((size_t)job->out->size[0] + 1);
   const int bands = job->out->size[1] / MCOR_BAND_ROWS + 1;
-  bool complete = true;
-  for (int i = 0; i < MCOR_SLICES; ++i)
-  {
-    mcor_brush* brush = &job->brushes[i];
-    brush->sides = malloc(corners * (sizeof *brush->sides + 2 * sizeof(double)));
-    complete = complete && brush->sides;
-    brush->corners[0] = brush->sides ? (double*)(brush->sides + corners) : NULL;
-    brush->corners[1] = brush->sides ? brush->corners[0] + corners : NULL;
-  }
+  job->sides = malloc(corners * sizeof *job->sides);
+  job->corners = malloc(2 * corners * sizeof *job->corners);
   job->locks = malloc((size_t)bands * sizeof *job->locks);
   for (job->bands = 0; job->bands < bands && job->locks; ++job->bands)
   {
     pthread_mutex_init(&job->locks[job->bands], NULL);
   }
-  return mcor_allocated(job->context, complete && job->locks);
+  return mcor_allocated(job->context, job->sides && job->corners && job->locks);
 }
 
 mcor_status mcor_spread_particles(mcor_project_job* job)

@@ -23,7 +23,6 @@
  * iso: the iso value of the free surface, the greatest of several; 0.5 for scalars. In the plane,
  * the limits of N are multiplied by 0.31. */
 
-#include "mcor_widen.h"
 #include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -58,7 +57,6 @@ typedef struct mcor_widen_run
   cl_int* originals;
   void *order, *weight, *inv_h; /* views */
   void *factors, *is_outside; /* views; NULL if only volumes are wanted */
-  int64_t left[MCOR_SLICES]; /* number of widened particles outside of the surface */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
@@ -115,7 +113,7 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
  * were computed. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_widen_run* run = data;
+  const mcor_widen_run* run = data;
   const mcor_context* context = run->context;
   const mcor_widening* out = run->out;
   const mcor_sph_kernel kernel = context->run.options->sph_kernel;
@@ -134,7 +132,6 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
     {
       out->factor[to] = mcor_get_real(context, run->factors, i);
       out->outside[to] = ((const cl_int*)run->is_outside)[i] != 0;
-      run->left[slice] += out->outside[to];
     }
     if (out->volume)
     {
@@ -143,6 +140,7 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
         (plane ? cube * cube : h * cube * cube * cube);
     }
   }
+  (void)slice;
 }
 
 /* Delivers the factors, if they are wanted, and the volumes. */
@@ -154,7 +152,6 @@ static mcor_status mcor_deliver_factors(
   const int count = run->out->factor ? 5 : 3;
   run->context = context;
   run->input = input;
-  memset(run->left, 0, sizeof run->left);
   const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &run->order },
     { &grid->trim_weight, real, &run->weight }, { &grid->inv_h, real, &run->inv_h },
     { &run->limited, real, &run->factors },
@@ -170,9 +167,9 @@ static mcor_status mcor_deliver_factors(
   mcor_status status = mcor_map_all(context, views, count);
   MCOR_THEN(
     status, mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, run, NULL));
-  for (int i = 0; i < MCOR_SLICES; ++i)
+  for (int64_t i = 0; i < input->count && run->out->outside; ++i)
   {
-    context->run.statistics->widening_outside += run->left[i];
+    context->run.statistics->widening_outside += run->out->outside[i];
   }
   return mcor_unmap_all(context, views, count, status);
 }

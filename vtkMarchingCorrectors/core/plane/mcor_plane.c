@@ -20,9 +20,8 @@ typedef struct mcor_flatten_job
 {
   const mcor_plane* plane;
   mcor_array positions;
-  float* floats;   /* output in single precision, or NULL */
-  double* doubles; /* output in double precision; always for points */
   bool are_points; /* `positions` are points, which may lie off the plane */
+  double* flat;
 } mcor_flatten_job;
 
 static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)
@@ -37,14 +36,8 @@ static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t las
       mcor_read_array(&job->positions, begin, count, mcor_plane_axis(job->plane, a), x);
       for (int i = 0; i < count; ++i)
       {
-        const int64_t to = 3 * (begin + i) + a;
-        const bool off = a == 2 && job->are_points && x[i] != job->plane->at;
-        if (job->floats)
-        {
-          job->floats[to] = a < 2 ? (float)x[i] : 0;
-          continue;
-        }
-        job->doubles[to] = a < 2 ? x[i] : off ? NAN : 0;
+        const bool off = job->are_points && x[i] != job->plane->at;
+        job->flat[3 * (begin + i) + a] = a < 2 ? x[i] : off ? NAN : 0;
       }
     }
   }
@@ -68,13 +61,13 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
   memcpy(to, sides, sizeof sides);
 }
 
-mcor_status mcor_flatten_points(
-  mcor_context* context, const mcor_array* points, int64_t count, mcor_array* turned, double** flat)
+mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
+  int64_t count, bool are_points, mcor_array* turned, double** flat)
 {
   *flat = malloc((size_t)count * 3 * sizeof(double) + 1);
-  MCOR_FAIL_IF(
-    !*flat, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR), (long long)count, "points");
-  mcor_flatten_job job = { &context->plane, *points, NULL, *flat, true };
+  MCOR_FAIL_IF(!*flat, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR), (long long)count,
+    are_points ? "points" : "particles");
+  mcor_flatten_job job = { &context->plane, *positions, are_points, *flat };
   job.positions.components = 3;
   mcor_parallel_for(context, count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job);
   *turned = (mcor_array){ .data = *flat, .type = MCOR_FLOAT64, .components = 3 };
@@ -112,19 +105,11 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  if (!mcor_has_positions(input) || (plane->axis == 3 && plane->at == 0)) /* flat already */
-  {
-    return MCOR_OK;
-  }
-  const bool floats = input->positions.type == MCOR_FLOAT32;
-  const size_t width = 3 * (floats ? sizeof(float) : sizeof(double));
-  flat->positions = malloc((size_t)input->count * width + 1);
-  MCOR_FAIL_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(HOST_MEMORY_FOR),
-    (long long)input->count, "particles");
-  mcor_flatten_job job = { plane, flat->input.positions, floats ? flat->positions : NULL,
-    flat->positions, false };
-  flat->input.positions.data = flat->positions;
-  return mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job, NULL);
+  const bool is_flat = plane->axis == 3 && plane->at == 0;
+  return is_flat || !mcor_has_positions(input)
+    ? MCOR_OK
+    : mcor_flatten_positions(
+        context, &input->positions, input->count, false, &flat->input.positions, &flat->positions);
 }
 
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)

@@ -20,7 +20,7 @@ typedef struct mcor_flat
   mcor_options options;
   mcor_globals globals;
   mcor_ranks ranks;
-  void* positions;
+  double* positions;
 } mcor_flat;
 
 static inline bool mcor_is_plane(const mcor_context* context)
@@ -35,10 +35,10 @@ mcor_status mcor_find_plane(
 /* Turns the copies *flat into the plane. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns points into the plane: *turned, with the data *flat, which the caller frees. Points off the
- * plane become NaN. */
-mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points, int64_t count,
-  mcor_array* turned, double** flat);
+/* Turns positions into the plane: *turned, with the data *flat, which the caller frees. Points off
+ * the plane become NaN; particles lie in it. */
+mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
+  int64_t count, bool are_points, mcor_array* turned, double** flat);
 /* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,
  * else empty. */
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
@@ -73,5 +73,16 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
 /* Makes the surface's polylines from the lines that its triangles stand for, and turns the surface
  * back. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
+
+/* mcor_fill.c. mcor_begin_fill checks that lines can be filled, if they are to be, and evaluates the
+ * nodes. */
+mcor_status mcor_begin_fill(mcor_context* context);
+/* mcor_take_lines keeps the trimmed lines of the current iso value; mcor_number_lines notes the
+ * numbers of their points. Both do nothing if lines are not filled. */
+mcor_status mcor_take_lines(mcor_context* context);
+void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
+void mcor_end_fill(mcor_context* context);
+/* Runs after all iso values. Appends the filled triangles to the triangles that stand for lines. */
+mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
 #endif

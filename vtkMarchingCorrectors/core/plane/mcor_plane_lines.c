@@ -18,13 +18,6 @@ typedef struct mcor_line_ends
   bool done; /* the line that begins here is already in a polyline */
 } mcor_line_ends;
 
-/* The lines, found by their points. */
-typedef struct mcor_joining
-{
-  int64_t count;
-  mcor_line_ends* at; /* [point_count] */
-} mcor_joining;
-
 /* Whether a triangle stands for a line: two of its corners are the same. Other triangles are
  * filled. */
 static bool mcor_is_line(const int32_t* t)
@@ -32,16 +25,16 @@ static bool mcor_is_line(const int32_t* t)
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Reads the lines from triangles; trimming may leave two triangles of one line, see
- * mcor_trim_cut. */
-static mcor_status mcor_read_joining(
-  mcor_context* context, const mcor_surface* surface, mcor_joining* j)
+/* Reads the lines from triangles; trimming may leave two triangles of one line, see mcor_trim_cut.
+ * The caller frees the ends, [point_count], even after a failure. */
+static mcor_status mcor_read_lines(
+  mcor_context* context, const mcor_surface* surface, mcor_line_ends** ends)
 {
-  *j = (mcor_joining){ .at = malloc((size_t)surface->point_count * sizeof *j->at + 1) };
-  MCOR_TRY(mcor_allocated(context, j->at));
+  mcor_line_ends* at = *ends = malloc((size_t)surface->point_count * sizeof *at + 1);
+  MCOR_TRY(mcor_allocated(context, at));
   for (int64_t i = 0; i < surface->point_count; ++i)
   {
-    j->at[i] = (mcor_line_ends){ -1, -1, false };
+    at[i] = (mcor_line_ends){ -1, -1, false };
   }
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
@@ -50,9 +43,8 @@ static mcor_status mcor_read_joining(
                                           * line */
     {
       const int32_t from = t[1] == t[2] ? t[0] : t[2], to = t[1];
-      ++j->count;
-      j->at[from].next = to;
-      j->at[to].last = from;
+      at[from].next = to;
+      at[to].last = from;
     }
   }
   return MCOR_OK;
@@ -60,12 +52,11 @@ static mcor_status mcor_read_joining(
 
 /* Makes open polylines from their beginnings on, then closed polylines, which begin and end with
  * their first point. Returns false if memory ran out. */
-static bool mcor_join(mcor_joining* j, mcor_surface* surface)
+static bool mcor_join(mcor_line_ends* ends, mcor_surface* surface)
 {
-  const size_t lines = (size_t)j->count;
-  const int64_t points = surface->point_count;
-  surface->line_points = malloc(2 * lines * sizeof *surface->line_points + 1);
-  surface->line_offsets = malloc((lines + 1) * sizeof *surface->line_offsets);
+  const int64_t points = surface->point_count; /* there are no more lines than points */
+  surface->line_points = malloc(2 * (size_t)points * sizeof *surface->line_points + 1);
+  surface->line_offsets = malloc(((size_t)points + 1) * sizeof *surface->line_offsets);
   if (!surface->line_points || !surface->line_offsets)
   {
     return false;
@@ -74,26 +65,31 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   for (int64_t n = 0; n < 2 * points; ++n)
   {
     const int32_t first = (int32_t)(n % points), closed = n >= points;
-    const mcor_line_ends* ends = &j->at[first];
-    if (ends->next < 0 || ends->done || (!closed && ends->last >= 0))
+    int64_t to = surface->line_point_count;
+    if (ends[first].next < 0 || ends[first].done || (!closed && ends[first].last >= 0))
     {
       continue;
     }
-    int64_t to = surface->line_offsets[surface->line_count];
     surface->line_points[to++] = first;
-    for (int32_t at = first; j->at[at].next >= 0 && !j->at[at].done; at = j->at[at].next)
+    for (int32_t at = first; ends[at].next >= 0 && !ends[at].done; at = ends[at].next)
     {
-      j->at[at].done = true;
-      surface->line_points[to++] = j->at[at].next;
+      ends[at].done = true;
+      surface->line_points[to++] = ends[at].next;
     }
     surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
   }
   return true;
 }
 
+/* Returns the area of a triangle; below 0 if it runs round clockwise. */
+static double mcor_area_of(const double* a, const double* b, const double* c)
+{
+  return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+}
+
 /* Measures the length, and the area: of the filled region or, if all lines are closed, of what they
- * enclose. Areas of lines count from one of the points. u, v: the plane's axes. */
-static void mcor_measure_lines(mcor_surface* surface, int u, int v)
+ * enclose. Areas of lines count from one of the points. */
+static void mcor_measure_lines(mcor_surface* surface)
 {
   mcor_statistics* s = &surface->statistics;
   const double* x = surface->points;
@@ -107,9 +103,9 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
     {
       const double *a = x + 3 * (int64_t)surface->line_points[i],
                    *b = x + 3 * (int64_t)surface->line_points[i + 1];
-      const double du = b[u] - a[u], dv = b[v] - a[v];
+      const double du = b[0] - a[0], dv = b[1] - a[1];
       s->length += sqrt(du * du + dv * dv);
-      s->area += 0.5 * ((a[u] - x[u]) * (b[v] - x[v]) - (b[u] - x[u]) * (a[v] - x[v]));
+      s->area += mcor_area_of(x, a, b);
     }
   }
   s->is_closed = closed;
@@ -117,9 +113,8 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
   for (int64_t t = 0; t < surface->triangle_count && surface->band_value; ++t)
   {
     const int32_t* corner = surface->triangles + 3 * t;
-    const double *a = x + 3 * (int64_t)corner[0], *b = x + 3 * (int64_t)corner[1],
-                 *c = x + 3 * (int64_t)corner[2];
-    s->area += 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (c[u] - a[u]) * (b[v] - a[v]));
+    s->area += mcor_area_of(
+      x + 3 * (int64_t)corner[0], x + 3 * (int64_t)corner[1], x + 3 * (int64_t)corner[2]);
   }
 }
 
@@ -128,8 +123,8 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;
-  mcor_joining joining;
-  const mcor_status status = mcor_read_joining(context, surface, &joining);
+  mcor_line_ends* all_ends;
+  const mcor_status status = mcor_read_lines(context, surface, &all_ends);
   for (int64_t i = 0; i < surface->point_count && status == MCOR_OK; ++i)
   {
     float* n = surface->normals + 3 * i;
@@ -137,7 +132,7 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
     {
       continue;
     }
-    const mcor_line_ends ends = joining.at[i];
+    const mcor_line_ends ends = all_ends[i];
     const int64_t from = ends.last >= 0 ? ends.last : i, to = ends.next >= 0 ? ends.next : i;
     const double dx = surface->points[3 * to] - surface->points[3 * from],
                  dy = surface->points[3 * to + 1] - surface->points[3 * from + 1];
@@ -146,17 +141,17 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
     n[1] = length > 0 ? (float)(-dx / length) : 0;
     n[2] = 0;
   }
-  free(joining.at);
+  free(all_ends);
   return status;
 }
 
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
 {
   const mcor_plane* plane = &context->plane;
-  mcor_joining joining;
-  mcor_status status = mcor_read_joining(context, surface, &joining);
-  MCOR_THEN(status, mcor_allocated(context, mcor_join(&joining, surface)));
-  free(joining.at);
+  mcor_line_ends* ends;
+  mcor_status status = mcor_read_lines(context, surface, &ends);
+  MCOR_THEN(status, mcor_allocated(context, mcor_join(ends, surface)));
+  free(ends);
   MCOR_TRY(status);
   const bool filled = surface->band_value != NULL;
   int64_t count = 0;
@@ -175,7 +170,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
     surface->triangle_keys = NULL;
   }
   surface->triangle_count = count;
-  mcor_measure_lines(surface, 0, 1);
+  mcor_measure_lines(surface);
   mcor_unflatten_doubles(plane, surface->points, surface->point_count, plane->at);
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
   for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)

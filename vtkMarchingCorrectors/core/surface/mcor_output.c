@@ -7,7 +7,6 @@
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
-#include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 

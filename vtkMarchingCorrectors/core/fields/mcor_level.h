@@ -1,0 +1,49 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_level_h
+#define mcor_level_h
+
+/* What gauges and fluxes share: a call that measures where fluid is, from weight sums at points. There
+ * is fluid where the weight sum is at least a level. */
+
+#include "mcor_input.h"
+#include "mcor_probe.h"
+
+/* Points that are on the device at a time. */
+#define MCOR_LEVEL_BATCH (1 << 18)
+
+typedef struct mcor_level_job
+{
+  mcor_context* context;
+  double level;
+  mcor_findings around; /* ranges along x, y, z that hold all that is measured */
+  bool has_box;
+  double box[6];       /* the box of what this call owns, in the call's coordinates */
+  double owned[3][2];  /* the box's cells along x, y, z */
+  mcor_probe_run* run; /* evaluates the field */
+  double* with_solids; /* [MCOR_LEVEL_BATCH], weight sums of fluid and solids; NULL: no solids */
+} mcor_level_job;
+
+/* A gauge or section in messages: its name in quotes, or its number. */
+typedef struct mcor_label
+{
+  char text[80];
+} mcor_label;
+
+mcor_label mcor_label_of(const char* name, int64_t number);
+/* Sets the level and the box, and runs `body` with `job`. who: the subject of the error sentence
+ * about the level. */
+mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, const char* who, mcor_body body, mcor_statistics* statistics);
+/* Makes the search grid. If particles are near, prepares the job's run, and calls `work`. The field
+ * is evaluated in the job's box and `margin` around it or, if there is no box, in the ranges
+ * `around`. */
+mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
+  const mcor_options* options, double margin, mcor_status (*work)(mcor_level_job*));
+/* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered
+ * near solids so that they fall below the level where the fluid ends at them. */
+mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
+/* Whether a point is in a cell that this call owns. */
+bool mcor_owns_point(const mcor_level_job* job, const double point[3]);
+
+#endif

@@ -301,6 +301,25 @@ static void test_half_out_of_the_water(void** state)
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
+/* A wall through the whole pool has the same flux where it goes on far beyond the pool: what is dry plays no part in how
+ * exact the flux must be. */
+static void test_far_beyond_the_water(void** state)
+{
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  const mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT64);
+  mcor_flux_reading r[2];
+  for (int far = 0; far < 2; ++far)
+  {
+    const double low = far ? -5e4 : -3, y = far ? 5e4 : 19, z = far ? 5e4 : 16;
+    const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, low, low, 8.2, y, low, 8.2, low, z }, 0 };
+    r[far] = flux_of(*state, &input, &options, &wall);
+  }
+  CORE_CHECK(fabs(r[1].area - r[0].area) < 1e-6 * r[0].area, r[0].area, r[1].area);
+  CORE_CHECK(
+    fabs(r[1].mass_flux - r[0].mass_flux) < 1e-2 * r[0].area, r[0].mass_flux, r[1].mass_flux);
+}
+
 /* A disc that dips a little into the water has the same flux as many triangles from its centre to its rim. */
 static void test_disc_at_the_surface(void** state)
 {
@@ -529,5 +548,5 @@ static void test_weird(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_uniform, test_uniform_in_a_plane,
-  test_half_out_of_the_water, test_disc_at_the_surface, test_corner_on_the_level, test_same_bits,
-  test_period, test_walls, test_weird)
+  test_half_out_of_the_water, test_far_beyond_the_water, test_disc_at_the_surface,
+  test_corner_on_the_level, test_same_bits, test_period, test_walls, test_weird)

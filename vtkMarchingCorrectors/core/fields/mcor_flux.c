@@ -275,7 +275,7 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
   const double *weight = job->weight + first, *density = job->density + first;
   const double size = mcor_piece_size(job, piece), level = job->base.level;
   const double tolerance =
-    MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->area));
+    MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->near));
   double value[MCOR_FLUX_POINTS][MCOR_FLUX_SUMS], sum[2][MCOR_FLUX_SUMS] = { { 0 } };
   double nearest = INFINITY, speed = job->speed_floor, dense = job->density_floor;
   bool is_reached = false;

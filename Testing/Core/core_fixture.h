@@ -78,6 +78,7 @@ bool core_told(const mcor_context* context, const char* words);
 #define CORE_FLUXES CORE_OWNED(mcor_free_fluxes) mcor_fluxes
 #define CORE_PROJECTION CORE_OWNED(mcor_free_projection) mcor_projection
 #define CORE_WIDENING CORE_OWNED(mcor_free_widening) mcor_widening
+#define CORE_DERIVATIVES CORE_OWNED(mcor_free_derivatives) mcor_derivatives
 #define CORE_CONTEXT CORE_OWNED(core_free_context) mcor_context*
 #define CORE_MESSAGE CORE_OWNED(mcor_free_message) mcor_message
 #define CORE_FREED CORE_OWNED(core_free_block) /* The pointer came from malloc; free() frees it. */

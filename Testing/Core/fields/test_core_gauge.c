@@ -4,6 +4,7 @@
 /* Gauges find every crossing of the level. They are compared with sums in double precision at ten times as many points. */
 
 #include "core_fixture.h"
+#include "mcor_vector.h"
 
 #define LEVEL 0.5
 #define ERROR_OF_WEIGHT 1e-4
@@ -45,18 +46,16 @@ static double weight_at(const oracle_field* field, const mcor_gauge_line* line, 
 {
   double point[3];
   oracle_sample sample;
-  for (int a = 0; a < 3; ++a)
-  {
-    point[a] = line->from[a] + t * (line->to[a] - line->from[a]);
-  }
+  mcor_point_between(line->from, line->to, t, point);
   oracle_evaluate(field, NULL, point, &sample);
   return sample.weight;
 }
 
 static double length_of(const mcor_gauge_line* line)
 {
-  return sqrt(pow(line->to[0] - line->from[0], 2) + pow(line->to[1] - line->from[1], 2) +
-    pow(line->to[2] - line->from[2], 2));
+  double way[3];
+  mcor_subtract(line->to, line->from, way);
+  return sqrt(mcor_dot(way, way));
 }
 
 /* Compares the reading of a line with the crossings that dense samples find. A pair of crossings may be missing or
@@ -111,14 +110,12 @@ static void check_reading(
       isnan(r->place[0]));
     return;
   }
-  assert_true((r->state == MCOR_GAUGE_FULL) == full);
+  double place[3];
+  mcor_point_between(line->from, line->to, r->last / length, place);
+  mcor_subtract(place, r->place, place);
+  assert_true((r->state == MCOR_GAUGE_FULL) == full && sqrt(mcor_dot(place, place)) < 1e-9);
   assert_true(r->first <= r->last && r->last <= length * (1 + 1e-12) && r->depth <= r->last + 1e-9);
   assert_true(!full || fabs(r->last - length) < 1e-9);
-  for (int a = 0; a < 3; ++a)
-  {
-    const double place = line->from[a] + r->last / length * (line->to[a] - line->from[a]);
-    assert_true(fabs(r->place[a] - place) < 1e-9);
-  }
 }
 
 static void check_lines(mcor_context* context, const particle_set* set,

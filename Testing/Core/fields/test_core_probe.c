@@ -125,7 +125,7 @@ static void test_against_oracle(void** state)
 
 /* With smoothing lengths from 1 to 1000, errors of values, weights and gradients are small relative to the terms that
  * are summed. */
-static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
+static void test_wide_range_against_oracle(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);
   for (int64_t i = 0; i < set.count; ++i)
@@ -146,22 +146,21 @@ static void wide_range_run(mcor_context* context, mcor_type precision, double to
     }
   }
   mcor_options options = probe_options();
-  options.precision = precision;
   options.node_threshold = 0;
-  CORE_SAMPLES samples = probe(context, &set, &options, points, count);
   CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
-  double most = 0;
-  for (int64_t i = 0; i < count; ++i)
+  for (int precision = 0; precision < 2; ++precision)
   {
-    most = fmax(most, probe_compare(&field, points + 3 * i, 0, 1, true, tolerance, &samples, i));
+    /* In single precision, positions are rounded to 1e-5 of the least h. */
+    const double tolerance = precision ? 1e-11 : 5e-5;
+    double most = 0;
+    options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
+    CORE_SAMPLES samples = probe(*state, &set, &options, points, count);
+    for (int64_t i = 0; i < count; ++i)
+    {
+      most = fmax(most, probe_compare(&field, points + 3 * i, 0, 1, true, tolerance, &samples, i));
+    }
+    assert_true(most > 20); /* some points lie at small particles */
   }
-  assert_true(most > 20); /* some points lie at small particles */
-}
-
-static void test_wide_range_against_oracle(void** state)
-{
-  wide_range_run(*state, MCOR_FLOAT32, 5e-5); /* positions are rounded to 1e-5 of the least h */
-  wide_range_run(*state, MCOR_FLOAT64, 1e-11);
 }
 
 /* Probes two arrays, 12 components in all, so that there is more than one round, in another order of particles in a

@@ -5,6 +5,7 @@
  * ordinary call with these lengths. */
 
 #include "core_fixture.h"
+#include "mcor_vector.h"
 
 #define WIDEST 2.0
 
@@ -19,32 +20,26 @@ static particle_set make_scene(int n, double jitter, uint64_t seed)
   return set;
 }
 
-static double cubic(double q)
-{
-  return (q < 1      ? 1 - 1.5 * q * q + 0.75 * q * q * q
-             : q < 2 ? 0.25 * pow(2 - q, 3)
-                     : 0) /
-    3.14159265358979323846;
-}
-
 static double distance(const particle_set* set, int64_t i, int64_t j)
 {
-  double sum = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double d = set->position[3 * i + a] - set->position[3 * j + a];
-    sum += d * d;
-  }
-  return sqrt(sum);
+  double way[3];
+  mcor_subtract(set->position + 3 * i, set->position + 3 * j, way);
+  return sqrt(mcor_dot(way, way));
+}
+
+/* Returns the weight of particle k at particle j for a smoothing length. */
+static double weight_of(const particle_set* set, int64_t j, int64_t k, double h)
+{
+  const double offset[3] = { distance(set, j, k), 0, 0 };
+  return set->volume[k] * oracle_kernel_value(ORACLE_CUBIC_SPLINE, h, offset, NULL);
 }
 
 static double weight_with(const particle_set* set, int64_t j, double s)
 {
-  const double h = s * set->smoothing_length[j];
   double sum = 0;
   for (int64_t k = 0; k < set->count; ++k)
   {
-    sum += set->volume[k] * cubic(distance(set, j, k) / h) / (h * h * h);
+    sum += weight_of(set, j, k, s * set->smoothing_length[j]);
   }
   return sum;
 }
@@ -72,8 +67,7 @@ static double expected_factor(const particle_set* set, int64_t j, double iso, do
     }
   }
   const double middle =
-    sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) / fmax(crowd, 1) /
-    set->smoothing_length[j];
+    sqrt(mcor_dot(offset, offset)) / fmax(crowd, 1) / set->smoothing_length[j];
   double upper = WIDEST, above = weight_with(set, j, upper);
   const double sided = ramp(middle, 0.4, 0.6) * (1.5 * ramp(crowd, 4.5, 6) - 0.5);
   const double least =
@@ -120,8 +114,7 @@ static void test_factors(void** state)
       double mean = 0, weight = 0;
       for (int64_t k = 0; k < set.count; ++k)
       {
-        const double h = set.smoothing_length[k],
-                     v = set.volume[k] * cubic(distance(&set, j, k) / h) / (h * h * h);
+        const double v = weight_of(&set, j, k, set.smoothing_length[k]);
         mean += v * s[k];
         weight += v;
       }

@@ -227,7 +227,7 @@ static void test_derivatives_and_gauges(void** state)
     input.attributes = &attribute;
     input.attribute_count = 1;
     mcor_options options = core_options(NULL);
-    mcor_derivatives derivatives;
+    CORE_DERIVATIVES derivatives;
     CORE_OK(context, mcor_derive(context, &input, &options, MCOR_GRADIENT_CORRECTED, &derivatives));
     assert_int_equal(derivatives.statistics.dimension, 2);
     for (int64_t i = 0; i < set.count; ++i)
@@ -239,7 +239,6 @@ static void test_derivatives_and_gauges(void** state)
           fabs(j[3 * v + v] - 1) < 1e-3 && j[3 * u + axis] == 0 && j[3 * axis + u] == 0,
         i, j[3 * u + u], j[3 * u + v], j[3 * v + u], j[3 * v + v]);
     }
-    mcor_free_derivatives(&derivatives);
     mcor_gauge_line line = { .name = "across" }, dry = line;
     line.from[axis] = line.to[axis] = dry.from[axis] = dry.to[axis] = 5;
     line.to[(axis + 1) % 3] = 12;

@@ -121,7 +121,7 @@ static void mcor_place_halves(
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2])
 {
   const double first = side[0], last = side[1];
-  for (int s = 0; s < 2; ++s)
+  for (int s = 0; s < 2 && sides; ++s)
   {
     const double at = ceil(sides[2 * axis + s] / lattice->edge[axis] - 0.5);
     side[s] = fmin(fmax(at - (double)lattice->origin[axis], first), last);
@@ -136,17 +136,17 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   const mcor_lattice* lattice = &context->lattice;
   box->is_part = box->is_empty = false;
   box->ring = mcor_has_box(options) ? mcor_ring_of(options) : MCOR_BOX_RING;
+  const mcor_ranks* ranks = options->ranks;
+  const double* sides = mcor_has_box(options) ? options->box : NULL;
+  const double* whole = ranks && mcor_has_sides(ranks->whole_box) ? ranks->whole_box : NULL;
   for (int a = 0; a < 3; ++a)
   {
     const bool periodic = lattice->period[a] > 0;
     const double first = periodic ? lattice->period_first[a] : (double)lattice->first[a];
     const double last = periodic ? first + lattice->period[a] : (double)lattice->last[a];
-    double side[2] = { first, last };
-    const double* sides = mcor_has_box(options) ? options->box : NULL;
-    if (sides)
-    {
-      mcor_place_sides(lattice, a, sides, side);
-    }
+    double side[2] = { first, last }, all[2] = { first, last };
+    mcor_place_sides(lattice, a, sides, side);
+    mcor_place_sides(lattice, a, whole, all);
     if (box->of_points)
     {
       /* Takes the cells around a probe's points; the whole period if points lie beyond the period,
@@ -163,14 +163,6 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
-    /* Finds the cells that any rank owns; all cells, if the whole surface has no box. */
-    const double* whole =
-      options->ranks && mcor_has_sides(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
-    double all[2] = { first, last };
-    if (whole)
-    {
-      mcor_place_sides(lattice, a, whole, all);
-    }
     box->whole_first[a] = (int)all[0];
     box->whole_last[a] = (int)all[1];
     mcor_place_halves(

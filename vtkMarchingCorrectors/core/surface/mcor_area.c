@@ -54,64 +54,56 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Sums over slices of the triangles; they are exact, like the sums over parts. */
+/* Sums over slices of the triangles; they are exact, like the sums over parts. Without `sums`, the
+ * largest terms alone are wanted, which decide the sums' units. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;
   const int64_t* numbers;
+  bool sums;
   const mcor_measures* all;
   mcor_measures slices[MCOR_SLICES];
 } mcor_measure_job;
 
-static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_measure_job* job = data;
-  double areas = 0, volumes = 0; /* the largest terms */
-  for (int64_t t = first; t < last; ++t)
-  {
-    double area, volume;
-    mcor_measure_triangle(job->surface, job->all->origin, t, &area, &volume);
-    areas = area > areas ? area : areas;
-    volumes = fabs(volume) > volumes ? fabs(volume) : volumes;
-  }
-  job->slices[slice] = (mcor_measures){ .area_most = areas, .volume_most = volumes };
-}
-
-static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measure_job* job = data;
   const mcor_measures* all = job->all;
   const int64_t* numbers = job->numbers;
   const double large_area = 0x1.8p52 * mcor_exact_unit(all->area_most, all->triangle_count);
   const double large_volume = 0x1.8p52 * mcor_exact_unit(all->volume_most, all->triangle_count);
-  double areas = 0, volumes = 0;
+  mcor_measures found = { .area = 0 };
   uint64_t open = 0;
   for (int64_t t = first; t < last; ++t)
   {
     const int32_t* triangle = job->surface->triangles + 3 * t;
     double area, volume;
     mcor_measure_triangle(job->surface, all->origin, t, &area, &volume);
-    areas += mcor_round_term(area, large_area);
-    volumes += mcor_round_term(volume, large_volume);
-    for (int i = 0; i < 3; ++i)
+    found.area_most = area > found.area_most ? area : found.area_most;
+    found.volume_most = fabs(volume) > found.volume_most ? fabs(volume) : found.volume_most;
+    found.area += mcor_round_term(area, large_area);
+    found.volume += mcor_round_term(volume, large_volume);
+    for (int i = 0; i < 3 && job->sums; ++i)
     {
       const int64_t p = triangle[i], q = triangle[(i + 1) % 3];
       const int64_t a = numbers ? numbers[p] : p, b = numbers ? numbers[q] : q;
       open += a < b ? mcor_edge_number(a, b) : 0 - mcor_edge_number(b, a);
     }
   }
-  job->slices[slice] = (mcor_measures){ .area = areas, .volume = volumes, .open = (int64_t)open };
+  found.open = (int64_t)open;
+  job->slices[slice] = found;
 }
 
-/* Adds the sums of all slices, and finds their largest terms. context: NULL outside of a call. */
+/* Finds the largest terms of all slices, or, with the largest terms of all parts, the sums. context:
+ * NULL outside of a call. */
 static mcor_status mcor_measure_slices(mcor_context* context, const mcor_surface* surface,
-  const int64_t* numbers, mcor_slice_body slice, mcor_measures* measures)
+  const int64_t* numbers, bool sums, mcor_measures* measures)
 {
-  mcor_measure_job job = { .surface = surface, .numbers = numbers, .all = measures };
+  mcor_measure_job job = { .surface = surface, .numbers = numbers, .sums = sums, .all = measures };
   int slices;
   uint64_t open = 0;
-  MCOR_TRY(
-    mcor_parallel_run(context, surface->triangle_count, MCOR_HEAVY_GRAIN, slice, &job, &slices));
+  MCOR_TRY(mcor_parallel_run(
+    context, surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
   measures->area = measures->volume = 0;
   for (int i = 0; i < slices; ++i)
   {
@@ -129,12 +121,12 @@ void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
 {
   measures->triangle_count = surface->triangle_count;
   measures->area_most = measures->volume_most = 0;
-  mcor_measure_slices(NULL, surface, NULL, mcor_terms_slice, measures);
+  mcor_measure_slices(NULL, surface, NULL, false, measures);
 }
 
 void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
 {
-  mcor_measure_slices(NULL, surface, numbers, mcor_sums_slice, measures);
+  mcor_measure_slices(NULL, surface, numbers, true, measures);
 }
 
 void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics)
@@ -157,8 +149,8 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
   {
     measures.origin[d] = surface->points[d];
   }
-  MCOR_TRY(mcor_measure_slices(context, surface, NULL, mcor_terms_slice, &measures));
-  MCOR_TRY(mcor_measure_slices(context, surface, NULL, mcor_sums_slice, &measures));
+  MCOR_TRY(mcor_measure_slices(context, surface, NULL, false, &measures));
+  MCOR_TRY(mcor_measure_slices(context, surface, NULL, true, &measures));
   mcor_keep_measures(&measures, &surface->statistics);
   return MCOR_OK;
 }

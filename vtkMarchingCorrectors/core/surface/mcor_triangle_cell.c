@@ -128,23 +128,20 @@ mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mc
   MCOR_TRY(mcor_allocated(context, number));
   int64_t triangles = 0, points = 0;
   memset(number, 0xff, (size_t)surface->point_count * sizeof *number);
-  for (int64_t i = 0; i < 3 * surface->triangle_count; ++i)
+  for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
-    if (kept[i / 3])
+    for (int c = 0; c < 3 && kept[i]; ++c)
     {
-      number[surface->triangles[i]] = 0;
+      number[surface->triangles[3 * i + c]] = 0;
+    }
+    if (kept[i])
+    {
+      mcor_move_triangle(surface, i, triangles++);
     }
   }
   for (int64_t i = 0; i < surface->point_count; ++i)
   {
     number[i] = number[i] < 0 ? -1 : (int32_t)points++;
-  }
-  for (int64_t i = 0; i < surface->triangle_count; ++i)
-  {
-    if (kept[i])
-    {
-      mcor_move_triangle(surface, i, triangles++);
-    }
   }
   for (int64_t i = 0; i < 3 * triangles; ++i)
   {

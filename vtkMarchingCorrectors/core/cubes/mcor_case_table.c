@@ -24,11 +24,6 @@ static int mcor_corner_at(int position)
   return position % 3 / 2 | position / 3 % 3 / 2 << 1 | position / 18 << 2;
 }
 
-static int mcor_corner_above(int cube_case, int corner)
-{
-  return cube_case >> corner & 1;
-}
-
 /* Returns corner i of a face, counter-clockwise seen from outside. */
 static int mcor_face_corner(int face, int i)
 {
@@ -40,8 +35,8 @@ static int mcor_face_ambiguous(int cube_case, int face)
   int changes = 0;
   for (int i = 0; i < 4; ++i)
   {
-    changes += mcor_corner_above(cube_case, mcor_face_corner(face, i)) !=
-      mcor_corner_above(cube_case, mcor_face_corner(face, i + 1));
+    changes +=
+      (cube_case >> mcor_face_corner(face, i) ^ cube_case >> mcor_face_corner(face, i + 1)) & 1;
   }
   return changes == 4;
 }
@@ -61,7 +56,7 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
   cl_uint above = 0;
   for (int position = 0; position < 27; ++position)
   {
-    above |= (cl_uint)mcor_corner_above(cube_case, mcor_corner_at(position)) << position;
+    above |= (cl_uint)(cube_case >> mcor_corner_at(position) & 1) << position;
   }
   mcor_adaptive_links links;
   mcor_adaptive_link(0, above, &links);
@@ -96,7 +91,7 @@ static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
     for (int face = 0; face < 6; ++face)
     {
       const int normal = face >> 1, side = face & 1, axis = loop->slot[i] >> 5;
-      const int first = side ^ mcor_corner_above(cube_case, side << normal);
+      const int first = side ^ (cube_case >> (side << normal) & 1);
       const bool is_end = axis == (normal + (first ? 1 : 2)) % 3;
       if (is_end &&
         (loop->facets[i] >> (24 + face) & 1)) /* puts the two edges into different facets */
@@ -144,8 +139,8 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   {
     const int face = i / 4, ambiguous = mcor_face_ambiguous(cube_case, face);
     const int a = mcor_face_corner(face, i), b = mcor_face_corner(face, i + 1 + ambiguous);
-    const int above = mcor_corner_above(cube_case, a);
-    if (ambiguous ? above == (joined >> face & 1) : above == mcor_corner_above(cube_case, b))
+    const int above = cube_case >> a & 1;
+    if (ambiguous ? above == (joined >> face & 1) : above == (cube_case >> b & 1))
     {
       pairs[count][0] = a;
       pairs[count++][1] = b;
@@ -247,7 +242,7 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   {
     const int slot = loops->of[i].slot[0], lower = mcor_corner_at(slot & 31),
               upper = lower | 1 << (slot >> 5);
-    around[i] = region[mcor_corner_above(loops->cube_case, lower) == side ? upper : lower];
+    around[i] = region[(loops->cube_case >> lower & 1) == side ? upper : lower];
     for (int j = 0; j < i; ++j)
     {
       if (around[i] == around[j])

@@ -24,22 +24,6 @@ static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
   return x ^ (x >> 31);
 }
 
-/* Finds a triangle's area, and the volume between it and the origin. */
-static inline void mcor_measure_triangle(
-  const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
-{
-  double c[3][3], u[3], v[3], n[3];
-  for (int i = 0; i < 3; ++i)
-  {
-    mcor_subtract(surface->points + 3 * (int64_t)surface->triangles[3 * t + i], origin, c[i]);
-  }
-  mcor_subtract(c[1], c[0], u);
-  mcor_subtract(c[2], c[0], v);
-  mcor_cross(u, v, n);
-  *area = 0.5 * sqrt(mcor_dot(n, n));
-  *volume = mcor_dot(c[0], n) / 6;
-}
-
 /* Returns a unit, a power of two, in which a sum of `count` terms up to `most` needs at most 53
  * bits. */
 static double mcor_exact_unit(double most, int64_t count)
@@ -77,8 +61,16 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   for (int64_t t = first; t < last; ++t)
   {
     const int32_t* triangle = job->surface->triangles + 3 * t;
-    double area, volume;
-    mcor_measure_triangle(job->surface, all->origin, t, &area, &volume);
+    double c[3][3], u[3], v[3], n[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      mcor_subtract(job->surface->points + 3 * (int64_t)triangle[i], all->origin, c[i]);
+    }
+    mcor_subtract(c[1], c[0], u);
+    mcor_subtract(c[2], c[0], v);
+    mcor_cross(u, v, n);
+    /* The volume is between the triangle and the origin. */
+    const double area = 0.5 * sqrt(mcor_dot(n, n)), volume = mcor_dot(c[0], n) / 6;
     found.area_most = area > found.area_most ? area : found.area_most;
     found.volume_most = fabs(volume) > found.volume_most ? fabs(volume) : found.volume_most;
     found.area += mcor_round_term(area, large_area);

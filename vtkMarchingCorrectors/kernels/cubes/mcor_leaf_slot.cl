@@ -19,19 +19,7 @@ ulong mcor_leaf_wanted(uint finer, int plane)
     const uint at = MCOR_DIRECTION(1 + (d & 1), 1 + (d >> 1 & 1), 1 + (d >> 2));
     wanted |= (finer >> at & 1) ? 0 : 1UL << d;
   }
-  for (int d = 0; d < 27 && finer; ++d)
-  {
-    const int x = d % 3, y = d / 3 % 3, z = d / 9;
-    if (finer >> d & 1)
-    {
-      for (int b = 0; b < 27; ++b)
-      {
-        const int bx = b % 3, by = b / 3 % 3, bz = b / 9;
-        const bool beside = (x == 1 || bx == x) && (y == 1 || by == y) && (z == 1 || bz == z);
-        wanted |= beside ? 1UL << (8 + b) : 0;
-      }
-    }
-  }
+  wanted |= (ulong)mcor_leaf_hanging(finer) << 8;
   return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
 }
 

@@ -138,7 +138,8 @@ bool MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
   std::vector<std::string> outputs; // this process's files; on the first process, all files
-  for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
+  const bool isInPieces = EndsWith(job.Output, ".pvtp");
+  for (int rank = 0; isInPieces && rank < sharing.GetCount(); ++rank)
   {
     if (sharing.IsFirst() || rank == sharing.GetRank())
     {
@@ -178,7 +179,6 @@ bool MakeSurface(Sharing& sharing)
     }
   }
   const double peakResidentBytes = PeakResidentBytes();
-  const bool isInPieces = IsInPieces(job.Output);
   run.Surface = isInPieces ? run.Surface : sharing.Merge(run.Surface);
   ColorScale colors(job.Picture);
   OutputFiles files;

@@ -6,6 +6,7 @@
 test_scripts.py SOURCE SCRATCH [TESTS]
 """
 import os
+import pathlib
 import pty
 import re
 import shutil
@@ -25,22 +26,23 @@ def run(*command, cwd=SOURCE):
 
 class Sources(unittest.TestCase):
     def test_only_some_files_call_opencl(self):
-        core = os.path.join(SOURCE, "vtkMarchingCorrectors", "core")
-        callers = set()
-        for folder, _, names in os.walk(core):
-            for name in names:
-                with open(os.path.join(folder, name), encoding="utf-8") as file:
-                    if re.search(r"\bcl[A-Z]\w*\s*\(", file.read()):
-                        callers.add(os.path.relpath(folder, core))
+        core = pathlib.Path(SOURCE, "vtkMarchingCorrectors", "core")
+        callers = {file.parent.name for file in core.rglob("*")
+                   if file.is_file() and re.search(r"\bcl[A-Z]\w*\s*\(", file.read_text(encoding="utf-8"))}
         self.assertEqual(callers, {"device"})
-
 
     def test_letters_are_small_in_every_locale(self):
         """No source uses tolower for names, because in a Turkish locale tolower('I') is not i, and arrays and blocks would not be found."""
-        for folder, _, names in os.walk(os.path.join(SOURCE, "vtkMarchingCorrectors")):
-            for name in names:
-                with open(os.path.join(folder, name), encoding="utf-8") as file:
-                    self.assertNotRegex(file.read(), r"\b(std::)?to(lower|upper)\([^'I]", name)
+        for file in filter(pathlib.Path.is_file, pathlib.Path(SOURCE, "vtkMarchingCorrectors").rglob("*")):
+            self.assertNotRegex(file.read_text(encoding="utf-8"), r"\b(std::)?to(lower|upper)\([^'I]", file)
+
+
+class ScratchTest(unittest.TestCase):
+    """A test that begins with an empty folder."""
+
+    def setUp(self):
+        shutil.rmtree(SCRATCH, ignore_errors=True)
+        os.makedirs(SCRATCH)
 
 
 class Arguments(unittest.TestCase):
@@ -69,11 +71,7 @@ class Arguments(unittest.TestCase):
                 self.assertNotIn("set -e", result.stdout)
 
 
-class Steps(unittest.TestCase):
-    def setUp(self):
-        shutil.rmtree(SCRATCH, ignore_errors=True)
-        os.makedirs(SCRATCH)
-
+class Steps(ScratchTest):
     def run_steps(self, commands, interrupt=False):
         """Runs commands in bash with the functions of the steps. interrupt: sends Ctrl-C to all processes of the terminal when a step has written to
         the pipe; the reader of the pipe goes on afterwards."""
@@ -141,7 +139,7 @@ class Steps(unittest.TestCase):
             "2/2 Test #20: slow_one ....   Passed    8.00 sec\n\nsummary\nstatus 3\n"), output)
 
 
-class Configuration(unittest.TestCase):
+class Configuration(ScratchTest):
     def configure(self, *options, source=SOURCE):
         return run("cmake", "-Wno-dev", "-S", source, "-B", os.path.join(SCRATCH, "configured"), *options)
 
@@ -187,11 +185,6 @@ class Configuration(unittest.TestCase):
                                 "-DPython3_EXECUTABLE=/usr/bin/python3")
         self.check_stops(result, "made for Another 1.0", "--fresh")
 
-    def setUp(self):
-        shutil.rmtree(SCRATCH, ignore_errors=True)
-        os.makedirs(SCRATCH)
-
 
 if __name__ == "__main__":
-    os.makedirs(SCRATCH, exist_ok=True)
     unittest.main(argv=sys.argv[:1] + sys.argv[3:])

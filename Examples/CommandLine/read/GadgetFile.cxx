@@ -61,8 +61,8 @@ public:
     View data;
     const bool isEmpty = this->HasLabels && !this->Next(data);
     this->Check(!isEmpty && this->Next(data) && data.size() == HeaderSize, "its header is damaged");
-    this->Copy(data, this->Counts, 6);
-    this->Copy(data.substr(24), this->Masses, 6);
+    this->Copy(data, this->Counts, 6, sizeof(std::int32_t));
+    this->Copy(data.substr(24), this->Masses, 6, sizeof(double));
     this->Time = this->Number<double>(data.substr(72));
     this->HasCooling = this->Number<std::int32_t>(data.substr(120)) != 0;
     this->Files = this->Number<std::int32_t>(data.substr(124));
@@ -103,7 +103,7 @@ public:
     this->Check(gas->GetPoints(), "it has no positions");
     if (this->Masses[0] != 0.0)
     {
-        vtkNew<vtkDoubleArray> masses;
+      vtkNew<vtkDoubleArray> masses;
       masses->SetName("Masses");
       masses->SetNumberOfValues(this->Counts[0]);
       masses->Fill(this->Masses[0]);
@@ -120,13 +120,12 @@ private:
   void Check(bool isGood, const std::string& why) const { RequireToRead(isGood, this->Name, why); }
 
   /// Copies numbers, and reverses their bytes if the file has the other byte order.
-  template <typename T>
-  void Copy(View from, T* to, std::size_t count) const
+  void Copy(View from, void* to, std::size_t count, std::size_t width) const
   {
-    from.copy(reinterpret_cast<char*>(to), count * sizeof(T));
+    from.copy(static_cast<char*>(to), count * width);
     if (this->IsSwapped)
     {
-      vtkByteSwap::SwapVoidRange(to, count, sizeof(T));
+      vtkByteSwap::SwapVoidRange(to, count, width);
     }
   }
 
@@ -134,7 +133,7 @@ private:
   T Number(View from) const
   {
     T number = 0;
-    this->Copy(from, &number, 1);
+    this->Copy(from, &number, 1, sizeof(T));
     return number;
   }
 
@@ -178,10 +177,8 @@ private:
     const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
     array->SetNumberOfComponents(known.Columns);
     array->SetNumberOfTuples(this->Counts[0]);
-    const auto count = static_cast<std::size_t>(array->GetNumberOfValues());
-    void* const to = array->GetVoidPointer(0);
-    width == 4 ? this->Copy(record, static_cast<std::uint32_t*>(to), count)
-               : this->Copy(record, static_cast<std::uint64_t*>(to), count);
+    this->Copy(record, array->GetVoidPointer(0),
+      static_cast<std::size_t>(array->GetNumberOfValues()), width);
     array->SetName(known.Name);
     if (&known == Arrays) // this array is the positions
     {

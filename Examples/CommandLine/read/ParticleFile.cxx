@@ -431,7 +431,7 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
     {
       const vtkSmartPointer<vtkAbstractArray> values = AsNumbers(file, array);
       part->GetPointData()->AddArray(values);
-      types[array->GetName()].insert(values->GetDataType());
+      types[values->GetName()].insert(values->GetDataType());
     }
     if (!sets.AreParts)
     {

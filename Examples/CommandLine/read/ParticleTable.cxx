@@ -4,7 +4,6 @@
 
 #include "ParticleFile.h"
 #include "Text.h"
-#include "TextTable.h"
 
 #include "vtkFieldData.h"
 #include "vtkSPHSay.h"
@@ -41,19 +40,19 @@ bool AreNumbers(const std::vector<View>& cells)
 /// Splits a comment into possible names: x y z, or x, y, z, or [01 x] [02 y] [03 z].
 std::vector<View> WordsOf(View comment)
 {
-  const std::size_t open = comment.find('['), blank = comment.find(' ', open);
-  double number;
-  if (blank == View::npos || !ToNumber(comment.substr(open + 1, blank - open - 1), number))
-  {
-    return Split(comment, comment.find(',') != View::npos ? ',' : ' ');
-  }
   std::vector<View> words;
-  for (std::size_t at = open; at != View::npos; at = comment.find('[', at + 1))
+  const std::vector<View> parts = Split(comment, '[');
+  for (std::size_t p = 1; p < parts.size(); ++p)
   {
-    const View part = comment.substr(at, comment.find(']', at) - at);
-    words.push_back(Trimmed(part.substr(std::min(part.find(' '), part.size()))));
+    const View part = parts[p].substr(0, parts[p].find(']'));
+    const std::size_t blank = part.find(' ');
+    double number;
+    if (blank != View::npos && ToNumber(part.substr(0, blank), number))
+    {
+      words.push_back(Trimmed(part.substr(blank)));
+    }
   }
-  return words;
+  return !words.empty() ? words : Split(comment, comment.find(',') != View::npos ? ',' : ' ');
 }
 
 /// Reads rows of values below a row of names, which may be a comment.
@@ -377,27 +376,20 @@ StepFinder FinderOf(const std::string& file)
 /// going through all earlier steps.
 std::map<std::string, std::vector<Lines>> KnownSteps;
 
-/// Returns the lines of a file from one of its steps on.
-Lines LinesFrom(const std::string& file, std::size_t number)
-{
-  const Lines lines(file);
-  if (number == 0)
-  {
-    return lines;
-  }
-  const std::vector<Lines>& known = KnownSteps[file];
-  if (known.empty() || known.front().GetRest().size() != lines.GetRest().size()) // it has grown
-  {
-    ListTimesInText(file);
-  }
-  RequireToRead(number < known.size(), file, "it has no step " + std::to_string(number));
-  return known[number];
-}
-
 vtkSmartPointer<vtkDataObject> ReadStep(
   const std::string& file, StepFinder find, std::size_t number)
 {
-  Lines lines = LinesFrom(file, number);
+  Lines lines(file);
+  if (number > 0)
+  {
+    const std::vector<Lines>& known = KnownSteps[file];
+    if (known.empty() || known.front().GetRest().size() != lines.GetRest().size()) // it has grown
+    {
+      ListTimesInText(file);
+    }
+    RequireToRead(number < known.size(), file, "it has no step " + std::to_string(number));
+    lines = known[number];
+  }
   Step step;
   Table& table = step.Columns;
   RequireToRead(find(lines, step), file, "it has no step " + std::to_string(number));

@@ -3,7 +3,6 @@
 #include "Formats.h"
 
 #include "Text.h"
-#include "TextTable.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkSPHSay.h"

@@ -4,7 +4,6 @@
 
 #include "Failures.h"
 #include "Text.h"
-#include "TextTable.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"

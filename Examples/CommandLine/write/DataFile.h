@@ -51,13 +51,10 @@ bool HoldsArrays(const std::string& file);
 std::string LostArrays(
   const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more);
 
-/// Whether this is a .pvtp file, which lists one piece per process.
-bool IsInPieces(const std::string& file);
-
 /// Returns the name of a piece: OUT_3.vtp beside OUT.pvtp.
 std::string PieceName(const std::string& file, int rank);
 
-/// Returns the text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
+/// Returns the text of the .pvtp file, which lists one piece per process; `piece` is one of the pieces, which have the same arrays.
 std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
 
 /// Returns a text as a field of CSV (RFC 4180) that no spreadsheet takes as a formula.

@@ -29,50 +29,38 @@
 namespace
 {
 
-/// VTK's writers put names into XML as they are. While this object lives, arrays and their
-/// components have names that are fit for XML.
-class NamesForXml
+using Work = std::function<void()>;
+
+/// VTK's writers put names into XML as they are. Gives arrays and their components names that are fit
+/// for XML, and returns what gives them their own names again.
+std::vector<Work> FitNamesForXml(vtkDataSet* data)
 {
-public:
-  explicit NamesForXml(vtkDataSet* data)
+  std::vector<Work> undo;
+  const auto fit = [&undo](const char* name, const std::function<void(const char*)>& set)
   {
-    for (vtkFieldData* arrays : std::initializer_list<vtkFieldData*>{
-           data->GetPointData(), data->GetCellData(), data->GetFieldData() })
+    const std::string before = name ? name : "", fitting = EscapedForXml(before);
+    if (fitting != before)
     {
-      for (vtkAbstractArray* array : ArraysOf(arrays))
+      set(fitting.c_str());
+      undo.emplace_back([before, set] { set(before.c_str()); });
+    }
+  };
+  for (vtkFieldData* arrays : std::initializer_list<vtkFieldData*>{
+         data->GetPointData(), data->GetCellData(), data->GetFieldData() })
+  {
+    for (vtkAbstractArray* array : ArraysOf(arrays))
+    {
+      array->SetName(array->GetName() ? array->GetName() : ""); // VTK would write an address
+      fit(array->GetName(), [array](const char* name) { array->SetName(name); });
+      for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
       {
-        this->Replace(array->GetName(), [array](const char* name) { array->SetName(name); });
-        for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
-        {
-          this->Replace(array->GetComponentName(c),
-            [array, c](const char* name) { array->SetComponentName(c, name); });
-        }
+        fit(array->GetComponentName(c),
+          [array, c](const char* name) { array->SetComponentName(c, name); });
       }
     }
   }
-  ~NamesForXml()
-  {
-    for (const std::function<void()>& undo : this->Undo)
-    {
-      undo();
-    }
-  }
-  NamesForXml(const NamesForXml&) = delete;
-  void operator=(const NamesForXml&) = delete;
-
-private:
-  void Replace(const char* name, const std::function<void(const char*)>& set)
-  {
-    const std::string before = name ? name : "", fit = EscapedForXml(before);
-    if (!name || fit != before) // without a name, VTK would write an address
-    {
-      set(fit.c_str());
-      this->Undo.emplace_back([before, set] { set(before.c_str()); });
-    }
-  }
-
-  std::vector<std::function<void()>> Undo;
-};
+  return undo;
+}
 
 /// Every format that is written, with the class that it holds; it holds derived classes, too.
 const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" },
@@ -83,13 +71,14 @@ const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" 
 
 void CheckDataSetFile(const std::string& file, vtkDataSet* data)
 {
+  bool isGood = false;
   std::vector<std::string> endings;
   for (const auto& [ending, className] : Formats)
   {
     endings.insert(endings.end(), data->IsA(className) ? 1 : 0, ending);
+    isGood = isGood || (data->IsA(className) && EndsWith(file, ending));
   }
-  Require(std::any_of(endings.begin(), endings.end(),
-            [&file](const std::string& ending) { return EndsWith(file, ending); }),
+  Require(isGood,
     "the output is the data set of the points, a " + std::string(data->GetClassName()) +
       ", for a " + Joined(endings, " or ") + " file, not '" + file + "'");
 }
@@ -111,7 +100,7 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data)
   }
   else
   {
-    const NamesForXml names(data);
+    const std::vector<Work> undo = FitNamesForXml(data);
     const auto writer =
       vtk::TakeSmartPointer(vtkXMLDataObjectWriter::NewWriter(data->GetDataObjectType()));
     writer->SetInputDataObject(data);
@@ -121,6 +110,10 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data)
     writer->SetBlockSize(1 << 19);
     isGood = writer->Write() != 0;
     bytes = writer->GetOutputString();
+    for (const Work& each : undo)
+    {
+      each();
+    }
   }
   RequireToWrite(isGood && Messages().Errors.empty(), file, Messages().FirstError());
   return bytes;

@@ -34,14 +34,6 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Makes room for more bytes. Returns their place.
-char* Grow(std::string& bytes, std::size_t more)
-{
-  const std::size_t begin = bytes.size();
-  bytes.resize(begin + more);
-  return &bytes[0] + begin;
-}
-
 /// Writes a value with its least significant byte first, on every machine.
 template <typename T>
 void Put(char*& next, T value)
@@ -75,7 +67,8 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
   const vtkIdType triangles = surface->GetNumberOfPolys();
-  char* next = Grow(bytes, 4 + 50 * static_cast<std::size_t>(triangles));
+  bytes.resize(84 + 50 * static_cast<std::size_t>(triangles));
+  char* next = &bytes[80];
   Put(next, static_cast<std::uint32_t>(triangles));
   ForCells(surface->GetPolys(),
     [&next, surface](vtkIdType, const vtkIdType* corners)
@@ -227,8 +220,10 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   head << "\nelement face " << triangles
        << "\nproperty list uchar uint vertex_indices\nend_header\n";
   bytes = head.str();
-  char* next =
-    Grow(bytes, size * static_cast<std::size_t>(points) + 13 * static_cast<std::size_t>(triangles));
+  const std::size_t begin = bytes.size();
+  bytes.resize(
+    begin + size * static_cast<std::size_t>(points) + 13 * static_cast<std::size_t>(triangles));
+  char* next = &bytes[begin];
   for (vtkIdType i = 0; i < points; ++i)
   {
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -400,11 +395,6 @@ std::string LostArrays(
   return fs::path(file).extension().string() + " files hold no " + (isPly ? "text" : "arrays") +
     ", so these are left out: " + Joined(names) + "; .vtp keeps all" +
     (isPly ? "" : ", .ply those of numbers") + ", --no-attributes makes none";
-}
-
-bool IsInPieces(const std::string& file)
-{
-  return fs::path(file).extension() == ".pvtp";
 }
 
 std::string PieceName(const std::string& file, int rank)

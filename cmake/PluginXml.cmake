@@ -8,16 +8,17 @@
 # among="point_scalars" names, set by SetNodeThresholdName; with request="0" it is that input array to process. Several
 # numbers are told from the default, or by count="3"; six have labels as bounds have. told="real", "whole" or "text" is
 # what GetNodeThreshold tells. range: of a slider, the second number may be missing. bounds="min" or "mid", ...: the
-# default is that of the particles' bounds. if, seen: it is greyed, or hidden, unless all of this holds. show: see
-# panel_visibility; all other attributes are the property's.
+# default is that of the particles' bounds. if, seen: it is greyed, or hidden, unless all of this holds. any: it is also
+# greyed unless one of this holds; Bounds.3 is the fourth number of Bounds. show: see panel_visibility; all other
+# attributes are the property's.
 #
 #   <Group label="Trimming" of="Trim NodeThreshold"/>
 #
-# is a group of the panel.
+# is a group of the panel. A file has proxies of ParaView's group "filters", or whole groups of proxies.
 
 function (mcor_expand_option variable rest documentation)
   set(type "")
-  foreach (part IN ITEMS name show range if seen of among request count bounds flag whole real choice text array told)
+  foreach (part IN ITEMS name show range if any seen of among request count bounds flag whole real choice text array told)
     string(REGEX MATCH "[ \n]+${part}=\"([^\"]*)\"" found "${rest}")
     set("${part}" "${CMAKE_MATCH_1}")
     if (found)
@@ -102,14 +103,19 @@ none_string=\"${array}\">
     endforeach ()
     string(APPEND hints "</ShowComponentLabels>")
   endif ()
-  foreach (mode IN ITEMS enabled_state visibility)
-    set(conditions "${if}")
-    if (mode STREQUAL "visibility")
-      set(conditions "${seen}")
+  foreach (rule IN ITEMS if any seen)
+    set(mode enabled_state)
+    if (rule STREQUAL "seen")
+      set(mode visibility)
     endif ()
     set(shown "<PropertyWidgetDecorator type=\"GenericDecorator\" mode=\"${mode}\" property=\"\\1\" value=\"\\2\"")
-    string(REGEX REPLACE "([A-Za-z]+)!=([^ ]+)" "${shown} inverse=\"1\"/>" conditions "${conditions}")
-    string(REGEX REPLACE "([A-Za-z]+)=([^ \"]+)" "${shown}/>" conditions "${conditions}")
+    string(REGEX REPLACE "([A-Za-z.0-9]+)!=([^ \n]+)" "${shown} inverse=\"1\"/>" conditions "${${rule}}")
+    string(REGEX REPLACE "([A-Za-z]+)=([^ \n\"]+)" "${shown}/>" conditions "${conditions}")
+    string(REGEX REPLACE "\"([A-Za-z]+)[.]([0-9])\"" "\"\\1\" index=\"\\2\"" conditions "${conditions}")
+    if (any AND rule STREQUAL "any")
+      set(conditions "<PropertyWidgetDecorator type=\"CompositeDecorator\"><Expression type=\"or\">${conditions}\
+</Expression></PropertyWidgetDecorator>")
+    endif ()
     string(APPEND hints "${conditions}")
   endforeach ()
   if (hints)
@@ -178,6 +184,10 @@ function (mcor_complete_xml files)
     endforeach ()
     string(CONFIGURE "${text}" text @ONLY)
     mcor_expand_short(text)
+    if (NOT text MATCHES "<ProxyGroup name")
+      set(text "<ProxyGroup name=\"filters\">\n${text}</ProxyGroup>\n")
+    endif ()
+    set(text "<ServerManagerConfiguration>\n${text}</ServerManagerConfiguration>\n")
     file(CONFIGURE OUTPUT "${made}/${name}.xml" CONTENT "${text}" @ONLY) # written where it is new
     list(APPEND list "${made}/${name}.xml")
   endforeach ()

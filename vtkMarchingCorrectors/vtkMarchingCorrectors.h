@@ -4,46 +4,35 @@
  * @class   vtkMarchingCorrectors
  * @brief   generate an isosurface directly from SPH particles
  *
- * vtkMarchingCorrectors takes the particles of a smoothed particle hydrodynamics (SPH) simulation
- * and generates a triangle mesh that is an isosurface of the continuous SPH field itself: every
- * vertex is moved along its lattice edge until the field has the iso value there. Nothing is
- * resampled to an image, and the lattice is never stored, so memory grows with the surface.
- *
- * With particle positions x_j, smoothing lengths h_j, volumes V_j, a scalar A_j and a kernel W, the
- * field is one of
+ * vtkMarchingCorrectors generates a triangle mesh that is an isosurface of the continuous field of
+ * smoothed particle hydrodynamics (SPH) data: every vertex is moved along its lattice edge until
+ * the field has the iso value there. Nothing is resampled to an image, and the lattice is never
+ * stored, so memory grows with the surface. The field is one of
  *
  *     Shepard (default)   sum_j V_j A_j W(x - x_j, s h_j) / sum_j V_j W(x - x_j, s h_j)
  *     sum                 sum_j V_j A_j W(x - x_j, s h_j)       (ShepardNormalizationOff)
  *     weight sum          sum_j V_j     W(x - x_j, s h_j)       (FreeSurfaceOn)
  *
- * where s is HScaleFactor. Cells through which the surface may pass are found (see SeedMode),
- * Marching Cubes makes triangles there, Newton's method along each lattice edge moves the vertices
- * until the field is within Tolerance of the iso value, and what is beyond the fluid is trimmed
- * (see NodeThreshold, VertexThreshold and BoundaryDetection). All other point arrays are evaluated
- * at the vertices.
- *
- * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
- * Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
+ * with positions x_j, smoothing lengths h_j, volumes V_j, a scalar A_j, a kernel W and s =
+ * HScaleFactor. What is beyond the fluid is trimmed, and all other point arrays are evaluated at
+ * the vertices. See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH
+ * Data" by Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
  *
  * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). By
  * default it is the active scalars, unless they do not vary or hold particle ids or types; then
  * velocities, the first vector, or the first scalar that varies. A vector is contoured by its
  * magnitude or by one component (see ScalarComponent). If a second vector is chosen with
- * SetInputArrayToProcess(1, ...), the dot product of the two is contoured. In free-surface mode no
- * scalar is needed. vtkSPHAlgorithm describes how the particles' other quantities are found. All
- * lengths are in the unit of the point coordinates (L below).
+ * SetInputArrayToProcess(1, ...), the dot product of the two is contoured. vtkSPHAlgorithm
+ * describes how the particles' other quantities are found. All lengths are in the unit of the point
+ * coordinates (L below).
  *
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
  * velocities, the first vector, or the first scalar of the particles that varies; with several iso
  * values, the iso value. The output field data holds the arrays of the input's field data, and
  * "IsoValues", whose component has the name of the point array that gives each point's iso value.
- *
- * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h
- * describes ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and
- * for each parameter the value in use. The output and these statistics depend only on the input and
- * the properties, except for the costs of the run, and for the seed cells, which include cells that
- * KeepDeviceData has kept.
+ * GetRunStatistics() holds statistics of the run, "Device" and "Platform", and for each parameter
+ * the value in use. All but the costs of the run depends only on the input and the properties.
  *
  * If processes share a run, see SetController(), each gets the part of the surface in its share of
  * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
@@ -57,7 +46,6 @@
  * trimmed at the cut, and with them both pieces have the surface there.
  *
  * @warning
- * As everywhere in VTK, in-place changes of input arrays are noticed only if Modified() is called.
  * An observer of the progress may change the filter while an update runs, but not the values in the
  * input's arrays; the change takes effect if Modified() is called after the update.
  *
@@ -148,9 +136,7 @@ public:
   /**
    * Contour values, in the unit of the scalar. Several values give several surfaces in one output.
    * By default there is none (NaN counts as none), and one surface is drawn at the median of the
-   * scalar in the fluid; if most values are alike, at the middle of the others; or, if all are
-   * positive and span three decades, at the logarithmic middle of their range; see "IsoValues" in
-   * the output field data.
+   * scalar in the fluid, or at another middle, see mcor_find_iso_value in mcor.h.
    */
   vtkSPHContoursMacro(Value, Contours, ContourValues, 0.0);
   double* GetValues() { return this->ContourValues->GetValues(); }
@@ -168,33 +154,26 @@ public:
   ///@{
   /**
    * Which component of the scalar array to contour; MAGNITUDE (-1, the default) is the Euclidean
-   * norm. Not used for arrays with one component.
+   * norm, which is 3 for ParaView's panel. Not used for arrays with one component.
    */
   vtkSPHValueMacro(ScalarComponent, int, MAGNITUDE);
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
-  ///@}
-
-  /**
-   * The component as ParaView's panel has it: its range domains use 3 for the magnitude of a
-   * vector.
-   */
   void SetPanelComponent(int component)
   {
     this->SetScalarComponent(component >= 3 ? static_cast<int>(MAGNITUDE) : component);
   }
+  ///@}
 
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
-   * the plain sum of the paper. The plain sum falls to zero at a free surface, so it has a second
-   * sheet along the free surface wherever the iso value is lower than the scalar there.
+   * the plain sum of the paper, which falls to zero at a free surface, and may have a sheet there.
    */
   vtkSPHFlagMacro(ShepardNormalization, 1);
 
   /**
    * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. When on,
    * the scalar, the contour values and the thresholds are not used. The default, FREE_SURFACE_AUTO:
-   * on if neither a scalar nor a contour value is given, and the particles have a free surface. A gas
-   * that fills its bounds has none, see mcor_has_free_surface().
+   * on if neither a scalar nor a contour value is given, and mcor_has_free_surface() finds one.
    */
   vtkSPHClampMacro(FreeSurface, int, FREE_SURFACE_AUTO, FREE_SURFACE_AUTO, 1);
   vtkBooleanMacro(FreeSurface, int);
@@ -212,10 +191,8 @@ public:
   ///@{
   /**
    * CubeSizeFactor: size of the virtual grid's cubes / smallest smoothing length (unscaled). No
-   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. The smallest smoothing length, and with it the
-   * lattice, may differ between time steps or pieces of a data set. CubeSize sets the size itself,
-   * unit L; 0 (the default): use CubeSizeFactor. Nodes lie at multiples of the size, from the
-   * origin of the coordinates.
+   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. CubeSize sets the size itself, unit L; 0 (the
+   * default): use CubeSizeFactor, with which the lattice may differ between time steps or pieces.
    */
   vtkSPHValueMacro(CubeSizeFactor, double, 0.5);
   vtkSPHValueMacro(CubeSize, double, 0.0);
@@ -223,13 +200,9 @@ public:
 
   ///@{
   /**
-   * UNIFORM: cubes of one size. ADAPTIVE (the default): where all particles that reach a brick of
-   * 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its cubes are 2, 4, ...
-   * times as large; bricks that touch differ by a factor of 2 at most. The surface is closed across
-   * sizes. With one smoothing length for all particles, both are the same. TOPOLOGY_FIELD only
-   * decides between cubes that no finer one touches. CubeLevelLimit: the highest power of 2, 0 to
-   * 24 (the default). The statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and
-   * "HighestLevel", which periods may lower.
+   * UNIFORM: cubes of one size. ADAPTIVE (the default): cubes are 2, 4, ... times as large where
+   * all smoothing lengths are, see MCOR_CUBE_LEVELS in mcor.h; the surface is closed across sizes.
+   * CubeLevelLimit: the highest power of 2, 0 to 24 (the default).
    */
   vtkSPHClampMacro(CubeSizeMode, int, ADAPTIVE, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
@@ -241,32 +214,10 @@ public:
   /**
    * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1,
    * unit L; sides may be infinite. The result is exactly that part of the whole surface, so boxes
-   * side by side make up the whole. Only the particles that reach the box are evaluated. The
-   * lattice is the same as without a box.
+   * side by side make up the whole. The panel has the box's lower corner and its lengths.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
-  ///@}
-
-  /**
-   * Close the surface at the sides of the period and of the box's cells, by flat triangles where
-   * values are above the iso value; close lines by lines. These caps share the points of the
-   * border. Trimming and walls may leave the surface open. Off by default. An error with PAIRS or
-   * Filled.
-   */
-  vtkSPHFlagMacro(Capping, 0);
-
-  /**
-   * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
-   * fluid, with triangles that share the points of the lines. The other values divide the region
-   * into bands. The cell array "BandValue" has the iso value of a line; for a triangle, the iso
-   * value at which its band begins. The point array "IsoValue" has the same values. The scalar is
-   * interpolated as other arrays are. Off by default. An error in 3-D.
-   */
-  vtkSPHFlagMacro(Filled, 0);
-
-  ///@{
-  /** Box as its lower corner and its lengths, for ParaView's box widget. */
   void SetPanelBoxPosition(double x, double y, double z)
   {
     const double* b = this->Box;
@@ -279,13 +230,27 @@ public:
   }
   ///@}
 
+  /**
+   * Close the surface at the sides of the period and of the box's cells, by flat triangles where
+   * values are above the iso value; close lines by lines. Trimming and walls may leave the surface
+   * open. Off by default. An error with PAIRS or Filled.
+   */
+  vtkSPHFlagMacro(Capping, 0);
+
+  /**
+   * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
+   * fluid, with triangles that share the points of the lines. The other values divide the region
+   * into bands. The cell array "BandValue" has the iso value of a line, or at which a triangle's
+   * band begins; the point array "IsoValue" has the same values. Off by default. An error in 3-D.
+   */
+  vtkSPHFlagMacro(Filled, 0);
+
   ///@{
   /**
-   * How the march is seeded, see SeedModeType; COMPLETE by default, which misses nothing that
-   * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
-   * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the
-   * paper: it misses parts of the surface without a pair of close particles on both sides, and is
-   * an error with cubes of several sizes, a box, caps or several processes.
+   * How the march is seeded; COMPLETE by default and for the free surface, which misses nothing
+   * that Marching Cubes on the full lattice would find. PAIRS is for comparisons with the paper: it
+   * misses parts of the surface without a pair of close particles on both sides, and is an error
+   * with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
@@ -295,26 +260,21 @@ public:
   ///@{
   /**
    * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
-   * default) keeps the higher values apart on ambiguous faces, and makes no tunnels through cells.
-   * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are
-   * the field's own. The surface is a manifold with both.
+   * default) keeps the higher values apart, and makes no tunnels through cells. TOPOLOGY_FIELD
+   * evaluates the field there, so that bridges and tunnels as thin as a cube are the field's own.
    */
   vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
 
-  /**
-   * Quick look: vertices by linear interpolation, no correction, normals of the triangles. Off by
-   * default.
-   */
+  /** Quick look: linear interpolation, no correction, normals of triangles. Off by default. */
   vtkSPHFlagMacro(Preview, 0);
 
   /**
    * A compact contour: vertices of one node of the virtual grid become one, which is corrected
-   * along the gradient. The contour has a quarter fewer triangles, hardly any slivers, and the same
-   * pieces. Vertices at borders, caps and periodic sides stay. Off by default. An error with
-   * Filled.
+   * along the gradient. It has a quarter fewer triangles, hardly any slivers, and the same pieces.
+   * Vertices at borders, caps and periodic sides stay. Off by default. An error with Filled.
    */
   vtkSPHFlagMacro(Compact, 0);
 
@@ -324,25 +284,22 @@ public:
   /**
    * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the
    * particle stays inside of the free surface: flat water becomes flat, drops, threads and sheets
-   * stay. Cubes and volumes follow from the original lengths; the array Widening is the factor.
-   * From 1 (off, the default) to 4; 2 is usual.
+   * stay. The array Widening is the factor. From 1 (off, the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
 
   /**
    * Writes the particles that a run with this filter's settings would take, with the arrays
    * Widening (the factors), WidenedSmoothingLength (the products) and, if volumes are computed,
-   * WideningVolume. Without Widening, these lengths and volumes, and uniform cubes of the same
-   * size, give the same surface. Returns false, after an error, if that fails. If several processes
-   * share the filter's runs, all must call this together, and each gets its own particles.
+   * WideningVolume. Returns false, after an error, if that fails. If several processes share the
+   * filter's runs, all must call this together, and each gets its own particles.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
    * default. Off keeps the triangles beyond, except where NodeThreshold discards cells. The free
-   * surface is not trimmed. A trimmed surface is a manifold with boundary, closed only where the
-   * fluid closes it.
+   * surface is not trimmed.
    */
   vtkSPHFlagMacro(Trim, 1);
 
@@ -351,32 +308,23 @@ public:
 
   ///@{
   /**
-   * How trimming detects the end of the fluid; WEIGHT_SUM by default. EIGENVALUE is the smallest
-   * eigenvalue of the symmetric part of the inverse renormalization matrix (Marrone et al., "Fast
-   * free-surface detection and level-set function definition in SPH solvers", J. Comput. Phys. 229,
-   * 2010). Both are about 1 inside and fall to 0 outside, but the eigenvalue needs another
-   * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid,
-   * 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged.
+   * Triangles are trimmed where the weight sum, or the EIGENVALUE of Marrone et al., is lower than
+   * VertexThreshold. No unit; WEIGHT_SUM and 0.5 by default. Both are about 1 inside and fall to 0
+   * outside, but the eigenvalue needs another threshold, such as 0.3: see mcor_boundary_detection
+   * in mcor.h.
    */
   vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, WEIGHT_SUM, EIGENVALUE);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
   void SetBoundaryDetectionToEigenvalue() { this->SetBoundaryDetection(EIGENVALUE); }
-  ///@}
-
-  /**
-   * Triangles are trimmed where the weight sum (or the eigenvalue, see BoundaryDetection) is lower.
-   * No unit, 0.5 by default.
-   */
   vtkSPHValueMacro(VertexThreshold, double, 0.5);
+  ///@}
 
   ///@{
   /**
-   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_AUTO, the
-   * default: as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: the
-   * surface continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it
-   * ends in front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL:
-   * it ends where the solids' share of the weight sum exceeds WallShare; a free surface is then
-   * open along walls.
+   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_WEIGHT: it
+   * continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in
+   * front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends
+   * where the solids' share of the weight sum exceeds WallShare. SOLIDS_AUTO by default.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);
@@ -385,27 +333,23 @@ public:
   /**
    * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does
    * not end at solids. -1, the default: measured, as the median share at the solids that face the
-   * fluid, so that the surface of a scalar ends there; for the free surface 0.5. At 0.5, solids
-   * weigh as much as the fluid, about half way between the particles of both; greater shares are
-   * farther into the wall. GetRunStatistics() reports the share in use.
+   * fluid, so that the surface of a scalar ends there; for the free surface 0.5, about half way
+   * between the particles of both. GetRunStatistics() reports the share in use.
    */
   vtkSPHValueMacro(WallShare, double, -1.0);
 
   ///@{
   /**
    * Point arrays of the output; normals and scalars are on by default.
-   * - Normals, "Normals": unit length, towards lower values, from the analytic gradient of the field (in
-   *   previews from the triangles).
-   * - Scalars: the iso value. The array has the name of the contoured scalar array; for a vector, its name
-   *   and the component or "Magnitude" ("Velocity_X"); for a dot product, the names of both vectors
-   *   ("A_Dot_B"). It is "IsoValue" in free-surface mode and where a computed array ("Normals", ...) has that
-   *   name.
+   * - Normals, "Normals": unit length, towards lower values.
+   * - Scalars: the iso value. The array has the name of the contoured scalar, such as "Velocity_X" or
+   *   "A_Dot_B". It is "IsoValue" for the free surface and where a computed array has that name.
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
    * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, whatever is chosen there.
-   * - Curvature, "MeanCurvature" and "GaussCurvature": of the field's own surface, from its first and second
-   *   derivatives, unit 1 / L and 1 / L^2. The mean curvature of a drop of radius R is 1 / R, of a bubble -1 / R; in two
-   *   dimensions it is that of the line, and there is no Gaussian one.
+   * - Curvature, "MeanCurvature" and "GaussCurvature": of the field's own surface, unit 1 / L and
+   *   1 / L^2; the mean curvature of a drop of radius R is 1 / R. In two dimensions there is no
+   *   Gaussian curvature.
    * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
    * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
@@ -423,17 +367,15 @@ public:
   ///@}
 
   /**
-   * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method
-   * with the kernel; integers, identifiers and strings from the nearest particle. An array that is
-   * NaN or infinite at a fluid particle is left out, with a warning, and so is one with the name of
-   * a computed array or of the iso value. On by default.
+   * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method;
+   * integers, identifiers and strings from the nearest particle. An array that is not finite at a
+   * fluid particle is left out, with a warning. On by default.
    */
   vtkSPHFlagMacro(InterpolateAttributes, 1);
 
   /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
-   * default), SINGLE_PRECISION or DOUBLE_PRECISION. In single precision, the rounding of the
-   * coordinates limits how well the field at a vertex matches the iso value.
+   * default), SINGLE_PRECISION or DOUBLE_PRECISION.
    */
   vtkSPHClampMacro(
     OutputPointsPrecision, int, DEFAULT_PRECISION, SINGLE_PRECISION, DEFAULT_PRECISION);
@@ -451,13 +393,10 @@ public:
   ///@{
   /**
    * Values that the last update used, for a panel; of composite data, for the last block. Empty,
-   * or 0, if nothing was drawn. The range is that of the contoured component, magnitude or dot
-   * product at the fluid particles, 0 to 0 for the free surface. SurfaceMeasures: the area of
-   * the surface and, if it is closed, its volume, in words; of lines, their length and area.
-   * IsoValueArrayName: the point array that says which iso value each point has, if
-   * ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid (squares, of
-   * lines) the fluid fills, known before an update begins, which warns from a billion on; 0: not
-   * known.
+   * or 0, if nothing was drawn. The range is that of the contoured scalar at the fluid particles.
+   * IsoValueArrayName: the point array that says which iso value each point has, if ComputeScalars
+   * is on. SurfaceMeasures: the area and, if the surface is closed, the volume, in words; of lines,
+   * length and area. EstimatedCells: about how many cubes of the virtual grid the fluid fills.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkSPHToldMacro(UsedIsoValues);
@@ -473,10 +412,9 @@ public:
    * Values that an update with the present properties and input would find: FluidScalarRange, the
    * default iso value (NaN: not known), the number of components of the chosen array (1 for a dot
    * product), whether there is a free surface, the dimension, EstimatedCells (of all blocks),
-   * UsedFluid, the array that is contoured if none is chosen, and a warning of very many cells. The
-   * input is not updated. Without particles, or without a scalar where one is needed, a value is
-   * not known: 0 to 0, 0, or empty. If processes share a run, the values are those of the last
-   * update, because one process cannot ask the others without waiting for them.
+   * UsedFluid, the array that is contoured if none is chosen, and a warning of very many cells.
+   * Values that are not known are 0 or empty. If processes share a run, the values are those of the
+   * last update, because one process cannot ask the others without waiting for them.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
   double GetNextIsoValue() { return this->LookAhead().IsoValue; }

@@ -258,28 +258,26 @@ int vtkSPHAlgorithm::RequestData(
   vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);
   vtkDataObject* particles = this->TakeVertices(all);
   this->WarnOfMesh(all, particles);
-  vtkDataObject* input =
-    this->GetParticlesPort() == 0 ? particles : vtkDataObject::GetData(inputVector[0]);
+  const bool isSecond = this->GetParticlesPort() > 0;
+  this->Particles = isSecond ? this->JoinParticles(particles) : nullptr;
+  vtkDataObject* input = isSecond ? vtkDataObject::GetData(inputVector[0]) : particles;
   auto* tree = vtkDataObjectTree::SafeDownCast(input);
   vtkDataObjectTree* apart = this->TakesTogether() ? nullptr : tree;
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (this->IsShared() && !this->AgreeOnBlocks(apart))
-  {
-    this->Internals->EndRun();
-    return 1;
-  }
-  if (apart)
+  const bool agree = !this->IsShared() || this->AgreeOnBlocks(apart);
+  if (agree && apart)
   {
     this->ProcessBlocks(apart, vtkDataObjectTree::SafeDownCast(output));
   }
-  else if (tree)
+  else if (agree && tree)
   {
     this->ProcessJoined(tree, output);
   }
-  else
+  else if (agree)
   {
     this->Process(input, output);
   }
+  this->Particles = nullptr;
   this->Internals->EndRun();
   return 1;
 }

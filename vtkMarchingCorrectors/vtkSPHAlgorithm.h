@@ -4,21 +4,14 @@
  * @class   vtkSPHAlgorithm
  * @brief   superclass of the filters that evaluate the field of SPH particles
  *
- * These filters share how the particles are described (smoothing length, volume or mass and
- * density, kernel, which of them are fluid), the OpenCL device that does the work, and what is
- * reported of a run.
+ * These filters share how the particles are described, the OpenCL device that does the work, and
+ * what is reported of a run. All lengths are in the unit of the point coordinates (L below).
  *
  * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given
- * as a constant, or DetectArrays is off, they are found by their usual names (case, blanks, "_" and
- * "-" do not matter), the most usual first: SmoothingLength, hsml, h; Volume, vol; Mass, m;
- * Density, rho, Rhop; and others that mcor_name_priority in mcor.h knows.
- *
- * The volume of a particle is taken from the volume array; else it is mass / density; else, with
- * masses alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j sum_k W(x_j - x_k, h_j)),
- * where F_j makes up for a side without neighbours (see mcor_input in mcor.h). As an array name,
- * "(automatic)" and "(none)" mean the same as an empty one.
- *
- * All lengths are in the unit of the point coordinates (L below).
+ * as a constant, or DetectArrays is off, they are found by their usual names, such as hsml or rho,
+ * see mcor_name_priority in mcor.h. As an array name, "(automatic)" and "(none)" mean the same as
+ * an empty one. The volume of a particle is taken from the volume array; else it is mass / density;
+ * else it is computed from the particles' distances and masses, see mcor_input in mcor.h.
  *
  * The blocks of composite data form one set of particles, with the arrays that all of them have; or
  * each is processed by itself, see SetBlocks(). If a block by itself fails, its place in the output
@@ -113,21 +106,14 @@ public:
     SINC_6 = 8          ///< (sin x / x)^6, x = pi r / (2 h), support radius 2 h
   };
 
-  /** The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name. */
+  ///@{
+  /**
+   * The point array of smoothing lengths (unit L, > 0), found by name where it is empty (the
+   * default); or one smoothing length for all particles. 0 (the default): use the array.
+   */
   vtkSPHChoiceTextMacro(SmoothingLengthArrayName);
-
-  /**
-   * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no
-   * array, set this, or EstimateSmoothingLength.
-   */
   vtkSPHChoiceMacro(SmoothingLength, double);
-
-  /**
-   * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
-   * without further data. It takes precedence over array and constant. Off by default. The
-   * statistics report it as "SmoothingLengthRange".
-   */
-  vtkSPHChoiceFlagMacro(EstimateSmoothingLength);
+  ///@}
 
   enum EstimateType
   {
@@ -137,11 +123,12 @@ public:
 
   ///@{
   /**
-   * How EstimateSmoothingLength estimates: ESTIMATE_SPACING (the default): one length;
-   * ESTIMATE_NEIGHBORS: for each particle the h with h^d sum W(x - x_j, h) = NeighborRatio^d
-   * over all particles x_j, d being the dimension, as Phantom, GADGET and SWIFT define it.
-   * NeighborRatio: 1.3 by default, about 57 neighbours with the cubic spline.
+   * Estimate the smoothing lengths, whatever array or constant there is. Off by default.
+   * ESTIMATE_SPACING (the default): one for all particles, 1.3 times their median spacing.
+   * ESTIMATE_NEIGHBORS: for each particle the h with h^d sum W(x - x_j, h) = NeighborRatio^d, d
+   * being the dimension, as Phantom, GADGET and SWIFT define it; NeighborRatio is 1.3 by default.
    */
+  vtkSPHChoiceFlagMacro(EstimateSmoothingLength);
   vtkSetClampMacro(SmoothingLengthEstimate, int, ESTIMATE_SPACING, ESTIMATE_NEIGHBORS);
   vtkGetMacro(SmoothingLengthEstimate, int);
   vtkSPHChoiceMacro(NeighborRatio, double);
@@ -155,11 +142,10 @@ public:
 
   ///@{
   /**
-   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Each name that is set decides on its own quantity only: volumes
-   * that are found stay, unless mass and density are both set, or ComputeVolumes is on. Masses
-   * and densities may have any units that give volumes in L^3; densities are used only with masses.
-   * Mass and Density: one value for all particles; 0 (the default): use the array.
+   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0), found
+   * by name where they are empty (the default). Volumes that are found stay, unless mass and
+   * density are both set, or ComputeVolumes is on. Mass and Density: one value for all particles; 0
+   * (the default): use the array.
    */
   vtkSPHChoiceTextMacro(VolumeArrayName);
   vtkSPHChoiceTextMacro(MassArrayName);
@@ -169,23 +155,22 @@ public:
   ///@}
 
   /**
-   * One volume for all particles where nothing else tells volumes: neither their array, nor mass
-   * and density. Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
+   * One volume for all particles, unit L^3, in two dimensions L^2, where neither their array nor
+   * mass and density tell it. 0 (the default): volumes are computed then.
    */
   vtkSPHChoiceMacro(ParticleVolume, double);
 
   /**
-   * Compute volumes from the distances of the particles, and their masses, whatever arrays there
-   * are. Drops, jets and sheets then keep their surface. Off by default.
+   * Compute volumes, whatever arrays there are. Drops, jets and sheets then keep their surface. Off
+   * by default.
    */
   vtkSPHChoiceFlagMacro(ComputeVolumes);
 
   ///@{
   /**
    * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles
-   * repeat along x with the period x1 - x0. A surface covers one period. It is open at the period's
-   * sides, where it meets itself to the last bit. Periods are whole numbers of cubes; the cube size
-   * is reduced to fit, see "CubeSize" in the statistics. The points of a probe may lie anywhere.
+   * repeat along x with the period x1 - x0. A surface covers one period, and is open at its sides.
+   * The cube size is reduced so that a period is a whole number of cubes.
    */
   vtkSetVector6Macro(PeriodicBounds, double);
   vtkGetVector6Macro(PeriodicBounds, double);
@@ -193,11 +178,9 @@ public:
 
   /**
    * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds"
-   * of six bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at
-   * minus half the length, or at the lowest particle, whichever contains all particles first; or
-   * from "box" of six bounds with "boundaryType", 1 where periodic (SPH-EXA). With several
-   * processes, any of them may have the array. An error if there is none, or if processes have
-   * different ones. Off by default.
+   * of six bounds, "BoxSize" of one or three lengths, or "box" and "boundaryType", see
+   * mcor_find_period in mcor.h. With several processes, any of them may have the array. An error if
+   * there is none, or if processes have different ones. Off by default.
    */
   vtkSPHChoiceFlagMacro(DetectPeriod);
 
@@ -205,18 +188,16 @@ public:
   vtkSPHChoiceFlagMacro(DetectArrays);
 
   ///@{
-  /** The arrays used by the last run; empty for a constant or a computed quantity. */
+  /**
+   * The arrays used by the last run; empty for a constant or a computed quantity. UsedVolume: the
+   * source of volumes in words, such as "array Mass / array Density".
+   */
   vtkSPHToldMacro(UsedSmoothingLengthArrayName);
   vtkSPHToldMacro(UsedVolumeArrayName);
   vtkSPHToldMacro(UsedMassArrayName);
   vtkSPHToldMacro(UsedDensityArrayName);
-  ///@}
-
-  /**
-   * The source of volumes in the last run, in words: "array Mass / array Density", "computed
-   * from the positions".
-   */
   vtkSPHToldMacro(UsedVolume);
+  ///@}
 
   ///@{
   /** The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation. */
@@ -235,9 +216,8 @@ public:
 
   ///@{
   /**
-   * The kernel by its short name: "cubic", "wendland", ...; GetKernelName(0), (1), ... lists all
-   * names, null ends them. SetKernelByName() returns false, and changes nothing, if there is no
-   * such kernel.
+   * The kernel by its short name: "cubic", ...; null: there is no kernel of this number.
+   * SetKernelByName() returns false, and changes nothing, if there is no such kernel.
    */
   bool SetKernelByName(const char* name);
   const char* GetKernelName() const { return vtkSPHAlgorithm::GetKernelName(this->Kernel); }
@@ -252,9 +232,9 @@ public:
 
   ///@{
   /**
-   * 2: x, y or z is exactly the same for all particles, so they lie in a plane. Sums are
-   * two-dimensional, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO,
-   * the default): 2 if exactly one coordinate is the same for all particles, else 3.
+   * 2: the particles lie in a plane of constant x, y or z. Sums are two-dimensional, volumes are
+   * areas, and vtkMarchingCorrectors makes lines. DIMENSION_AUTO (the default): 2 if exactly one
+   * coordinate is the same for all particles, else 3.
    */
   enum DimensionType
   {
@@ -274,9 +254,8 @@ public:
 
   ///@{
   /**
-   * The point array and the value in it that mark fluid particles; all others are solid. The field
-   * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
-   * default.
+   * The point array and the value (0 by default) that mark fluid particles, which alone make the
+   * field; all others are solid. Empty (the default): all particles are fluid.
    */
   vtkSPHChoiceTextMacro(FluidArrayName);
   vtkSPHChoiceMacro(FluidValue, double);
@@ -284,23 +263,18 @@ public:
 
   /**
    * If no fluid array is named, look for something that clearly tells fluid from walls: an array
-   * with a usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics;
-   * or blocks, taken together, with names such as "walls" or "boundary", whose particles are then
-   * solid. Off by default: a warning then names such arrays and blocks. GetUsedFluid() returns what
-   * was found.
+   * such as ParticleType that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
+   * together, with names such as "walls". Off by default: a warning then names what there is.
    */
   vtkSPHChoiceFlagMacro(DetectFluid);
 
-  /**
-   * The array and value that marked fluid in the last run, such as "ParticleType = 0"; empty:
-   * all particles were fluid.
-   */
+  /** What marked fluid in the last run, such as "ParticleType = 0"; empty: all was fluid. */
   vtkSPHToldMacro(UsedFluid);
 
   ///@{
   /**
    * Leave out particles that are not within x0, x1, y0, y1, z0, z1 (unit L; sides may be infinite),
-   * as if they were not there, whatever their values are. All 0 (the default): none are left out.
+   * as if they were not there. All 0 (the default): none are left out.
    */
   vtkSetVector6Macro(Within, double);
   vtkGetVector6Macro(Within, double);
@@ -308,9 +282,8 @@ public:
 
   ///@{
   /**
-   * Leave out particles whose value in this point array is not from `low` to `high`, as if they
-   * were not there. An array may have several ranges: a value in any one of them passes. A particle
-   * must pass for each array. None by default.
+   * Leave out particles whose value in this point array is not from `low` to `high`. A value in any
+   * of several ranges passes; a particle must pass for each array. None by default.
    */
   void AddOnly(const char* name, double low, double high)
   {
@@ -331,10 +304,9 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid's particles. Leaves out the few particles (0.1 %, or 8) that are
-   * farther from the box of the others than this box is long. Collective if processes share a run.
-   * Returns false if no particle is fluid. densest: GetNextDensest(), of the particles at hand; may
-   * be null.
+   * Finds the box of the fluid, without the few particles (0.1 %, or 8) that are farther from the
+   * box of the others than this box is long. Returns false if no particle is fluid. densest: see
+   * GetNextDensest(); may be null. Collective if processes share a run.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
 
@@ -380,86 +352,65 @@ public:
   /**
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
    * process, all update together, each with some of the particles (without those that vtkGhostType
-   * marks as duplicates) or none, and results are as of one process, to the last bit. Probes and
-   * derivatives return them to the process that has the points or particles. If one process fails,
-   * all do. If blocks are taken apart, all processes must have the same number of them.
+   * marks as duplicates) or none, and results are as of one process, to the last bit. If one
+   * process fails, all do. If blocks are taken apart, all processes must have as many of them.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  /**
-   * Why the last run failed, in one sentence, which is also reported as a VTK error; empty if it
-   * did not fail. For composite data, one line for each block that failed.
-   */
+  /** Why the last run failed, the sentences of its VTK errors, one a line; empty: it did not. */
   vtkSPHToldMacro(ErrorMessage);
 
   /** How many errors and warnings the last run has reported. */
   vtkGetMacro(MessageCount, int);
 
+  ///@{
   /**
-   * One array for each number of the last update: "Seconds" (one named component for each phase,
-   * for building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the
-   * box), "Bricks", "NodesEvaluated" (including those kept from earlier updates), "MarchRounds",
-   * "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of fluid
-   * particles; for a surface also the arrays of vtkMarchingCorrectors. If blocks are taken apart,
-   * costs are sums, and the rest is of the last block. Empty if nothing ran. The next update makes a
-   * new object and leaves this one as it is.
+   * One array for each number of the last update: "FlatLoops" is flat_loops of mcor_statistics in
+   * mcor.h, and so on; "Seconds" has a named component for each phase, for building the OpenCL
+   * program, and in total. Or all of them as text, a line "Name: values" for each. If blocks are
+   * taken apart, costs are sums, and the rest is of the last block. Empty if nothing ran. The next
+   * update makes a new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
-
-  /** Returns the statistics as text, a line "Name: values" for each. */
   const char* GetStatistics();
+  ///@}
 
 #ifndef __VTK_WRAP__
-  /**
-   * Sets what messages call a setting, in place of the panel's labels ("Cube Size" for SetCubeSize):
-   * an mcor_word of mcor.h. For all filters; set it before any of them runs.
-   */
+  /** Sets what all filters' messages call a setting: an mcor_word of mcor.h, not panels' labels. */
   static void SetWord(int (*word)(void*, const char*, const char*, char*, std::size_t));
 #endif
 
-  /**
-   * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.
-   */
+  /** Lists the OpenCL devices, one a line: "number: device (platform)". Empty: there is none. */
   static std::string ListDevices();
 
-  /**
-   * Frees the memory that is kept on the device between runs. The next run takes as long as the
-   * first.
-   */
+  /** Frees the memory on the device. The next run takes as long as the first. */
   void ReleaseDeviceMemory();
 
   ///@{
   /**
    * Defaults of a panel, from the particles as they are now: FindFluidBounds(), or 0 if unknown;
-   * whether smoothing lengths must be estimated, because the particles have none by name or as
-   * chosen; and the blocks that can be chosen as fluid array, beside point arrays, one a line.
-   * NextDensest: for each of x, y and z, a point on the densest line along this axis.
+   * for each of x, y and z, a point on the densest line along this axis; 1 if the particles have no
+   * smoothing lengths; and the blocks that can be chosen as fluid array, one a line.
    */
-  double* GetNextBounds() VTK_SIZEHINT(6);
-  double* GetNextDensest() VTK_SIZEHINT(9);
+  double* GetNextBounds() VTK_SIZEHINT(6) { return this->FindNextBounds(false); }
+  double* GetNextDensest() VTK_SIZEHINT(9) { return this->FindNextBounds(true); }
   int GetNextEstimate();
   const char* GetNextBlocks();
   ///@}
 
   /**
-   * The ranges of colours in which a panel shows point arrays of the output, without walls: for each
-   * array a line of the lowest value, the highest one and the name. They span 98 % of the area, of
-   * the length of lines, or of the points. Empty for blocks, and if processes share a run.
+   * The ranges of colours for point arrays of the output, which span 98 % of the area, without
+   * walls: for each array a line of the lowest value, the highest one and the name. Empty for
+   * blocks, and if processes share a run.
    */
   const char* GetColorRanges();
 
-  /**
-   * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default):
-   * no limit. An update that would need more fails, and the error says how much.
-   */
+  /** Maximum device memory that this filter uses and keeps, in MiB; 0 (the default): no limit. */
   vtkSPHClampMacro(DeviceMemoryLimit, int, 0, 0, VTK_INT_MAX);
 
-  /**
-   * Keep the search grid and the node values on the device for the next update. On by default. Off:
-   * all memory is freed as soon as an update no longer needs it.
-   */
+  /** Keep the search grid and the node values on the device for the next update. On by default. */
   vtkSPHFlagMacro(KeepDeviceData, 1);
 
 protected:
@@ -485,9 +436,7 @@ protected:
   /** Does the work, for the whole input or one of its blocks. */
   virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
 
-  /**
-   * Whether blocks at port 0 are taken together; and whether the output then has these blocks, too.
-   */
+  /** Whether blocks at port 0 are taken together; whether the output then has these blocks, too. */
   virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
   virtual bool KeepsBlocks() const { return false; }
 
@@ -543,8 +492,7 @@ protected:
   void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);
   bool IsAborted();
 
-  double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  double NextDensest[9] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  vtkSmartPointer<vtkPointSet> Particles; // of a second input, as one set; during a run
   std::string NextBlocks, ColorRanges;
   vtkMultiProcessController* Controller = nullptr;
 
@@ -565,9 +513,13 @@ private:
   /** Makes a data object of this class; `like` may have the same class. */
   static vtkSmartPointer<vtkDataObject> NewOutput(
     const std::string& className, vtkDataObject* like);
+  /** Finds the six bounds of the fluid, or three points on densest lines; 0: they are unknown. */
+  double* FindNextBounds(bool densest);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   void ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output);
+
+  double NextPlaces[2][9] = {}; // what FindNextBounds() has found
 };
 VTK_ABI_NAMESPACE_END
 

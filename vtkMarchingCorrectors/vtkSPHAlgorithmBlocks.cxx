@@ -306,27 +306,16 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
 }
 
 // The bounds are unknown if processes share a run, because all of them would have to ask together.
-double* vtkSPHAlgorithm::GetNextBounds()
+double* vtkSPHAlgorithm::FindNextBounds(bool densest)
 {
   const vtkSmartPointer<vtkPointSet> particles =
     this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
-  if (!particles || !this->FindFluidBounds(particles, this->NextBounds))
+  double(&found)[2][9] = this->NextPlaces;
+  if (!particles || !this->FindFluidBounds(particles, found[0], densest ? found[1] : nullptr))
   {
-    std::fill_n(this->NextBounds, 6, 0.0);
+    std::fill_n(found[densest], 9, 0.0);
   }
-  return this->NextBounds;
-}
-
-double* vtkSPHAlgorithm::GetNextDensest()
-{
-  const vtkSmartPointer<vtkPointSet> particles =
-    this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
-  double bounds[6];
-  if (!particles || !this->FindFluidBounds(particles, bounds, this->NextDensest))
-  {
-    std::fill_n(this->NextDensest, 9, 0.0);
-  }
-  return this->NextDensest;
+  return found[densest];
 }
 
 const char* vtkSPHAlgorithm::GetColorRanges()

@@ -6,8 +6,8 @@
  *
  * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that
  * share points are one piece, also across the sides of a period. Its first output is the surface
- * with the point and cell array "ComponentId": 0 is the piece of the largest area, and so on; and the
- * cell array "ComponentVolume", the volume of the cell's piece. The second output is a vtkTable with a row for each piece:
+ * with the point and cell array "ComponentId", 0 for the piece of the largest area, and the cell
+ * array "ComponentVolume". The second output is a vtkTable with a row for each piece:
  *
  *     component            its number
  *     iso                  the iso value that it is a surface of; NaN where the surface does not tell
@@ -25,15 +25,12 @@
  * then filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles
  * are left out, with the cavities in them; open pieces, which have neither, stay.
  *
- * The surface may have been cut; only its triangles matter. With PeriodicBounds, a piece ends at
- * the sides of the period only where it has caps in them, and particles count in whichever piece
- * holds an image of them.
+ * With PeriodicBounds, a piece ends at the sides of the period only where it has caps in them, and
+ * particles count in whichever piece holds an image of them.
  *
- * If the controller has several processes, they find the pieces of the surface that they share:
- * each gets its part with ComponentId, and the first one gets the table, the same as from one
- * process; the others get one without rows. The first process collects all points and triangles,
- * and the positions, masses and velocities of all particles, which takes as much memory as one
- * process needs without the other arrays.
+ * If the controller has several processes, each gets its part of the surface with ComponentId, and
+ * the first one gets the table, the same as from one process; the others get one without rows. The
+ * first process collects all points, triangles and particles.
  *
  * @sa
  * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties
@@ -74,10 +71,7 @@ public:
   /** The table, the second output. */
   vtkTable* GetTable();
 
-  /**
-   * Lower and upper sides of one period along each axis; 0 and 0, the default, where nothing
-   * repeats.
-   */
+  /** Lower and upper sides of one period along each axis; 0 and 0 (the default): none. */
   vtkSPHVector6Macro(PeriodicBounds, double, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
   ///@{
@@ -87,10 +81,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Arrays of the particles; empty (the default): found by their usual names. Mass: one mass for
-   * all particles, if it is above 0.
-   */
+  /** Arrays of the particles; empty (the default): found by name. Mass: one for all, if above 0. */
   vtkSPHTextMacro(MassArrayName, "");
   vtkSPHValueMacro(Mass, double, 0.0);
   vtkSPHTextMacro(VelocityArrayName, "");
@@ -99,10 +90,11 @@ public:
   ///@{
   /**
    * Particles with another value than FluidValue in this array are solid, and do not count. Empty
-   * (the default): all count.
+   * (the default): all count, or DetectFluid (off by default) finds the array, see vtkSPHAlgorithm.
    */
   vtkSPHTextMacro(FluidArrayName, "");
   vtkSPHValueMacro(FluidValue, double, 0.0);
+  vtkSPHFlagMacro(DetectFluid, 0);
   ///@}
 
   ///@{
@@ -110,12 +102,6 @@ public:
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
-
-  /**
-   * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by
-   * default.
-   */
-  vtkSPHFlagMacro(DetectFluid, 0);
 
 protected:
   vtkSPHComponents();

@@ -4,10 +4,8 @@
  * @class   vtkSPHDerivatives
  * @brief   gradients of SPH particle arrays, vorticity, Q-criterion, lambda2
  *
- * vtkSPHDerivatives adds the SPH gradient of a point array to the particles and, for a vector with three
- * components, the quantities below. The array is chosen with SetInputArrayToProcess(0, 0, 0,
- * FIELD_ASSOCIATION_POINTS, name); the default is as for vtkMarchingCorrectors. vtkSPHAlgorithm describes
- * the particles.
+ * vtkSPHDerivatives adds the SPH gradient of a point array to the particles and, for a vector with
+ * three components, the quantities below. The array is chosen as for vtkMarchingCorrectors.
  *
  *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
  *     corrected (default) M_i^-1 G_i,  M_i = sum_j V_j grad W(x_i - x_j, s h_j) (x_j - x_i)^T
@@ -26,9 +24,8 @@
  *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex; not in two dimensions
  *     StrainRate           S, nine values
  *
- * They are float if the input array is, else double. Sums are over fluid particles; solid particles get
- * zeros, and so do particles that vtkGhostType marks as duplicates. If the input has an array of such a name, the
- * new one is called NAME_SPH, see SetReplaceArrays().
+ * They are float if the input array is, else double. Sums are over fluid particles; solid particles
+ * get zeros, and so do particles that vtkGhostType marks as duplicates.
  *
  * @warning
  * A block that is processed by itself (see SetBlocks()), or a piece that is not shared by processes, has
@@ -64,16 +61,10 @@ public:
   /** Add the gradient of the array, unit of the array / L. On by default. */
   vtkSPHFlagMacro(ComputeGradient, 1);
 
-  /**
-   * The name of the gradient's array, "Gradients" by default. The array that marks corrected
-   * gradients has this name and "Corrected".
-   */
+  /** The name of the gradient's array, "Gradients" by default; then, "Corrected", of the mark's. */
   vtkSPHTextMacro(ResultArrayName, "Gradients");
 
-  /**
-   * Replace existing arrays of the same names. Off by default: the new ones are then called
-   * NAME_SPH.
-   */
+  /** Replace existing arrays of the same names. Off by default: the new ones are called NAME_SPH. */
   vtkSPHFlagMacro(ReplaceArrays, 0);
 
   ///@{

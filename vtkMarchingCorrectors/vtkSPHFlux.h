@@ -5,9 +5,8 @@
  * @brief   what flows through sections of SPH particles
  *
  * vtkSPHFlux measures how much fluid flows through sections: it integrates the Shepard means of
- * velocity and density over the part of a section that is in fluid, to 1e-6 of the largest flux
- * that the velocities there allow; see mcor_flux in mcor.h. vtkSPHMeter says what is fluid, and how
- * processes share the work.
+ * velocity and density over the part of a section that is in fluid, see mcor_flux in mcor.h.
+ * vtkSPHMeter says what is fluid.
  *
  * Sections come from the Add...() methods and from the cells of the second input: polygons, with
  * normals by the right-hand rule, or outwards if they are a closed surface; lines, if particles lie
@@ -25,8 +24,7 @@
  *     mass_flux    of rho v . n; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0
  *
- * Units follow from the units of positions, velocities and densities. The density is its array, Density, or
- * mass / volume if both are given.
+ * The density is its array, Density, or mass / volume if both are given.
  *
  * @sa
  * vtkSPHMeter vtkSPHGauge vtkMarchingCorrectors
@@ -57,11 +55,10 @@ public:
 
   ///@{
   /**
-   * Sections by name. Names must differ. A rectangle has a corner and the ends of the two edges
-   * that begin there, whose cross product is the normal. A disc has a centre, a normal of any
-   * length, and a radius. A box, x0, x1, y0, y1, z0, z1, has its sides, with normals outwards. A
-   * line is for two dimensions; its normal points to its right, seen with the plane's first axis to
-   * the right and its second one upwards. A surface has the polygons, or lines, of a data set.
+   * Sections by name. Names must differ. mcor_section_shape in mcor.h says which way the normals
+   * point. A rectangle has a corner and the ends of the two edges that begin there. The bounds of a
+   * box are x0, x1, y0, y1, z0, z1. A line is for two dimensions. A surface has the polygons, or
+   * lines, of a data set.
    */
   void AddRectangle(
     const char* name, const double corner[3], const double end1[3], const double end2[3]);
@@ -74,19 +71,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * The disc that is used if there are no other sections: centre, normal, radius. (0, 0, 0), (1, 0,
-   * 0) and 1 by default.
-   */
+  /** The centre, normal and radius of the disc that is used if there are no other sections. */
   vtkSPHVector3Macro(Origin, double, 0.0, 0.0, 0.0);
   vtkSPHVector3Macro(Normal, double, 1.0, 0.0, 0.0);
   vtkSPHValueMacro(Radius, double, 1.0);
   ///@}
 
-  /**
-   * The point array of velocities. Empty (the default): found by name (Velocity, vel, v, ...), also
-   * as vx, vy and vz.
-   */
+  /** The point array of velocities. Empty (the default): found by name, also as vx, vy and vz. */
   vtkSPHTextMacro(VelocityArrayName, "");
 
 protected:

@@ -5,8 +5,7 @@
  * @brief   where lines cross the free surface of SPH particles: water levels
  *
  * vtkSPHGauge measures the free surface of SPH particles along straight lines, as a wave gauge in a
- * tank does. Every crossing of the level at which fluid ends is found and solved for, see
- * mcor_gauge in mcor.h. vtkSPHMeter says what is fluid, and how processes share the work.
+ * tank does, see mcor_gauge in mcor.h. vtkSPHMeter says what is fluid.
  *
  * The lines come from AddGauge() and from the line cells of the second input, each from its first
  * point to its last. If there are none, it is the line from Point1 to Point2. Gauges of the second
@@ -49,10 +48,7 @@ public:
   void SetLinesData(vtkDataObject* lines) { this->SetInputData(1, lines); }
 
   ///@{
-  /**
-   * Gauges by name, each from one place to another. Names must differ. Lengths have the unit of the
-   * positions.
-   */
+  /** Gauges by name, each from one place to another. Names must differ. */
   void AddGauge(const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
   {
     this->AddPlace(name, 0, { x0, y0, z0, x1, y1, z1 });

@@ -64,22 +64,6 @@ int vtkSPHMeter::RequestUpdateExtent(
   return 1;
 }
 
-int vtkSPHMeter::RequestData(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkInformation* asked = outputVector->GetInformationObject(0);
-  vtkInformation* known = input ? input->GetInformation() : nullptr;
-  this->More = vtkDataObject::GetData(inputVector[1]);
-  this->InputTime = known && known->Has(vtkDataObject::DATA_TIME_STEP())
-    ? known->Get(vtkDataObject::DATA_TIME_STEP())
-    : asked->Has(Pipeline::UPDATE_TIME_STEP()) ? asked->Get(Pipeline::UPDATE_TIME_STEP())
-                                               : this->Time;
-  const int done = this->Superclass::RequestData(request, inputVector, outputVector);
-  this->More = nullptr;
-  return done;
-}
-
 void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numbers)
 {
   this->Places.push_back({ name ? name : "", shape, std::move(numbers) });
@@ -119,10 +103,17 @@ bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
 void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* table = vtkTable::SafeDownCast(output);
+  vtkDataObject* const input = this->GetParticles();
+  vtkInformation* const known = input ? input->GetInformation() : nullptr;
+  vtkInformation* const asked = this->GetOutputInformation(0);
+  const double time = known && known->Has(vtkDataObject::DATA_TIME_STEP())
+    ? known->Get(vtkDataObject::DATA_TIME_STEP())
+    : asked->Has(Pipeline::UPDATE_TIME_STEP()) ? asked->Get(Pipeline::UPDATE_TIME_STEP())
+                                               : this->Time;
   this->SetUsedNames(nullptr);
   std::unique_ptr<vtkRun> run = vtkRun::Make(this);
   const bool isFirst = run->IsFirst();
-  const std::vector<Place> places = Merge(*run, this->ListPlaces(this->More));
+  const std::vector<Place> places = Merge(*run, this->ListPlaces(this->GetInputDataObject(1, 0)));
   if (!run->Begin(vtkPointSet::SafeDownCast(data)) || !this->CheckNames(places))
   {
     return;
@@ -165,26 +156,25 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
     }
   }
   run->PlaceBox(box.GetMinPoint(), box.GetMaxPoint());
-  vtkSPHParticles* input = run->Share(mine);
+  vtkSPHParticles* shared = run->Share(mine);
   const auto count = static_cast<vtkIdType>(places.size());
-  vtkSPHAddColumn<vtkDoubleArray>(
-    table, "time", count, [this](vtkIdType) { return this->InputTime; });
+  vtkSPHAddColumn<vtkDoubleArray>(table, "time", count, [time](vtkIdType) { return time; });
   vtkSPHAddColumn<vtkStringArray>(
     table, this->GetNoun(), count, [&places](vtkIdType i) { return places[i].Name; });
   std::vector<bool> outside;
   mcor_statistics statistics = {};
-  if (!input ||
-    !run->Call(*input,
+  if (!shared ||
+    !run->Call(*shared,
       [&](mcor_context* context) {
         return this->Measure(
-          context, input->Core, run->Options, places, table, outside, statistics);
+          context, shared->Core, run->Options, places, table, outside, statistics);
       }))
   {
     table->GetRowData()->Initialize();
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, statistics);
-  run->WarnOfParticles(input->Core, statistics);
+  run->WarnOfParticles(shared->Core, statistics);
   const auto first = std::find(outside.begin(), outside.end(), true);
   const auto dry = std::count(first, outside.end(), true);
   if (isFirst && hasFluid && dry > 0)

@@ -6,9 +6,7 @@
  *
  * The output is a vtkTable with a row for each place, the same whatever part of it is asked for.
  * Fluid is where the sum of the fluid particles' weights is Level or more, as for the free surface
- * of vtkMarchingCorrectors. Solids do not count, and do not end the fluid.
- *
- * Blocks of composite data are one set of particles, always.
+ * of vtkMarchingCorrectors. Blocks of composite data are one set of particles, always.
  *
  * If the controller has several processes, they share the work: each has some of the particles, and
  * the places of all processes are measured. The first process gets the table, the same to the last
@@ -61,8 +59,6 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   const char* GetOutputClassName(const char*) override { return "vtkTable"; }
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
@@ -113,9 +109,6 @@ private:
 
   bool CheckNames(const std::vector<Place>& places);
   static std::vector<Place> Merge(vtkRun& run, const std::vector<Place>& mine);
-
-  vtkDataObject* More = nullptr; // the second input, during a run
-  double InputTime = 0.0;
 };
 VTK_ABI_NAMESPACE_END
 

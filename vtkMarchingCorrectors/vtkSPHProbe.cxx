@@ -319,15 +319,6 @@ int vtkSPHProbe::RequestUpdateExtent(
   return 1;
 }
 
-int vtkSPHProbe::RequestData(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  this->Particles = this->TakeParticles(vtkDataObject::GetData(inputVector[1]));
-  const int done = this->Superclass::RequestData(request, inputVector, outputVector);
-  this->Particles = nullptr;
-  return done;
-}
-
 void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);

@@ -4,10 +4,8 @@
  * @class   vtkSPHProbe
  * @brief   the field of SPH particles at the points of any data set
  *
- * vtkSPHProbe evaluates the SPH field of particles at given points: those of a plane, a line, an
- * image, a mesh. Its ports are those of vtkProbeFilter: the points come in at port 0, the particles
- * at port 1, the "source". The particles are described as for vtkMarchingCorrectors, see
- * vtkSPHAlgorithm; each has its own smoothing length.
+ * vtkSPHProbe evaluates the SPH field of particles at the points of any data set. Its ports are
+ * those of vtkProbeFilter: the points come in at port 0, the particles at port 1, the "source".
  *
  *     Shepard (default)   sum_j V_j A_j W(x - x_j, s h_j) / sum_j V_j W(x - x_j, s h_j)
  *     sum                 sum_j V_j A_j W(x - x_j, s h_j)       (ShepardNormalizationOff)
@@ -20,20 +18,13 @@
  *     NAME_Gradient         of each of these arrays and of WeightSum, if ComputeGradients is on: 3
  *                           values per component: d/dx, d/dy, d/dz of the first, then the next
  *
- * At invalid points, the arrays other than WeightSum are 0, or as chosen, see SetNullValue().
  * Existing arrays of these names are replaced. The active scalars become the velocities, else the
  * first vector or scalar of the particles that varies. Arrays of other types, such as identifiers,
- * are left out, as are those named by AddExcludedArray(); one that is NaN or infinite at a fluid
- * particle is left out with a warning. Only fluid particles count.
+ * are left out; one that is NaN or infinite at a fluid particle is left out with a warning. Only
+ * fluid particles count. Points that vtkGhostType marks as duplicates have values, too. The value
+ * at a point depends neither on the other points nor on the order of points or particles.
  *
- * The value at a point depends neither on the other points nor on the order of points or particles.
- * Points are processed in batches, so that little memory is needed beside the output; points that
- * no particle reaches cost next to nothing.
- *
- * Points that vtkGhostType marks as duplicates have values, too.
- *
- * Composite data at port 0 give composite data. Particles in several blocks are taken together,
- * with the arrays that all blocks have.
+ * Composite data at port 0 give composite data. Particles in several blocks are taken together.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHDerivatives vtkSPHInterpolator vtkProbeFilter
@@ -97,16 +88,12 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return false; } // each point is evaluated without the
                                                         // others
 
   /** The port of the particles: after the points, if these are an input. */
   int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }
-
-  vtkSmartPointer<vtkPointSet> Particles; // during a run
 
 private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;

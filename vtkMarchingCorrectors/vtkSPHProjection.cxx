@@ -87,19 +87,6 @@ int vtkSPHProjection::RequestInformation(
   return 1;
 }
 
-int vtkSPHProjection::RequestData(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  const int none[6] = { 0, -1, 0, -1, 0, -1 };
-  std::copy_n(none, 6, this->UpdateExtent);
-  if (info->Has(Pipeline::UPDATE_EXTENT()))
-  {
-    info->Get(Pipeline::UPDATE_EXTENT(), this->UpdateExtent);
-  }
-  return this->Superclass::RequestData(request, inputVector, outputVector);
-}
-
 // Sums are exact, so each process projects its own particles, and the core adds up the images;
 // only where volumes are computed do particles go to the process that owns their place.
 void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
@@ -189,9 +176,10 @@ void vtkSPHProjection::Fill(vtkImageData* image, const std::string& name, mcor_p
   vtkSPHAddArray(
     image->GetPointData(), name.c_str(), vtkSPHAdopt(found.values, 1, image->GetNumberOfPoints()));
   image->GetPointData()->SetActiveScalars(name.c_str());
-  if (this->UpdateExtent[0] <= this->UpdateExtent[1])
+  const int* asked = this->GetOutputInformation(0)->Get(Pipeline::UPDATE_EXTENT());
+  if (asked && asked[0] <= asked[1])
   {
-    image->Crop(this->UpdateExtent);
+    image->Crop(asked);
   }
 }
 

@@ -5,9 +5,8 @@
  * @brief   column densities of SPH particles: an image of integrals along lines of sight
  *
  * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight,
- * and gives the mean of the integrals over each pixel of an image. Each kernel's integral is exact
- * to 1e-6 of the largest that one particle adds to a pixel, also if it is much smaller or larger
- * than a pixel, so the image has all of the mass that falls into it.
+ * and gives the mean of the integrals over each pixel of an image, see mcor_project in mcor.h. The
+ * image has all of the mass that falls into it.
  *
  * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
  * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
@@ -15,13 +14,9 @@
  * the scalar's name. With WeightArrayName the array is the mean of the scalar along the line of
  * sight; NaN where there is nothing.
  *
- * The view is along Direction: by default along the constant axis of particles in a plane, else
- * along z. Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower
- * end of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
- * matrix.
- *
- * The image shows all that particles reach, or the period of periodic particles, or, with UseBox,
- * the Box.
+ * Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower end
+ * of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
+ * matrix. It shows the Box with UseBox, else the period, or all that particles reach.
  *
  * Blocks of composite data are one set of particles, always. If the controller has several
  * processes, each has some of the particles, and each gets the part of the image that is asked for,
@@ -63,10 +58,8 @@ public:
 
   ///@{
   /**
-   * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along x,
-   * y or z, a particle counts if its position is between the box's sides along the line of sight
-   * and its kernel reaches between the other sides. Looking along another direction, a particle
-   * counts if its position is in the box. Each counts with all of its kernel. Off by default.
+   * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. mcor_view in
+   * mcor.h says which particles count. Off by default.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
@@ -99,8 +92,6 @@ protected:
 
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   const char* GetOutputClassName(const char*) override { return "vtkImageData"; }
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
@@ -111,8 +102,6 @@ private:
 
   mcor_view MakeView() const;
   void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
-
-  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // extent that this process is asked for
 };
 VTK_ABI_NAMESPACE_END
 

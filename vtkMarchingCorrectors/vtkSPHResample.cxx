@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHResample.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -21,7 +22,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -41,7 +41,7 @@ constexpr double UsualPoints = 1e6;
 struct Rectangle
 {
   double U[3], V[3];
-  double Low[2], High[2];
+  vtkBoundingBox Range;
 
   Rectangle(const double box[6], const double origin[3], const double normal[3])
   {
@@ -62,8 +62,6 @@ struct Rectangle
     {
       std::transform(this->V, this->V + 3, this->V, [](double v) { return v == 0.0 ? 0.0 : -v; });
     }
-    std::fill_n(this->Low, 2, std::numeric_limits<double>::infinity());
-    std::fill_n(this->High, 2, -std::numeric_limits<double>::infinity());
     double corners[8][3], heights[8];
     for (int c = 0; c < 8; ++c)
     {
@@ -72,37 +70,21 @@ struct Rectangle
         corners[c][a] = box[2 * a + (c >> a & 1)] - origin[a];
       }
       heights[c] = vtkMath::Dot(corners[c], normal);
-      if (heights[c] == 0.0)
-      {
-        this->Add(corners[c]);
-      }
     }
     for (int edge = 0; edge < 24; ++edge)
     {
       const int c = edge / 3, d = c | 1 << edge % 3; // d is c if c is the edge's upper end
-      if ((heights[c] < 0.0) != (heights[d] < 0.0))
+      const bool isCut = (heights[c] < 0.0) != (heights[d] < 0.0);
+      const double part = isCut ? heights[c] / (heights[c] - heights[d]) : 0.0;
+      double x[3];
+      for (int a = 0; a < 3; ++a)
       {
-        const double part = heights[c] / (heights[c] - heights[d]);
-        double x[3];
-        for (int a = 0; a < 3; ++a)
-        {
-          x[a] = corners[c][a] + part * (corners[d][a] - corners[c][a]);
-        }
-        this->Add(x);
+        x[a] = corners[c][a] + part * (corners[d][a] - corners[c][a]);
       }
-    }
-  }
-
-  bool IsEmpty() const { return this->Low[0] > this->High[0]; }
-
-private:
-  void Add(const double x[3])
-  {
-    const double at[2] = { vtkMath::Dot(x, this->U), vtkMath::Dot(x, this->V) };
-    for (int a = 0; a < 2; ++a)
-    {
-      this->Low[a] = std::min(this->Low[a], at[a]);
-      this->High[a] = std::max(this->High[a], at[a]);
+      if (isCut || heights[c] == 0.0)
+      {
+        this->Range.AddPoint(vtkMath::Dot(x, this->U), vtkMath::Dot(x, this->V), 0.0);
+      }
     }
   }
 };
@@ -119,11 +101,12 @@ void MakeSlice(const double box[6], const double origin[3], const double normal[
   vtkNew<vtkCellArray> quads;
   points->SetDataTypeToDouble();
   slice->SetPoints(points);
-  if (plane.IsEmpty() || !(vtkMath::Norm(normal) > 0.0))
+  if (!plane.Range.IsValid() || !(vtkMath::Norm(normal) > 0.0))
   {
     return;
   }
-  const double length[2] = { plane.High[0] - plane.Low[0], plane.High[1] - plane.Low[1] };
+  const double* low = plane.Range.GetMinPoint();
+  const double length[2] = { plane.Range.GetLength(0), plane.Range.GetLength(1) };
   const double longer = std::max(length[0], length[1]);
   const double spacing = longer > 0.0 ? longer / std::max(resolution - 1, 1) : 1.0;
   vtkIdType count[2];
@@ -136,8 +119,8 @@ void MakeSlice(const double box[6], const double origin[3], const double normal[
   for (vtkIdType point = 0; point < count[0] * count[1]; ++point)
   {
     const vtkIdType i = point % count[0], j = point / count[0];
-    const double u = plane.Low[0] + spacing * static_cast<double>(i);
-    const double v = plane.Low[1] + spacing * static_cast<double>(j);
+    const double u = low[0] + spacing * static_cast<double>(i);
+    const double v = low[1] + spacing * static_cast<double>(j);
     points->SetPoint(point, origin[0] + u * plane.U[0] + v * plane.V[0],
       origin[1] + u * plane.U[1] + v * plane.V[1], origin[2] + u * plane.U[2] + v * plane.V[2]);
     if (i + 1 < count[0] && j + 1 < count[1])
@@ -208,9 +191,8 @@ int vtkSPHResample::RequestInformation(
   const bool isGiven = std::min({ d[0], d[1], d[2] }) > 0;
   if (!isGiven && this->FitBounds)
   {
-    this->Particles = this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0]));
-    const bool isFound = (this->Particles || this->IsShared()) && this->FindBounds(bounds);
-    this->Particles = nullptr;
+    const auto particles = this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0]));
+    const bool isFound = (particles || this->IsShared()) && this->FindBounds(particles, bounds);
     std::fill_n(bounds, isFound ? 0 : 6, 0.0);
   }
   double product = 1.0;
@@ -233,30 +215,11 @@ int vtkSPHResample::RequestInformation(
   return 1;
 }
 
-int vtkSPHResample::RequestData(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  const int* d = this->UsedDimensions;
-  const int whole[6] = { 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1 };
-  std::copy(whole, whole + 6, this->UpdateExtent);
-  if (this->Shape == VOLUME && info->Has(Pipeline::UPDATE_EXTENT()))
-  {
-    info->Get(Pipeline::UPDATE_EXTENT(), this->UpdateExtent);
-  }
-  this->HasPoints = this->IsShared() ? this->Controller->GetLocalProcessId() == 0
-                                     : !info->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
-      info->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= 0;
-  const int done = this->vtkSPHAlgorithm::RequestData(request, inputVector, outputVector);
-  this->Particles = nullptr;
-  return done;
-}
-
 // Finds the fluid's box with a margin, but without one along the axis of a plane. Returns false if
 // no particle is fluid.
-bool vtkSPHResample::FindBounds(double bounds[6])
+bool vtkSPHResample::FindBounds(vtkPointSet* particles, double bounds[6])
 {
-  if (!this->FindFluidBounds(this->Particles, bounds))
+  if (!this->FindFluidBounds(particles, bounds))
   {
     return false;
   }
@@ -278,8 +241,10 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   return true;
 }
 
+// Makes the points that this process is asked for. The first one has all points of a slice or line.
 vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
 {
+  vtkInformation* info = this->GetOutputInformation(0);
   const double middle[3] = { 0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]) };
   if (this->Shape == VOLUME)
   {
@@ -293,11 +258,16 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
     }
     image->SetOrigin(box[0], box[2], box[4]);
     image->SetSpacing(spacing);
-    image->SetExtent(this->UpdateExtent);
+    const int* d = this->UsedDimensions;
+    int extent[6] = { 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1 };
+    info->Get(Pipeline::UPDATE_EXTENT(), extent);
+    image->SetExtent(extent);
     return image;
   }
   auto made = vtkSmartPointer<vtkPolyData>::New();
-  if (this->HasPoints && this->Shape == SLICE)
+  const int piece = this->IsShared() ? this->Controller->GetLocalProcessId()
+                                     : info->Get(Pipeline::UPDATE_PIECE_NUMBER());
+  if (piece <= 0 && this->Shape == SLICE)
   {
     // A slice cuts a plane of particles in a line, unless it is that plane.
     const bool isFlat = this->FlatAxis >= 0;
@@ -306,7 +276,7 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
     MakeSlice(b, isFlat || this->FitBounds ? middle : this->Origin, isFlat ? along : this->Normal,
       this->Resolution, made);
   }
-  else if (this->HasPoints)
+  else if (piece <= 0)
   {
     int longest = 0;
     for (int a = 1; a < 3; ++a)
@@ -332,7 +302,7 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  if (!this->FindBounds(bounds))
+  if (!this->FindBounds(this->Particles, bounds))
   {
     this->Warn("No particle is fluid, so there is nothing to show.");
     return;

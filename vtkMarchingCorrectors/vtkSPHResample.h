@@ -10,15 +10,13 @@
  *     LINE              points from Point1 to Point2, with their distance from the first as arc_length
  *     VOLUME            a vtkImageData around that box
  *
- * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the middle
- * along the longest side of its box, and the volume is the box, all with a margin of 3 % of this side. FindFluidBounds()
- * finds the box. A slice of particles in a plane always lies in their plane.
+ * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the
+ * middle along the longest side of its box, and the volume is the box, all with a margin of 3 % of
+ * this side. A slice of particles in a plane always lies in their plane. Where there is no fluid
+ * arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
  *
- * Where there is no fluid (less than WeightThreshold) arrays are NaN, see SetNaNOutside(), and a slice has
- * no quads, see SetOnlyFluid(). Active scalars are velocities, else the first vector or scalar that varies.
- *
- * Blocks of composite data always form one set of particles. If the controller has several processes, each
- * has a part of the volume; a slice or line is on the first one.
+ * Blocks of composite data always form one set of particles. If the controller has several
+ * processes, each has a part of the volume; a slice or line is on the first one.
  *
  * @sa
  * vtkSPHProbe vtkSPHAlgorithm vtkMarchingCorrectors vtkResampleToImage
@@ -60,19 +58,13 @@ public:
   vtkSPHFlagMacro(FitBounds, 1);
 
   ///@{
-  /** The plane of a slice: a point of it (unit L), and its normal, (0, 0, 1) by default. */
+  /** A point of a slice and its normal; the ends of a line; the bounds of a volume. Unit L. */
   vtkSPHVector3Macro(Origin, double, 0.0, 0.0, 0.0);
   vtkSPHVector3Macro(Normal, double, 0.0, 0.0, 1.0);
-  ///@}
-
-  ///@{
-  /** The ends of a line, unit L. */
   vtkSPHVector3Macro(Point1, double, 0.0, 0.0, 0.0);
   vtkSPHVector3Macro(Point2, double, 1.0, 0.0, 0.0);
-  ///@}
-
-  /** The bounds of a volume: x0, x1, y0, y1, z0, z1, unit L. */
   vtkSPHVector6Macro(Bounds, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
+  ///@}
 
   /** How many points a line has, or a slice along its longer side; at least 2, 500 by default. */
   vtkSPHClampMacro(Resolution, int, 500, 2, 100000);
@@ -92,8 +84,6 @@ protected:
 
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
@@ -102,13 +92,11 @@ private:
   vtkSPHResample(const vtkSPHResample&) = delete;
   void operator=(const vtkSPHResample&) = delete;
 
-  bool FindBounds(double bounds[6]);
+  bool FindBounds(vtkPointSet* particles, double bounds[6]);
   vtkSmartPointer<vtkDataSet> MakePoints(const double bounds[6]);
 
   int UsedDimensions[3] = { 1, 1, 1 };
   int FlatAxis = -1;
-  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // extent of a volume that this process is asked for
-  bool HasPoints = true;                         // whether this process has the points of a slice or line
 };
 VTK_ABI_NAMESPACE_END
 

@@ -4,10 +4,8 @@
  * @class   vtkSPHTemporalInterpolator
  * @brief   SPH particles at any time between the steps that are stored
  *
- * Readers of simulations provide particles at the stored steps. This filter provides them at any
- * time from the first step to the last, interpolated between two steps. It keeps the two steps
- * around the requested time, so that an animation reads each step once. vtkMarchingCorrectors and
- * the other SPH filters take its output.
+ * This filter provides particles at any time from the first step that its reader has to the last,
+ * interpolated between two steps. It keeps these, so that an animation reads each step once.
  *
  * Particles are matched between two steps by their ids, in any order. The position follows the
  * cubic Hermite curve through both positions with both velocities as tangents; float and double
@@ -16,27 +14,16 @@
  * with the velocity that it has there, and keeps its values. Particles are in the order of the
  * nearer step (in the middle: of the later one).
  *
- * Ids and velocities are point arrays, found by their usual names (case, blanks, "_" and "-" do not
- * matter) unless they are named; ids are also found as the active global ids:
- *
- *     id         Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid iorig
- *                OriginalId UnsortedParticleId
- *     velocity   Velocity Velocities vel v
- *
- * As a name, "(automatic)" and "(none)" mean the same as an empty one. Without ids, or if two
- * particles share one, it is an error to request a time between two steps. Without velocities (or
- * with UseVelocities off) positions are linear in time, and particles of only one step stay where
- * they are. The same is done, with a warning, if the particles (100 or more) moved less than half
- * or more than twice as far as their mean velocities say: the steps' times are then in another unit
- * than the velocities, see TimeScale, or too far apart.
+ * Ids and velocities are point arrays, found by their usual names (see mcor_name_priority in
+ * mcor.h) unless they are named; ids are also found as the active global ids. Without ids, or if
+ * two particles share one, it is an error to request a time between two steps. Without velocities
+ * (or with UseVelocities off) positions are linear in time, and particles of only one step stay
+ * where they are. The same is done, with a warning, if the particles (100 or more) moved less than
+ * half or more than twice as far as their mean velocities say, see TimeScale.
  *
  * The output is a vtkPolyData with the points and point arrays; if the input has cells, each
  * particle is a vertex. Composite data must have the same tree in both steps, and give composite
  * data. Arrays that only one of the two steps has are left out between them, with a warning.
- *
- * Where PeriodicBounds are set, each particle goes to its nearest image in the other step, so that one
- * that crosses a side goes on beyond it. Otherwise it flies through the whole domain between the two
- * steps.
  *
  * @sa
  * vtkMarchingCorrectors vtkTemporalInterpolator
@@ -83,26 +70,20 @@ public:
    */
   vtkSPHValueMacro(TimeScale, double, 1.0);
 
+  ///@{
   /**
-   * The lower and the upper side of one period along x, y and z; 0, 0, the default, along an axis that is
-   * not periodic.
+   * The lower and the upper side of one period along x, y and z; 0, 0 (the default): none. Particles
+   * that cross a side go on beyond it. DetectPeriod (off by default): see vtkSPHAlgorithm.
    */
   vtkSPHVector6Macro(PeriodicBounds, double, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-
-  /** Takes the period from the field data of the steps instead, as vtkSPHAlgorithm does. Off by default. */
   vtkSPHFlagMacro(DetectPeriod, 0);
+  ///@}
 
-  /**
-   * The number of steps that are announced for each interval between two stored ones, as ParaView's
-   * animation needs them. 1, the default: only the stored steps. Any other time can be requested,
-   * too.
-   */
+  /** The number of steps that are announced for each interval between stored ones, 1 by default. */
   vtkSPHClampMacro(ResampleFactor, int, 1, 1, 1000000);
 
   ///@{
-  /**
-   * The arrays used for the last time between two steps; empty if there was none, or no velocity.
-   */
+  /** The arrays used for the last time between two steps; empty if there was none, or no velocity. */
   vtkSPHToldMacro(UsedIdArrayName);
   vtkSPHToldMacro(UsedVelocityArrayName);
   ///@}

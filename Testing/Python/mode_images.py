@@ -118,20 +118,8 @@ def make_actor(surface, color_by, low, high, cells=False):
     return actor
 
 
-def draw(surface, color_by, low, high, path):
-    renderer = vtkRenderer()
-    renderer.AddActor(make_actor(surface, color_by, low, high))
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(0.4, 1.5, 3.0)
-    camera.SetFocalPoint(1.6, 0.3, 0.0)
-    camera.SetViewUp(0.0, 1.0, 0.0)
-    renderer.ResetCamera()
-    camera.Zoom(1.4)
-    save(renderer, (500, 300), path)
-
-
-def draw_filled(surface, path):
-    """Draws lines over bands."""
+def make_filled(surface):
+    """Makes lines over bands."""
     bands = make_actor(surface, "BandValue", 0.0, 1.0, cells=True)
     lines = vtkPolyData()
     lines.SetPoints(surface.GetPoints())
@@ -142,21 +130,22 @@ def draw_filled(surface, path):
     over.GetProperty().SetColor(0.0, 0.0, 0.0)
     over.GetProperty().SetLineWidth(2.0)
     over.SetPosition(0.0, 0.01, 0.0)
-    renderer = vtkRenderer()
     for actor in bands, over:
         actor.GetProperty().LightingOff()
+    return bands, over
+
+
+def draw(actors, path, size, zoom, *places):
+    """Draws actors. places: of the camera, of what it looks at, and its upward direction."""
+    renderer = vtkRenderer()
+    for actor in actors:
         renderer.AddActor(actor)
     camera = renderer.GetActiveCamera()
-    camera.SetPosition(0.0, 5.0, 0.0)
-    camera.SetFocalPoint(0.0, 0.5, 0.0)
-    camera.SetViewUp(0.0, 0.0, 1.0)
-    camera.ParallelProjectionOn()
+    for name, place in zip(("Position", "FocalPoint", "ViewUp"), places):
+        getattr(camera, "Set" + name)(place)
+    camera.SetParallelProjection(len(actors) > 1)
     renderer.ResetCamera()
-    camera.Zoom(1.3)
-    save(renderer, (300, 300), path)
-
-
-def save(renderer, size, path):
+    camera.Zoom(zoom)
     renderer.SetBackground(0.2, 0.2, 0.25)
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
@@ -196,9 +185,10 @@ def main(modes):
         if mode == "Plugin":
             draw_by_plugin(path)
         elif mode == "Filled":
-            draw_filled(extract(mode), path)
+            draw(make_filled(extract(mode)), path, (300, 300), 1.3, (0.0, 5.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 1.0))
         else:
-            draw(extract(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)), path)
+            actor = make_actor(extract(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)))
+            draw([actor], path, (500, 300), 1.4, (0.4, 1.5, 3.0), (1.6, 0.3, 0.0), (0.0, 1.0, 0.0))
         error, most = difference(path, os.path.join(BASELINES, name)), PLUGIN_THRESHOLD if mode == "Plugin" else THRESHOLD
         print("%s differs by %g (at most %g)" % (path, error, most))
         if error > most:

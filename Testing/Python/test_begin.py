@@ -4,10 +4,8 @@
 import unittest
 
 import numpy
-from vtkmodules.vtkFiltersSources import vtkPlaneSource
 
-from marchingcorrectors import (vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
-                                vtkSPHResample)
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHResample
 from vtk_test import SPACING, blocks_of, lattice, particles_of, points_of, run, values_of
 
 
@@ -61,6 +59,9 @@ class TestPlaces(unittest.TestCase):
                 self.assertEqual(told, [])
                 self.assertGreater(cut.GetNumberOfCells(), 500)
                 self.assertEqual(set(points_of(cut)[:, axis]), {0.25})
+            surface = vtkMarchingCorrectors()
+            surface.SetInputData(block(points))
+            self.assertEqual(surface.GetNextDimension(), 2)
             image, _ = run(vtkSPHResample(), block(points), Shape=2)
             self.assertEqual(image.GetDimensions()[axis], 1)
             self.assertGreater(values_of(image, "vtkValidPointMask").mean(), 0.5)
@@ -158,13 +159,6 @@ class TestForgotten(unittest.TestCase):
         self.assertEqual(len(told), 1)
         self.assertRegex(told[0], "SPH Contour")
 
-    def test_probe(self):
-        plane = vtkPlaneSource()
-        plane.Update()
-        _, told = run(vtkSPHProbe(), plane.GetOutput())
-        self.assertEqual(len(told), 1)
-        self.assertRegex(told[0], "Choose the particles")
-
     def test_smoothing_length(self):
         """The sentence begins with the remedy, in the words of the panel."""
         bare = particles_of(lattice(10, 10, 10))
@@ -201,16 +195,10 @@ class TestChoices(unittest.TestCase):
                              **{name: velocity[:, a].copy() for a, name in enumerate(("vx", "vy", "vz"))})
         surface = vtkMarchingCorrectors()
         surface.SetInputData(apart)
-        self.assertEqual((surface.GetNextArray(), surface.GetNextComponents()), ("Velocity", 3))
+        self.assertEqual((surface.GetNextArray(), surface.GetNextComponents(), surface.GetNextDimension()), ("Velocity", 3, 3))
         derived, told = run(vtkSPHDerivatives(), apart)
         self.assertEqual(told, [])
         self.assertTrue(numpy.allclose(values_of(derived, "Vorticity"), [0, 0, 2], atol=1e-4))
-
-    def test_dimension(self):
-        surface = vtkMarchingCorrectors()
-        for points, dimension in ((lattice(20, 12, 8), 3), (lattice(20, 12, 1), 2)):
-            surface.SetInputData(block(points))
-            self.assertEqual(surface.GetNextDimension(), dimension)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkPartitionedDataSetCollection, vtkPolyData, vtkTable)
 
 from vtk_test import (
-    add, blocks_of, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take,
+    add, blocks_of, cube, on_progress, particles_of, points_of, run, says, sphere, statistic, statistics_of, surface_of, take,
     values_of)
 
 APART = {"BlocksToApart": ()}
@@ -56,6 +56,24 @@ class TestApart(unittest.TestCase):
         run(extract)
         self.assertEqual(extract.GetErrorMessage(), "")
         self.assertTrue(surface_of(run(extract, cube())[0]) == self.alone)
+
+    def told_once(self, words, extract, **settings):
+        """Expects a run that gives one sentence, which matches, or none if there are no words."""
+        told = run(extract, **settings)[1]
+        self.assertEqual(len(told), 1 if words else 0, told)
+        self.assertRegex("".join(told), words or "^$")
+
+    def test_warnings(self):
+        """A warning comes once in a run and names its block; names of walls are told for blocks apart and together."""
+        extract = sphere(blocks_of(a=cube(), b=cube()))
+        for _ in range(2):
+            self.told_once("Block 'a', index 1: " + says("NEIGHBOURS_UNUSUAL", "Smoothing Length Is Support Radius"), extract, **APART,
+                           SmoothingLength=0.26)
+            extract.Modified()
+        for apart, words in ((1, says("WALLS_IN_BLOCK", "Block 'PartBound', index 2 of 2", "Blocks together")),
+                             (0, says("WALL_BLOCKS_UNUSED", "Fluid Array WallBlock"))):
+            self.told_once(words, sphere(blocks_of(PartFluid=cube(), PartBound=cube())), Blocks=apart)
+            self.told_once("", sphere(blocks_of(Bound1=cube(), Bound2=cube())), Blocks=apart)
 
     def test_partitions(self):
         """A part without a name is called by the name of what it belongs to."""

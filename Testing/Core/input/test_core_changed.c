@@ -111,7 +111,7 @@ static void test_changes_at_each_launch(void** state)
     {
       for (int at = 0, done = 0; !done; at += 1 + at / 8)
       {
-        changed_call call;
+        CORE_OWNED(free_call) changed_call call;
         begin_call(&call, which);
         changer c = { &call, kind, at, 0 };
         call.options.progress = change_once;
@@ -124,7 +124,6 @@ static void test_changes_at_each_launch(void** state)
           mcor_status_name(status), mcor_last_error(context));
         ++calls;
         done = c.calls <= at;
-        free_call(&call);
       }
     }
   }
@@ -139,9 +138,9 @@ static void test_other_globals(void** state)
   mcor_context* context = *state;
   for (int kind = 0; kind < CHANGES; ++kind)
   {
-    changed_call call;
+    CORE_OWNED(free_call) changed_call call;
     begin_call(&call, KEEP);
-    mcor_globals globals;
+    CORE_OWNED(mcor_free_globals) mcor_globals globals;
     CORE_SURFACE surface;
     CORE_OK(context, mcor_measure_globals(context, &call.input, &call.options, &globals));
     call.options.globals = &globals;
@@ -154,8 +153,6 @@ static void test_other_globals(void** state)
     CORE_CHECK(status == (within ? MCOR_OK : MCOR_INVALID_DATA), kind, mcor_last_error(context));
     const char* sentence = kind == NO_NUMBER ? "ARRAY_VALUE" : "ARRAYS_CHANGED";
     CORE_CHECK(within || core_told(context, sentence), kind, mcor_last_error(context));
-    mcor_free_globals(&globals);
-    free_call(&call);
   }
 }
 
@@ -188,28 +185,24 @@ static void test_changes_all_the_time(void** state)
   int noticed = 0;
   for (int which = 0; which < CASES; ++which)
   {
-    changed_call call;
+    CORE_OWNED(free_call) changed_call call;
     begin_call(&call, which);
-    CORE_SURFACE surface = core_extract(context, &call.input, &call.options);
-    const uint64_t expected = core_hash(&surface);
-    mcor_free_surface(&surface);
+    const uint64_t expected = core_hash_of(context, &call.input, &call.options);
     writer w = { .call = &call };
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, write_positions, &w), 0);
     for (int round = 0; round < 60; ++round)
     {
+      CORE_SURFACE surface;
       const mcor_status status = mcor_extract(context, &call.input, &call.options, &surface);
       CORE_CHECK(status == MCOR_OK || status == MCOR_INVALID_DATA, mcor_status_name(status),
         mcor_last_error(context));
       noticed += core_told(context, "ARRAYS_CHANGED");
-      mcor_free_surface(&surface);
     }
     atomic_store(&w.ends, true);
     pthread_join(thread, NULL);
     memcpy(call.set.position, call.before, (size_t)call.set.count * 3 * sizeof(double));
-    surface = core_extract(context, &call.input, &call.options);
-    CORE_CHECK(core_hash(&surface) == expected, which);
-    free_call(&call);
+    CORE_CHECK(core_hash_of(context, &call.input, &call.options) == expected, which);
   }
   print_message("%d calls of %d noticed\n", noticed, 60 * CASES);
 }

@@ -150,8 +150,7 @@ static void test_coincident(void** state)
   mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
-  mcor_surface first = core_extract(*state, &input, &options);
-  mcor_free_surface(&first);
+  CORE_SURFACE first = core_extract(*state, &input, &options);
   input.scalar = core_array(other, 1);
   ++input.scalar_version;
   CORE_SURFACE reused = core_extract(*state, &input, &options);

@@ -161,10 +161,9 @@ static void test_measures(void** state)
       options.wall_share = MCOR_WALL_SHARE_MEASURED;
       input.ignore_solids = ignored;
       input.estimate_smoothing_length = estimated;
-      mcor_globals globals;
+      CORE_OWNED(mcor_free_globals) mcor_globals globals;
       CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
       measured[k] = globals.measured;
-      mcor_free_globals(&globals);
     }
     const mcor_measure *m = &measured[0], *same = &measured[1];
     assert_true(m->h_estimate == same->h_estimate && m->wall_share == same->wall_share);
@@ -282,14 +281,12 @@ static void test_region(void** state)
   memset(options.box, 0, sizeof box);
   const mcor_gauge_line lines[2] = { { .from = { 0, 0, -20 }, .to = { 0, 0, 20 } },
     { .from = { 50, 0, 0 }, .to = { 60, 0, 0 } } };
-  mcor_gauges expected, gauges;
+  CORE_GAUGES expected, gauges;
   CORE_OK(*state, mcor_gauge(*state, &near, &options, lines, 2, &expected));
   CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 2, &gauges));
   assert_true(expected.readings[0].crossing_count == 2);
   assert_true(gauges.readings[0].last == expected.readings[0].last);
   assert_int_equal(gauges.readings[1].state, expected.readings[1].state);
-  mcor_free_gauges(&expected);
-  mcor_free_gauges(&gauges);
   const double places[6] = { 0.25, 0.5, 1, 3, 2, 1 };
   const mcor_array points = core_array(places, 3);
   for (int kept = 0; kept < 2; ++kept)

@@ -6,6 +6,7 @@
 
 #include "core_fixture.h"
 #include "mcor_find.h"
+#include "mcor_input.h"
 
 #define COUNT 4
 
@@ -120,23 +121,14 @@ static void test_volumes(void** state)
  * they are. */
 static void test_elements(void** state)
 {
-  const int8_t i8[COUNT] = { 1, 2, 3, 4 };
-  const uint8_t u8[COUNT] = { 1, 2, 3, 4 };
-  const int16_t i16[COUNT] = { 1, 2, 3, 4 };
-  const uint16_t u16[COUNT] = { 1, 2, 3, 4 };
-  const int32_t i32[COUNT] = { 1, 2, 3, 4 };
-  const uint32_t u32[COUNT] = { 1, 2, 3, 4 };
-  const int64_t i64[COUNT] = { 1, 2, 3, 4 };
-  const uint64_t u64[COUNT] = { 1, 2, 3, 4 };
-  const float f32[COUNT] = { 1, 2, 3, 4 }, gaps[2 * COUNT] = { 1, 0, 2, 0, 3, 0, 4, 0 };
+  const float gaps[2 * COUNT] = { 1, 0, 2, 0, 3, 0, 4, 0 };
   const double f64[COUNT] = { 1, 2, 3, 4 };
   const char odd[1 + sizeof f64] = { 0 };
   memcpy((char*)odd + 1, f64, sizeof f64);
-  mcor_named arrays[] = { of("f", MCOR_ELEMENT_FLOAT32, 1, f32), real("d", f64),
-    of("i8", MCOR_ELEMENT_INT8, 1, i8), of("u8", MCOR_ELEMENT_UINT8, 1, u8),
-    of("i16", MCOR_ELEMENT_INT16, 1, i16), of("u16", MCOR_ELEMENT_UINT16, 1, u16),
-    of("i32", MCOR_ELEMENT_INT32, 1, i32), of("u32", MCOR_ELEMENT_UINT32, 1, u32),
-    of("i64", MCOR_ELEMENT_INT64, 1, i64), of("u64", MCOR_ELEMENT_UINT64, 1, u64),
+#define ARRAY(element, type) of(#type, MCOR_ELEMENT_##element, 1, (const type[COUNT]){ 1, 2, 3, 4 })
+  mcor_named arrays[] = { ARRAY(FLOAT32, float), ARRAY(FLOAT64, double), ARRAY(INT8, int8_t),
+    ARRAY(UINT8, uint8_t), ARRAY(INT16, int16_t), ARRAY(UINT16, uint16_t), ARRAY(INT32, int32_t),
+    ARRAY(UINT32, uint32_t), ARRAY(INT64, int64_t), ARRAY(UINT64, uint64_t),
     of("gaps", MCOR_ELEMENT_FLOAT32, 1, gaps), real("odd", (const double*)(const void*)(odd + 1)) };
   arrays[10].stride[0] = 2 * sizeof(float);
   const int count = (int)(sizeof arrays / sizeof arrays[0]);
@@ -153,8 +145,7 @@ static void test_elements(void** state)
     assert_string_equal(length->name, arrays[i].name);
     for (int p = 0; p < COUNT; ++p)
     {
-      const double value = length->type == MCOR_FLOAT32 ? (double)((const float*)length->data)[p]
-                                                        : ((const double*)length->data)[p];
+      const double value = mcor_array_at(length, p, 0);
       CORE_CHECK(value == p + 1, arrays[i].name, p, value);
     }
   }

@@ -132,11 +132,10 @@ static void test_share(void** state)
     options.periodic[2] = periodic ? -5 : 0;
     options.periodic[3] = periodic ? 5 : 0;
     const double expected = find_share(&set, (oracle_kernel)kernel, periodic ? 10 : 0);
-    mcor_globals globals;
+    CORE_OWNED(mcor_free_globals) mcor_globals globals;
     CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
     CORE_CHECK(fabs(globals.measured.wall_share - expected) < 1e-6, kernel,
       periodic ? ", periodic" : "", globals.measured.wall_share, expected);
-    mcor_free_globals(&globals);
   }
 }
 
@@ -148,7 +147,7 @@ static void test_measured(void** state)
   mcor_input input = core_input(&set);
   input.particles_version = input.scalar_version = 1;
   mcor_options options = make_options(0.5, MCOR_SHEPARD);
-  mcor_globals globals;
+  CORE_OWNED(mcor_free_globals) mcor_globals globals;
   mcor_surface surface[4];
   surface[0] = core_extract(*state, &input, &options);
   options.wall_share = MCOR_WALL_SHARE_MEASURED;
@@ -168,7 +167,6 @@ static void test_measured(void** state)
   }
   CORE_CHECK(
     hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0], globals.measured.wall_share);
-  mcor_free_globals(&globals);
 }
 
 /* By default the wall share is measured for a scalar, and is 0 for the free surface; with global values, too. */
@@ -216,13 +214,12 @@ static void test_measured_elsewhere(void** state)
   assert_true(surface.statistics.wall_share == 0.5);
   mcor_free_surface(&surface);
   options.wall_share = 0.5;
-  mcor_globals globals;
+  CORE_OWNED(mcor_free_globals) mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   options.wall_share = MCOR_WALL_SHARE_MEASURED;
   options.globals = &globals;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_true(core_told(*state, "GLOBALS_LACK_WALL_SHARE"));
-  mcor_free_globals(&globals);
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_without_solids, test_share, test_measured,

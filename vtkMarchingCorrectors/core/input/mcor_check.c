@@ -21,18 +21,15 @@ mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, doub
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
   const mcor_measure* m = &g->measured;
-  const bool is_empty = m->fluid_count == 0;
   bool good = m->fluid_count >= 0 && m->solid_count >= 0 && g->component_count >= 0 &&
     (g->components || g->component_count == 0) && g->split_count >= 0;
-  for (int a = 0; a < 3; ++a)
+  if (m->fluid_count > 0)
   {
-    good = good && (is_empty || m->low[a] <= m->high[a]);
+    good = good && m->h_min > 0 && m->h_min <= m->h_max && m->support_min > 0 &&
+      m->support_min <= m->support_max && m->h_estimate >= 0 && isfinite(g->scalar_shift) &&
+      g->mass_max >= 0 && m->wall_share >= 0 && m->wall_share <= 1 && m->low[0] <= m->high[0] &&
+      m->low[1] <= m->high[1] && m->low[2] <= m->high[2];
   }
-  good = good &&
-    (is_empty ||
-      (m->h_min > 0 && m->h_min <= m->h_max && m->support_min > 0 &&
-        m->support_min <= m->support_max && m->h_estimate >= 0 && isfinite(g->scalar_shift) &&
-        g->mass_max >= 0 && m->wall_share >= 0 && m->wall_share <= 1));
   MCOR_FAIL_IF(!good, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(GLOBALS_DAMAGED));
   return MCOR_OK;
 }
@@ -158,14 +155,16 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_input* inp
 {
   const bool same = strcmp(mcor_array_name(array, role), role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
-  int c = 0;
-  const int64_t i =
-    mcor_find_illegal(context, array, input->solid, skip, input->count, positive, &c);
+  const int64_t i = mcor_find_illegal(context, array, input->solid, skip, input->count, positive);
   if (i < 0)
   {
     return MCOR_OK;
   }
-  const double v = mcor_array_at(array, i, c);
+  double v = mcor_array_at(array, i, 0);
+  for (int c = 1; isfinite(v) && c < components; ++c)
+  {
+    v = mcor_array_at(array, i, c);
+  }
   const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
   return array->data ? mcor_fail(context, MCOR_INVALID_DATA, MCOR_SAY(ARRAY_VALUE), role,
                          same ? "" : " array ", same ? "" : array->name, (long long)i, problem)

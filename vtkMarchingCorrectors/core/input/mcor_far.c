@@ -119,9 +119,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 }
 
 /* Leaves out particles beyond a region that reaches `half` from the middle of a sample of the fluid
- * along each axis. *good: whether they are few enough. */
-static mcor_status mcor_mark_farthest(
-  mcor_context* context, mcor_far_job* job, double half, bool* good)
+ * along each axis. Fails if they are too many; the sentence is set already. */
+static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, double half)
 {
   const mcor_sample_list* samples = &context->samples[0];
   mcor_far* far = job->far;
@@ -140,11 +139,10 @@ static mcor_status mcor_mark_farthest(
   MCOR_TRY(mcor_mark_far(context, job));
   const int64_t own = far->first, share = job->all.sums[MCOR_USED] / MCOR_FAR_SHARE;
   far->count = job->all.sums[MCOR_LEFT_OUT];
-  *good = far->count > 0 && far->count <= (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) &&
-    2 * far->count < job->all.sums[MCOR_USED] && job->all.sums[MCOR_STAYING] > 0;
-  if (!*good)
+  if (far->count == 0 || far->count > (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) ||
+    2 * far->count >= job->all.sums[MCOR_USED] || job->all.sums[MCOR_STAYING] == 0)
   {
-    return MCOR_OK;
+    return MCOR_OUT_OF_CAPACITY;
   }
   /* The place comes from the rank whose first far particle has the least number. */
   MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &far->first, 1));
@@ -182,19 +180,8 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   {
     job.open[a] = context->lattice.period[a] == 0;
   }
-  bool good = true;
-  if (far->is_cut)
-  {
-    MCOR_TRY(mcor_mark_out_of_reach(context, &job));
-  }
-  else
-  {
-    MCOR_TRY(mcor_mark_farthest(context, &job, half, &good));
-  }
-  if (!good)
-  {
-    return MCOR_OUT_OF_CAPACITY; /* the sentence is set already */
-  }
+  MCOR_TRY(
+    far->is_cut ? mcor_mark_out_of_reach(context, &job) : mcor_mark_farthest(context, &job, half));
   context->error[0] = '\0';
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   return MCOR_OK;

@@ -23,7 +23,8 @@ void* mcor_find_memory(mcor_finder* f, size_t bytes)
   return memory;
 }
 
-int mcor_refuse(mcor_finder* f, mcor_message message)
+/* Keeps the first message that says what is wrong; frees later ones. Returns -1, no index. */
+static int mcor_refuse(mcor_finder* f, mcor_message message)
 {
   if (mcor_has_error(f))
   {
@@ -49,7 +50,7 @@ const char* mcor_names_of(mcor_finder* f)
   return names ? names : "";
 }
 
-const mcor_named* mcor_named_of(const mcor_finder* f, int index)
+static const mcor_named* mcor_named_of(const mcor_finder* f, int index)
 {
   return index < f->count ? f->arrays + index : f->found->made + index - f->count;
 }
@@ -73,7 +74,9 @@ static void mcor_put_element(void* array, mcor_element type, int64_t i, double v
   }
 }
 
-mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
+/* Returns an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
+ * else a copy. */
+static mcor_array mcor_view_of(mcor_finder* f, const mcor_named* named)
 {
   static const double none[3];
   const bool is_float = named->type == MCOR_ELEMENT_FLOAT32;
@@ -96,28 +99,15 @@ mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
     .name = mcor_keep_name(f, named->name) };
 }
 
-mcor_array mcor_view_of(mcor_finder* f, int index)
-{
-  mcor_array* view = f->views + index;
-  if (!view->data)
-  {
-    *view = mcor_view_named(f, mcor_named_of(f, index));
-  }
-  return *view;
-}
-
 double mcor_element_at(const mcor_named* a, int64_t tuple, int component)
 {
-  static const int widths[MCOR_ELEMENT_COUNT] = { 4, 8, 1, 1, 2, 2, 4, 4, 8, 8, 0 };
-  const int64_t width = widths[a->type];
-  const int64_t step = a->stride[1] ? a->stride[1] : width;
-  const char* at = (const char*)a->data +
-    tuple * (a->stride[0] ? a->stride[0] : width * a->components) + component * step;
 #define MCOR_READ(element, kind)                                                                   \
   case element:                                                                                    \
   {                                                                                                \
     kind value;                                                                                    \
-    memcpy(&value, at, sizeof value);                                                              \
+    const int64_t width = sizeof value, step = a->stride[1] ? a->stride[1] : width,                \
+                  row = a->stride[0] ? a->stride[0] : width * a->components;                       \
+    memcpy(&value, (const char*)a->data + tuple * row + component * step, sizeof value);           \
     return (double)value;                                                                          \
   }
   switch (a->type)
@@ -148,14 +138,12 @@ const char* mcor_given_name(const mcor_finder* f, mcor_role role)
 
 int mcor_find_by_name(const mcor_finder* f, const char* name)
 {
-  for (int i = 0; i < f->count; ++i)
+  int i = 0;
+  while (i < f->count && !(f->arrays[i].name && strcmp(f->arrays[i].name, name) == 0))
   {
-    if (f->arrays[i].name && strcmp(f->arrays[i].name, name) == 0)
-    {
-      return i;
-    }
+    ++i;
   }
-  return -1;
+  return i < f->count ? i : -1;
 }
 
 int mcor_find_named(
@@ -177,7 +165,7 @@ int mcor_find_named(
 }
 
 /* Joins vx, vy and vz to one vector, unless there is an array "Velocity". The vector is float only if all three are. */
-int mcor_join_velocity(mcor_finder* f)
+static int mcor_join_velocity(mcor_finder* f)
 {
   mcor_named* made = f->found->made;
   if (made->name)
@@ -273,7 +261,7 @@ static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, in
   *which = name ? mcor_find_given(f, words, name, components) : *which;
   if (*which >= 0)
   {
-    f->found->views[role] = mcor_view_of(f, *which);
+    f->found->views[role] = mcor_view_of(f, mcor_named_of(f, *which));
   }
   return *which >= 0;
 }
@@ -292,7 +280,7 @@ static mcor_message mcor_no_length(mcor_finder* f)
   }
   if (spacing >= 0)
   {
-    const mcor_array distances = mcor_view_of(f, spacing);
+    const mcor_array distances = mcor_view_of(f, f->arrays + spacing);
     mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0, range);
   }
   char* usual = range[0] > 0 && range[0] == range[1]
@@ -513,11 +501,11 @@ static void mcor_find_scalar(mcor_finder* f, bool contours)
   *which = name ? mcor_find_given(f, words, name, 0) : mcor_check_named(f, words, "", *which);
   if (*which >= 0 && (contours || is_column))
   {
-    mcor_keep_scalar(f, mcor_view_of(f, *which), is_column, dot != NULL);
+    mcor_keep_scalar(f, mcor_view_of(f, mcor_named_of(f, *which)), is_column, dot != NULL);
   }
   else if (*which >= 0)
   {
-    mcor_add_attribute(f, *which, mcor_view_of(f, *which));
+    mcor_add_attribute(f, *which, mcor_view_of(f, mcor_named_of(f, *which)));
   }
 }
 
@@ -575,7 +563,7 @@ static void mcor_find_flow(mcor_finder* f)
     }
     f->uses |= MCOR_THE_MASS;
     found->made[1] = (mcor_named){ "Density", MCOR_ELEMENT_FLOAT64, 1, count, divided, { 0, 0 } };
-    mcor_add_attribute(f, f->count + 1, mcor_view_of(f, f->count + 1));
+    mcor_add_attribute(f, f->count + 1, mcor_view_of(f, &found->made[1]));
   }
 }
 
@@ -633,7 +621,7 @@ static void mcor_find_attributes(mcor_finder* f)
     const mcor_named* a = mcor_named_of(f, i);
     if (mcor_is_carried(f, a) && a->type <= MCOR_ELEMENT_FLOAT64)
     {
-      mcor_add_attribute(f, i, mcor_view_of(f, i));
+      mcor_add_attribute(f, i, mcor_view_of(f, a));
     }
     else if (mcor_is_carried(f, a))
     {
@@ -655,7 +643,6 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   *found = (mcor_found){ .input.count = positions->tuples, .fluid_count = positions->tuples };
   memset(found->which, -1, sizeof found->which);
   const size_t most = (size_t)count + 2;
-  f.views = mcor_find_memory(&f, most * sizeof *f.views);
   mcor_array* attributes = mcor_find_memory(&f, most * sizeof *attributes);
   found->attributes = mcor_find_memory(&f, most * sizeof(int));
   found->nearest = mcor_find_memory(&f, most * sizeof(int));
@@ -663,9 +650,8 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  memset(f.views, 0, most * sizeof *f.views);
   found->input.attributes = attributes;
-  found->input.positions = mcor_view_named(&f, positions);
+  found->input.positions = mcor_view_of(&f, positions);
   found->input.positions.name = NULL;
   mcor_find_fluid(&f);
   const bool contours = (wants & MCOR_WANT_SCALAR) && !request->free_surface;

@@ -17,23 +17,18 @@ static const char* const mcor_wall_words[] = { "wall", "bound", "solid", "obstac
 
 int mcor_tells_of_walls(const char* name)
 {
-  for (; name && *name; ++name)
+  char* small = mcor_text("%s", name ? name : "");
+  int tells = 0;
+  for (char* c = small; c && *c; ++c)
   {
-    for (size_t w = 0; w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
-    {
-      const char *word = mcor_wall_words[w], *at = name;
-      while (*word && mcor_small_letter(*at) == *word)
-      {
-        ++word;
-        ++at;
-      }
-      if (!*word)
-      {
-        return 1;
-      }
-    }
+    *c = mcor_small_letter(*c);
   }
-  return 0;
+  for (size_t w = 0; small && w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
+  {
+    tells = tells || strstr(small, mcor_wall_words[w]);
+  }
+  free(small);
+  return tells;
 }
 
 /* A value, and how often it occurs. */
@@ -133,17 +128,6 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
   return message;
 }
 
-/* Whether the request has ranges of this array, so the array is used. */
-static bool mcor_chooses_particles(const mcor_finder* f, const char* name)
-{
-  int i = 0;
-  while (i < f->request->only_count && strcmp(f->request->only[i].name, name) != 0)
-  {
-    ++i;
-  }
-  return i < f->request->only_count;
-}
-
 /* Finds the array with the most usual name that clearly tells which particles are fluid; without
  * one, names an array that seems to tell it but is not used. */
 static void mcor_look_for_fluid(mcor_finder* f)
@@ -167,7 +151,12 @@ static void mcor_look_for_fluid(mcor_finder* f)
         mcor_free_message(&found->unused_type);
         return;
       }
-      if (found->unused_type.code == MCOR_SAYS_NOTHING && !mcor_chooses_particles(f, a->name))
+      bool is_used = false; /* whether the request has ranges of this array */
+      for (int r = 0; r < f->request->only_count; ++r)
+      {
+        is_used = is_used || strcmp(f->request->only[r].name, a->name) == 0;
+      }
+      if (found->unused_type.code == MCOR_SAYS_NOTHING && !is_used)
       {
         found->unused_type = mcor_describe_unused_type(a->name, kinds, count);
       }
@@ -193,38 +182,27 @@ void mcor_find_fluid(mcor_finder* f)
   }
 }
 
-/* Marks particles that Within and Only leave out. */
-static void mcor_mark_absent(mcor_finder* f, uint8_t* solid)
+/* Whether Within and Only let a particle count. of: the array of each range of Only. */
+static bool mcor_counts(const mcor_finder* f, const int* of, int64_t particle)
 {
-  const mcor_request* request = f->request;
-  const mcor_only* only = request->only;
-  const double* b = request->within;
-  const bool has_within = mcor_has_sides(b);
-  const int64_t count = f->positions->tuples;
-  const int ranges = count > 0 ? request->only_count : 0;
-  int* of = mcor_find_memory(f, (size_t)ranges * sizeof *of); /* the array of each range */
-  for (int r = 0; of && r < ranges; ++r)
+  const mcor_only* only = f->request->only;
+  const double* within = f->request->within;
+  bool counts = true;
+  for (int a = 0; a < 3 && mcor_has_sides(within); ++a)
   {
-    of[r] = mcor_find_given(f, "choice of particles", only[r].name, 1);
+    const double x = mcor_element_at(f->positions, particle, a);
+    counts = counts && x >= within[2 * a] && x <= within[2 * a + 1];
   }
-  for (int64_t i = 0; of && i < count && !mcor_has_error(f); ++i)
+  for (int r = 0; r < f->request->only_count && counts; ++r)
   {
-    for (int a = 0; a < 3 && has_within; ++a)
+    const double x = mcor_element_at(f->arrays + of[r], particle, 0);
+    counts = false; /* a value must lie in one of its array's ranges */
+    for (int k = 0; k < f->request->only_count; ++k)
     {
-      const double x = mcor_element_at(f->positions, i, a);
-      solid[i] = x >= b[2 * a] && x <= b[2 * a + 1] ? solid[i] : MCOR_ABSENT;
-    }
-    for (int r = 0; r < ranges; ++r)
-    {
-      const double x = mcor_element_at(f->arrays + of[r], i, 0);
-      bool holds = false; /* a value must lie in one of its array's ranges */
-      for (int k = 0; k < ranges; ++k)
-      {
-        holds = holds || (of[k] == of[r] && x >= only[k].low && x <= only[k].high);
-      }
-      solid[i] = holds ? solid[i] : MCOR_ABSENT;
+      counts = counts || (of[k] == of[r] && x >= only[k].low && x <= only[k].high);
     }
   }
+  return counts;
 }
 
 /* Writes why particles are left out: "within 0,1,0,1,0,1 and left by Type=1:2". */
@@ -261,26 +239,29 @@ void mcor_mark_particles(mcor_finder* f)
   int* const which = &found->which[MCOR_ROLE_FLUID];
   found->input.ignore_solids = request->ignore_solids != 0;
   *which = name && *which < 0 ? mcor_find_given(f, "fluid", name, 1) : *which;
-  uint8_t* solid = *which >= 0 || (!name && is_chosen) ? mcor_find_memory(f, (size_t)count) : NULL;
-  if (!solid)
+  if (*which < 0 && (name || !is_chosen))
   {
     return;
   }
   const mcor_named* fluid = *which >= 0 ? f->arrays + *which : NULL;
   found->views[MCOR_ROLE_FLUID].name = fluid ? mcor_keep_name(f, fluid->name) : NULL;
-  for (int64_t i = 0; i < count; ++i)
+  uint8_t* solid = mcor_find_memory(f, (size_t)count);
+  int* of = mcor_find_memory(f, (size_t)request->only_count * sizeof *of);
+  for (int r = 0; r < request->only_count && count > 0 && of; ++r)
   {
-    solid[i] = fluid && mcor_element_at(fluid, i, 0) != found->fluid_value;
+    of[r] = mcor_find_given(f, "choice of particles", request->only[r].name, 1);
   }
-  if (is_chosen)
+  if (!solid || !of || mcor_has_error(f))
   {
-    mcor_mark_absent(f, solid);
+    return;
   }
   bool some = !is_chosen;
   found->input.solid = solid;
   found->fluid_count = 0;
   for (int64_t i = 0; i < count; ++i)
   {
+    solid[i] = fluid && mcor_element_at(fluid, i, 0) != found->fluid_value;
+    solid[i] = is_chosen && !mcor_counts(f, of, i) ? MCOR_ABSENT : solid[i];
     some = some || solid[i] != MCOR_ABSENT;
     found->fluid_count += solid[i] == 0;
   }

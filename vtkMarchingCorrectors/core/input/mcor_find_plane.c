@@ -46,7 +46,8 @@ static mcor_status mcor_refuse_plane(
   const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
                            "positions, or choose {dimension 3}";
   const mcor_array* positions = &input->positions;
-  if (mcor_find_not_finite(context, positions, input->solid, input->count) >= 0)
+  if (mcor_find_illegal(
+        context, positions, input->solid, MCOR_SKIP_SOLIDS, input->count, false) >= 0)
   {
     return MCOR_OK; /* mcor_check_input reports it */
   }

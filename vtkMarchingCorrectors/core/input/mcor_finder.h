@@ -30,8 +30,7 @@ typedef struct mcor_finder
   int count; /* number of the given arrays; indices from this number on mean found->made */
   const mcor_ranks* ranks;
   mcor_found* found;
-  mcor_array* views; /* [count + 2]: the arrays that were viewed already */
-  unsigned uses;     /* bits 1 << role: the quantities that the input has */
+  unsigned uses; /* bits 1 << role: the quantities that the input has */
   bool lacks_memory;
 } mcor_finder;
 
@@ -41,8 +40,6 @@ void* mcor_find_memory(mcor_finder* f, size_t bytes);
 /* Copies a name, because the array's owner may change it meanwhile; NULL stays NULL. */
 const char* mcor_keep_name(mcor_finder* f, const char* name);
 
-/* Keeps the first message that says what is wrong; frees later ones. Returns -1, no index. */
-int mcor_refuse(mcor_finder* f, mcor_message message);
 static inline bool mcor_has_error(const mcor_finder* f)
 {
   return f->found->error.code != MCOR_SAYS_NOTHING;
@@ -60,11 +57,6 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
 
 /* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
 const char* mcor_names_of(mcor_finder* f);
-const mcor_named* mcor_named_of(const mcor_finder* f, int index);
-/* Return an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
- * else a copy. */
-mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named);
-mcor_array mcor_view_of(mcor_finder* f, int index);
 /* Reads any element as a double. */
 double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
 

@@ -21,7 +21,8 @@ mcor_status mcor_measure_components(
   {
     const mcor_array* array = &input->attributes[a];
     /* Finds the least index, on any rank, of a particle where the attribute is not finite. */
-    int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
+    int64_t not_finite =
+      mcor_find_illegal(context, array, input->solid, MCOR_SKIP_SOLIDS, input->count, false);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
     MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &not_finite, 1));
     not_finite = not_finite == INT64_MAX ? -1 : not_finite;

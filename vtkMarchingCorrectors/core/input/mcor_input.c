@@ -218,7 +218,7 @@ static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 }
 
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  mcor_skip skip, int64_t count, bool positive, int* component)
+  mcor_skip skip, int64_t count, bool positive)
 {
   const int components = mcor_components(array);
   mcor_legal_job job = { .all = *array, .least = positive ? DBL_TRUE_MIN : -DBL_MAX };
@@ -242,19 +242,11 @@ int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const 
       const double x = mcor_array_at(array, i, c);
       if (!isfinite(x) || (positive && !(x > 0)))
       {
-        *component = c;
         return i;
       }
     }
   }
   return -1;
-}
-
-int64_t mcor_find_not_finite(
-  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count)
-{
-  int component;
-  return mcor_find_illegal(context, array, solid, MCOR_SKIP_SOLIDS, count, false, &component);
 }
 
 /* Returns the exponent of the power of 2 just above all components of particle i; 0 if they are 0

@@ -175,10 +175,7 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 /* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that
  * is not finite, or not above 0 where it must be; -1: none. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  mcor_skip skip, int64_t count, bool positive, int* component);
-/* Finds the first fluid particle with a component that is not finite; -1: none. */
-int64_t mcor_find_not_finite(
-  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
+  mcor_skip skip, int64_t count, bool positive);
 
 /* mcor_attribute.c. Returns the number of components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);

@@ -377,16 +377,6 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->slices[slice] = r;
 }
 
-/* Returns W(0) of a particle with the smoothing length 1. */
-static double mcor_peak(const mcor_options* options, int axes)
-{
-  const mcor_kernel_row* kernel = mcor_kernel_of(options->sph_kernel);
-  const double along = mcor_w_of(options->sph_kernel, 0);
-  const double norm = kernel->norm * (axes == 2 ? kernel->plane_factor : 1);
-  return norm * (kernel->is_tensor ? mcor_power(along, axes) : along) /
-    mcor_power(options->h_scale, axes);
-}
-
 /* Measures the particles of all ranks. A particle that is not finite is reported by its own rank
  * alone. */
 static mcor_status mcor_measure_particles(
@@ -397,11 +387,16 @@ static mcor_status mcor_measure_particles(
   mcor_measuring job = { .context = context,
     .input = input,
     .reach = mcor_support_factor(options->sph_kernel) * options->h_scale,
-    .peak = options->field == MCOR_WEIGHT_SUM && !mcor_needs_density(input)
-      ? mcor_peak(options, context->space.axes)
-      : 0,
     .level = options->iso_count > 0 ? DBL_MAX : 0.5 };
   int slices;
+  if (options->field == MCOR_WEIGHT_SUM && !mcor_needs_density(input))
+  {
+    const mcor_kernel_row* kernel = mcor_kernel_of(options->sph_kernel);
+    const int axes = context->space.axes;
+    const double along = mcor_w_of(options->sph_kernel, 0);
+    job.peak = kernel->norm * (axes == 2 ? kernel->plane_factor : 1) *
+      (kernel->is_tensor ? mcor_power(along, axes) : along) / mcor_power(options->h_scale, axes);
+  }
   for (int k = 0; k < options->iso_count; ++k)
   {
     job.level = fmin(job.level, options->iso_values[k]);
@@ -483,26 +478,21 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input)
   const mcor_measure* m = &context->measure;
   const double below = m->h_median / m->h_min, above = m->h_max / m->h_median;
   const double outlier = below > above ? m->h_min : m->h_max;
-  double h[MCOR_CHUNK];
-  int64_t particle = -1;
   if (!(m->h_median > 0) || m->fluid_count < 2 || !(fmax(below, above) > MCOR_OUTLIER))
   {
     return;
   }
-  for (int64_t i = 0; i < input->count && particle < 0; i += MCOR_CHUNK)
+  for (int64_t i = 0; i < input->count; ++i)
   {
-    const int n = mcor_chunk_of(input->count - i);
-    mcor_read_smoothing_length(context, input, i, n, h);
-    for (int k = 0; k < n && particle < 0; ++k)
+    double h;
+    mcor_read_smoothing_length(context, input, i, 1, &h);
+    if (h == outlier && !(input->solid && input->solid[i]))
     {
-      particle = h[k] == outlier && !(input->solid && input->solid[i + k]) ? i + k : -1;
+      const size_t length = strlen(context->error);
+      snprintf(context->error + length, sizeof context->error - length,
+        " Particle %lld has a smoothing length of %g; the median is %g.", (long long)i, outlier,
+        m->h_median);
+      return;
     }
-  }
-  if (particle >= 0)
-  {
-    const size_t length = strlen(context->error);
-    snprintf(context->error + length, sizeof context->error - length,
-      " Particle %lld has a smoothing length of %g; the median is %g.", (long long)particle,
-      outlier, m->h_median);
   }
 }

@@ -189,12 +189,10 @@ void mcor_place_period(const double lengths[3], const double extent[6], double b
 
 int mcor_tells_of_period(const char* name)
 {
+  bool tells = false;
   for (size_t i = 0; i < sizeof mcor_period_arrays / sizeof mcor_period_arrays[0]; ++i)
   {
-    if (mcor_is_usual_name(name, mcor_period_arrays[i].name))
-    {
-      return 1;
-    }
+    tells = tells || mcor_is_usual_name(name, mcor_period_arrays[i].name);
   }
-  return 0;
+  return tells;
 }

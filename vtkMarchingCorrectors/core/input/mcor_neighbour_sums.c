@@ -123,13 +123,13 @@ static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
 static mcor_status mcor_measure_extent(
   mcor_context* context, mcor_neighbour_job* job, mcor_findings* bounds)
 {
-  mcor_sample_list own = { .most = MCOR_SAMPLES }, samples = { .most = MCOR_SAMPLES };
+  mcor_sample_list samples = { .most = MCOR_SAMPLES };
   *bounds = mcor_no_findings();
   for (int64_t i = 0; i < job->count; ++i)
   {
     const double* x = job->sorted[i].x;
     const mcor_sample place = { .hash = mcor_hash_position(x), .x = { x[0], x[1], x[2] } };
-    mcor_add_place(&own, &place);
+    mcor_add_place(&samples, &place);
     for (int a = 0; a < 3; ++a)
     {
       mcor_add_range(bounds, a, x[a], x[a]);
@@ -138,7 +138,8 @@ static mcor_status mcor_measure_extent(
   const void* all = NULL;
   int64_t count = 0;
   MCOR_TRY(mcor_reduce_findings(context, bounds));
-  MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
+  MCOR_TRY(
+    mcor_gather_records(context, samples.of, samples.count, sizeof *samples.of, &all, &count));
   for (int64_t i = 0; i < count; ++i)
   {
     mcor_add_place(&samples, (const mcor_sample*)all + i);
@@ -261,24 +262,25 @@ static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const dou
 static void mcor_list_neighbours(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
-  int most[3];
+  int most[3], images = 1;
   list->near.count = 0;
   list->h = h;
   for (int a = 0; a < 3; ++a)
   {
     most[a] = job->period[a] > 0 ? (int)(job->support * h / job->period[a]) + 1 : 0;
+    images *= 2 * most[a] + 1;
   }
-  for (int i = -most[0]; i <= most[0]; ++i)
+  for (int image = 0; image < images; ++image)
   {
-    for (int j = -most[1]; j <= most[1]; ++j)
+    double at[3];
+    int rest = image;
+    for (int a = 2; a >= 0; --a)
     {
-      for (int k = -most[2]; k <= most[2]; ++k)
-      {
-        const double at[3] = { x[0] + i * job->period[0], x[1] + j * job->period[1],
-          x[2] + k * job->period[2] };
-        mcor_list_around(job, 1, at, job->support * h, list);
-      }
+      const int along = 2 * most[a] + 1;
+      at[a] = x[a] + (rest % along - most[a]) * job->period[a];
+      rest /= along;
     }
+    mcor_list_around(job, 1, at, job->support * h, list);
   }
 }
 
@@ -444,8 +446,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   MCOR_FAIL_IF(input->count < 0 || (input->count > 0 && !input->positions.data), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_POSITIONS));
   const mcor_array positions = mcor_positions_of(input);
-  int c = 0;
-  int64_t i = mcor_find_illegal(NULL, &positions, input->solid, skip, input->count, false, &c);
+  int64_t i = mcor_find_illegal(NULL, &positions, input->solid, skip, input->count, false);
   MCOR_FAIL_IF(i >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(POSITION_NOT_FINITE), (long long)i);
   const mcor_array* arrays[] = { &input->mass, &input->smoothing_length };
   const char* const names[] = { "mass", "smoothing length" };
@@ -454,7 +455,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
     MCOR_FAIL_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
       MCOR_SAY(NOTHING_TO_SUM), names[k]);
     const int64_t count = k == 0 ? input->count : job->wanted;
-    i = mcor_find_illegal(NULL, arrays[k], input->solid, skip, count, true, &c);
+    i = mcor_find_illegal(NULL, arrays[k], input->solid, skip, count, true);
     MCOR_FAIL_IF(
       i >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(SUMMAND_ILLEGAL), names[k], (long long)i);
   }

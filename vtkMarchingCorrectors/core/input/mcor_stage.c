@@ -84,22 +84,6 @@ MCOR_VECTOR_LOOPS static void mcor_read_stage_places(
   }
 }
 
-/* Reads the volumes or masses of a chunk. */
-static void mcor_read_stage_sizes(
-  const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk)
-{
-  const bool are_areas = staging->context->space.flat && !mcor_needs_density(staging->input);
-  mcor_read_size(staging->input, first, chunk->count, chunk->size);
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    chunk->size[i] *= staging->size_scale;
-  }
-  for (int i = 0; i < chunk->count && are_areas; ++i)
-  {
-    chunk->size[i] *= chunk->h[i];
-  }
-}
-
 /* Lists the images of particle i of a chunk that are staged. */
 static int mcor_images_of(
   const mcor_staging* staging, const mcor_stage_chunk* chunk, int i, mcor_images* images)
@@ -206,6 +190,18 @@ int mcor_spared_bits(const mcor_context* context, double support, double cube, i
   return bits > 0 ? bits : 0;
 }
 
+/* Writes element i of an array of fixed-point numbers. No position is below the lattice's origin, so
+ * adding 1/2 and truncating rounds. */
+static inline void mcor_put_fix(const mcor_context* context, void* array, int64_t i, double x)
+{
+  if (context->cl.fix_size == sizeof(int32_t))
+  {
+    ((int32_t*)array)[i] = (int32_t)(x + 0.5);
+    return;
+  }
+  ((int64_t*)array)[i] = (int64_t)(x + 0.5);
+}
+
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
 MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   const mcor_staging* staging, mcor_stage_chunk* chunk, const double* inv_h, int64_t to)
@@ -219,14 +215,10 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   uint8_t* level = (uint8_t*)staging->level + to;
   /* Rounds positions to the digits that evaluations use. */
   const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
-  double unit = 1;
   for (int i = 0; i < count && are_rounded; ++i)
   {
-    const bool is_like_last =
-      i > 0 && chunk->h[i] == chunk->h[i - 1] && chunk->level[i] == chunk->level[i - 1];
-    unit = is_like_last
-      ? unit
-      : ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
+    const double unit =
+      ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
@@ -234,23 +226,9 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   }
   for (int a = 0; a < 3; ++a)
   {
-    /* No position is below the lattice's origin, so adding 1/2 and truncating rounds. */
-    const double* x = chunk->x[a];
-    int32_t* narrow = (int32_t*)staging->x[a] + to;
-    int64_t* wide = (int64_t*)staging->x[a] + to;
-    if (context->cl.fix_size == sizeof *narrow)
+    for (int i = 0; i < count; ++i)
     {
-      for (int i = 0; i < count; ++i)
-      {
-        narrow[i] = (int32_t)(x[i] + 0.5);
-      }
-    }
-    else
-    {
-      for (int i = 0; i < count; ++i)
-      {
-        wide[i] = (int64_t)(x[i] + 0.5);
-      }
+      mcor_put_fix(context, staging->x[a], to + i, chunk->x[a][i]);
     }
   }
   for (int i = 0; i < count && solid; ++i)
@@ -261,11 +239,11 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   {
     mcor_put_real(context, staging->size, to + i, chunk->size[i]);
   }
-  memset(level, 0, (size_t)count);
-  for (int i = 0; i < count && m->support_min < m->support_max; ++i)
+  for (int i = 0; i < count; ++i)
   {
     const double support = chunk->h[i] * reach;
-    const int of = support < m->support_max ? ilogb(m->support_max / support) : 0;
+    const bool is_short = m->support_min < m->support_max && support < m->support_max;
+    const int of = is_short ? ilogb(m->support_max / support) : 0;
     level[i] = (uint8_t)(of < 0 ? 0 : of >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : of);
   }
   for (int i = 0; i < count; ++i)
@@ -376,6 +354,7 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   mcor_stage_slice* slice = &staging->slices[number];
   int64_t to = slice->to, begin = first;
   mcor_stage_chunk chunk, out;
+  const bool are_areas = staging->context->space.flat && !mcor_needs_density(staging->input);
   slice->heavy = -1;
   out.count = 0;
   while (
@@ -383,7 +362,12 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   {
     const int read = chunk.count;
     mcor_read_stage_places(staging, begin, &chunk);
-    mcor_read_stage_sizes(staging, begin, &chunk);
+    mcor_read_size(staging->input, begin, read, chunk.size);
+    for (int i = 0; i < read; ++i)
+    {
+      chunk.size[i] *= staging->size_scale;
+      chunk.size[i] *= are_areas ? chunk.h[i] : 1;
+    }
     if (staging->input->solid || staging->reach)
     {
       mcor_stage_images(staging, slice, &chunk, &out, &to);

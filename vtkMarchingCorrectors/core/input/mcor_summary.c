@@ -37,10 +37,9 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
    * support radius, halved once for each level of the particle's cubes. */
   const bool has_box = mcor_has_box(options) != 0;
   const mcor_array positions = mcor_positions_of(input), lengths = mcor_lengths_of(input);
-  const bool one_for_all = !lengths.data && !input->solid && !has_box && input->count > 1;
   const int levels = options->filled || options->capping ? 0 : options->level_limit;
   double cubes = 0.0;
-  for (int64_t i = 0; i < (one_for_all ? 1 : input->count); ++i)
+  for (int64_t i = 0; i < input->count; ++i)
   {
     bool counts = !input->solid || !input->solid[i];
     for (int a = 0; a < 3 && counts && has_box; ++a)
@@ -56,7 +55,6 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
     }
     cubes += counts ? mcor_power(h, is_plane ? 2 : 3) : 0;
   }
-  cubes *= one_for_all ? (double)input->count : 1;
   const bool is_radius =
     input->smoothing_length_is_support_radius && !input->estimate_smoothing_length;
   const double per_length = is_radius ? 1.0 / mcor_support_factor(options->sph_kernel) : 1.0;

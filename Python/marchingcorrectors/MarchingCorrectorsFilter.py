@@ -42,8 +42,9 @@ from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, describe_warnings, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
-from marchingcorrectors._vtk import (Particles, add_iso_values, add_nearest, add_run, build_mesh, choose_array, copy_of, describe, describe_mesh,
-                                     find_period, is_single, join_blocks, leaves_of, list_all, name_of, request_of, sets_of, take_vertices, varies)
+from marchingcorrectors._vtk import (Particles, abstract_arrays_of, add_iso_values, add_nearest, add_run, build_mesh, choose_array, copy_of,
+                                     describe_mesh, find_period, is_single, join_blocks, leaves_of, list_all, name_of, request_of, sets_of,
+                                     take_vertices, varies)
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -268,7 +269,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return dict(enumerate(self._values["ExcludedArrays"])).get(i)
 
     def GetStatistics(self):
-        return describe(self.RunStatistics)
+        """Returns a line "Name: values" for each array."""
+        return "".join(f"{array.GetName()}: {', '.join(array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues()))}\n"
+                       for array in abstract_arrays_of(self.RunStatistics))
 
     @staticmethod
     def ListDevices():
@@ -499,7 +502,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if self._context is None or self._context_device != choice.Device:
                 self._last = NO_RUN
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
-            signatures = *particles.signatures(), factor_options(particles.options)
+            signatures = particles.signatures()
             if choice.KeepDeviceData:  # The kept scalar is in the order of the particles, so new particles need a new scalar.
                 self._versions[0] += self._last[0] != signatures[0]
                 self._versions[1] += self._last[:2] != signatures[:2]
@@ -508,7 +511,11 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     particles.widening = self._last[3]
             particles.context, particles.progress = self._context, self._report
             with called(lib.mcor_extract, c.mcor_surface, particles) as surface:
-                self._last = (*signatures, keep_factors(particles.widening)) if choice.KeepDeviceData else NO_RUN
+                factors = particles.widening
+                if factors is not None:  # The next run does not tell the seconds that they took.
+                    factors = *factors[:2], c.mcor_statistics.from_buffer_copy(factors[2])
+                    factors[2].seconds[:], factors[2].build_seconds = [0.0] * len(factors[2].seconds), 0.0
+                self._last = (*signatures, factors) if choice.KeepDeviceData else NO_RUN
                 yield surface
         except BaseException as failure:
             self._last = NO_RUN
@@ -573,24 +580,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         else:
             show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
             show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")
-
-
-def factor_options(options):
-    """Lists the options on which factors of smoothing lengths depend, and some more."""
-    values = [options.wall_share, *(options.iso_values[:options.iso_count] if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"] else [])]
-    for name, (_, scope, _) in c.OPTIONS.items():
-        value = getattr(options, name)
-        values += [] if scope == ["SURFACE", "KEEPS"] else value[:] if isinstance(value, ctypes.Array) else [value]
-    return values
-
-
-def keep_factors(widening):
-    """Returns the factors for the next run, without the seconds that they took; None if there are none."""
-    if widening is None:
-        return None
-    statistics = c.mcor_statistics.from_buffer_copy(widening[2])
-    statistics.seconds[:], statistics.build_seconds = [0.0] * len(statistics.seconds), 0.0
-    return (*widening[:2], statistics)
 
 
 def in_panel(sentence):

@@ -13,7 +13,7 @@ from . import _functions
 from ._arrays import QUANTITIES, Found, as_points
 from ._call import Keywords, own_keywords
 from ._library import InvalidArgument, warn
-from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, did_you_mean, show
+from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, camel, did_you_mean, show
 from ._vtk import GHOSTS, WALL_BLOCK, describe_mesh, find_period, join_blocks, named, take_vertices, to_numpy
 from .io import Particles as FileParticles
 
@@ -181,13 +181,12 @@ class SphAccessor:
         result = self._particles.copy()
         result.point_data["Gradients"] = gradients.reshape(len(gradients), -1)
         if gradients.shape[1:] == (3, 3):
-            names = {"divergence": "Divergence", "vorticity": "Vorticity", "q_criterion": "Q-criterion",
-                     "lambda2": "Lambda2", "strain_rate": "StrainRate"}
             flow = _functions.flow(gradients)
             if found.statistics["dimension"] == 2:
                 del flow["lambda2"]  # This is the middle one of three eigenvalues.
             for name, values in flow.items():
-                result.point_data[names[name]] = values.reshape(len(values), -1) if values.ndim > 1 else values
+                name = "Q-criterion" if name == "q_criterion" else camel(name)
+                result.point_data[name] = values.reshape(len(values), -1) if values.ndim > 1 else values
         return result
 
     @_method(GAUGE)

@@ -97,7 +97,13 @@ def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
     options.update((name, True) for name in given.pop("outputs") or ())
-    _warn_of_unused(options, given["context"])
+    for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
+                        ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
+        if options.get(name) and options.get(other):
+            warn(fill_slots("", f"{{{name}}} is not used, because {{{other}}} is given. Leave one of them out.".encode()))
+    versions = [name for name in options if name.endswith("_version") and options[name]]
+    if versions and given["context"] is None:
+        warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
     units = Units(positions)
     arguments = Finder(units.positions, source, attributes if named is None else named)
     arguments.units, arguments.context, arguments.device, arguments.progress = units, given["context"], given["device"], given["progress"]
@@ -192,7 +198,12 @@ class Finder(Arguments):
         if solid is not None:
             self.names["fluid"], self.request["fluid_value"] = self.add("solid", self.marks(solid)), 0
         elif fluid is not None and not is_auto:
-            name, self.request["fluid_value"] = parse_fluid(fluid)
+            parts = fluid.rpartition("=")[::2] if isinstance(fluid, str) else next(iter(fluid.items())) if isinstance(
+                fluid, Mapping) and len(fluid) == 1 else fluid
+            if not isinstance(parts, (tuple, list)) or len(parts) != 2 or np.ndim(parts[0]) == 0 and not (
+                    isinstance(parts[0], str) and parts[0]):
+                raise InvalidArgument(f'fluid is {fluid!r}; it must be ("NAME", VALUE), (array, VALUE), "NAME=VALUE", or "auto".')
+            name, self.request["fluid_value"] = parts[0], convert(float, "value of fluid", parts[1])
             self.names["fluid"] = self.add(name, self.take("fluid", name)) if isinstance(name, str) else self.add(
                 "fluid", self.marks(name, "fluid"))
         self.request["find_fluid"] = 2 * is_auto
@@ -213,8 +224,13 @@ class Finder(Arguments):
                 array = self.take("only", name, "fiubUSO" if isinstance(wanted, str) else "fiub")
                 if array.dtype.kind in "USO":
                     self.add_marks(f"{name}={wanted}", array.astype(str) == wanted)
-                else:
-                    self.ranges.append((self.add(name, array), *parse_range(name, wanted)))
+                    continue
+                ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
+                ends = [convert(float, f"value of '{name}' in only", end) for end in ends]
+                if len(ends) != 2 or not ends[0] <= ends[1]:
+                    raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one, the lower "
+                                          "value first.")
+                self.ranges.append((self.add(name, array), *ends))
         elif only is not None:
             only = as_array(only, "array of only")
             if only.dtype != bool or only.shape != (self.count,):
@@ -245,25 +261,6 @@ class Finder(Arguments):
         self.sum_over_neighbours(self.ratio)
 
 
-def parse_fluid(fluid):
-    """Returns name and value of ("NAME", VALUE), {"NAME": VALUE} or "NAME=VALUE"; or an array in place of a name."""
-    parts = fluid.rpartition("=")[::2] if isinstance(fluid, str) else next(iter(fluid.items())) if isinstance(
-        fluid, Mapping) and len(fluid) == 1 else fluid
-    if not isinstance(parts, (tuple, list)) or len(parts) != 2 or np.ndim(parts[0]) == 0 and not (
-            isinstance(parts[0], str) and parts[0]):
-        raise InvalidArgument(f'fluid is {fluid!r}; it must be ("NAME", VALUE), (array, VALUE), "NAME=VALUE", or "auto".')
-    return parts[0], convert(float, "value of fluid", parts[1])
-
-
-def parse_range(name, wanted):
-    """Returns the lowest and the highest value that `only` wants of this array."""
-    ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
-    ends = [convert(float, f"value of '{name}' in only", end) for end in ends]
-    if len(ends) != 2 or not ends[0] <= ends[1]:
-        raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a number, or the lowest and the highest one, the lower value first.")
-    return ends
-
-
 def _list_outputs(words, options):
     """Returns the names in outputs, which must be among the function's options."""
     outputs, known = words["outputs"], [name for name in OUTPUTS if name in options]
@@ -274,17 +271,6 @@ def _list_outputs(words, options):
         if words.get(name) is False:
             raise InvalidArgument(f"outputs names '{name}', but {name} is False. Leave one of them out.")
     return outputs
-
-
-def _warn_of_unused(options, context):
-    """Warns of options that have no effect beside others."""
-    for name, other in (("cube_size_factor", "cube_size"), ("tolerance", "preview"), ("iteration_limit", "preview"),
-                        ("smoothing_length_is_support_radius", "estimate_smoothing_length")):
-        if options.get(name) and options.get(other):
-            warn(fill_slots("", f"{{{name}}} is not used, because {{{other}}} is given. Leave one of them out.".encode()))
-    versions = [name for name in options if name.endswith("_version") and options[name]]
-    if versions and context is None:
-        warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
 
 
 def warn_of_missing(missing):

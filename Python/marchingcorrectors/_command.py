@@ -33,10 +33,6 @@ def numbers(text):
     return [float(part) for part in text.split(",")]
 
 
-def period(text):
-    return text if text == "auto" else numbers(text)
-
-
 def named_line(text):
     name, _, ends = text.rpartition("=")
     begin, end = map(numbers, ends.split(":"))
@@ -69,7 +65,8 @@ def whole_from(least, text):
 
 # These options have their own readers; for others, the value's name in the program's help tells how to read it.
 READERS = {"--smoothing-length": quantity, "--volume": quantity, "--mass": quantity, "--density": quantity, "--fluid": str, "--only": chosen,
-           "--wall-share": quantity, "--component": lambda text: -1 if text == "magnitude" else int(text), "--periodic": period, "--gauge": named_line, "--slice": plane,
+           "--wall-share": quantity, "--component": lambda text: -1 if text == "magnitude" else int(text), "--periodic": lambda text: text if text == "auto" else numbers(text),
+           "--gauge": named_line, "--slice": plane,
            "--times": _film.to_times, "--attributes": lambda text: text.split(","), "--device": str,
            "--threads": partial(whole_from, 1), "--memory-limit": partial(whole_from, 1), "--resolution": partial(whole_from, 2)}
 WORDS = {"--kernel": words_of("sph_kernel"), "--dimension": {"auto": 0, "2": 2, "3": 3}, "--boundary": {
@@ -155,14 +152,6 @@ def make_parser(command):
         parser.add_argument("--spray", metavar="N", nargs="?", const=8, type=int, help="a film: particles of drops of fewer than N (8), "
                             "and lone ones, are balls beside the surface")
     return parser
-
-
-def describe_unknown(command, word):
-    word = word.partition("=")[0]
-    if word not in c.PROGRAM:
-        return f"there is no option {word}.{did_you_mean(word, options_of(command))}"
-    others = [other for other in COMMANDS if word in options_of(other)]
-    return f"{word} is for {' and '.join(others) or 'the program marching-correctors'}, not for {command}; leave it out"
 
 
 def find_words(given, names, particles, command):
@@ -317,7 +306,11 @@ def run(arguments):
     parser = make_parser(arguments[0])
     given, unknown = parser.parse_known_args(joined)
     if unknown:
-        parser.error(describe_unknown(arguments[0], unknown[0]))
+        word = unknown[0].partition("=")[0]
+        if word not in c.PROGRAM:
+            parser.error(f"there is no option {word}.{did_you_mean(word, options_of(arguments[0]))}")
+        others = " and ".join(other for other in COMMANDS if word in options_of(other))
+        parser.error(f"{word} is for {others or 'the program marching-correctors'}, not for {arguments[0]}; leave it out")
     if given.threads is not None:
         os.environ["MCOR_THREADS"] = str(given.threads)
     output = given.output

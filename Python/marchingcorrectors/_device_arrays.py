@@ -16,7 +16,6 @@ from ._library import DeviceError, InvalidArgument
 ON_CUDA = 2  # kDLCUDA
 KINDS = {0: "i", 1: "u", 2: "f"}  # DLPack's codes of types.
 CONTEXT_OF, DEVICE_OF, PORTABLE = 1, 9, 1  # CU_POINTER_ATTRIBUTE_CONTEXT, ..._DEVICE_ORDINAL, CU_MEMHOSTALLOC_PORTABLE
-REMEDY = "Copy it to the host first, as by array.get() or tensor.cpu()."
 
 
 class Tensor(ctypes.Structure):
@@ -60,7 +59,12 @@ def _copy(address, shape, dtype, strides, stream, role):
     if strides is not None:
         ends = [(length - 1) * stride for length, stride in zip(shape, strides)]
         low, high = sum(min(end, 0) for end in ends), sum(max(end, 0) for end in ends) + dtype.itemsize
-    block = _driver(role).read(address + low, high - low, stream)
+    try:
+        driver = _open()
+    except (OSError, DeviceError) as error:
+        raise DeviceError(f"The {role} is on a CUDA device, but CUDA's driver cannot be used: {str(error).rstrip('.')}. "
+                          "Copy it to the host first, as by array.get() or tensor.cpu().") from None
+    block = driver.read(address + low, high - low, stream)
     return np.ndarray(shape, dtype, block, -low, strides)
 
 
@@ -135,10 +139,3 @@ def _open():
     driver = Driver(library)
     driver.call("cuInit", 0)
     return driver
-
-
-def _driver(role):
-    try:
-        return _open()
-    except (OSError, DeviceError) as error:
-        raise DeviceError(f"The {role} is on a CUDA device, but CUDA's driver cannot be used: {str(error).rstrip('.')}. {REMEDY}") from None

@@ -135,11 +135,6 @@ def between_steps(steps, times, rate, velocity):
         yield label, partial(fail, InvalidArgument(f"The time {time:g} lies beyond the last step."))
 
 
-def frames(begin, end, step):
-    """Returns times from begin to end, as numbers of 15 digits: 3 x 0.05 is 0.15."""
-    return [float(f"{begin + i * step:.15g}") for i in range(int(np.floor((end - begin) / step + 1e-9)) + 1)]
-
-
 def between(before, after, first, last, time, velocity=None):
     """Returns the particles at a time between two steps, which are at the times first and last.
 
@@ -194,12 +189,17 @@ def fail(error):
 
 
 def to_times(text):
+    """Reads times, and ranges of times, BEGIN:END:STEP, as numbers of 15 digits: 3 x 0.05 is 0.15."""
     found = set()
     for part in text.split(","):
-        ends = [float(each) for each in part.split(":")]
-        if len(ends) not in (1, 3) or ends[2:] and not 0 <= (ends[1] - ends[0]) / ends[2] < 1e6:
+        begin, *ends = [float(each) for each in part.split(":")]
+        if len(ends) not in (0, 2) or ends and not 0 <= (ends[0] - begin) / ends[1] < 1e6:
             raise ValueError(text)
-        found.update(ends if len(ends) == 1 else frames(*ends))
+        if ends:
+            count = int(np.floor((ends[0] - begin) / ends[1] + 1e-9)) + 1
+            found.update(float(f"{begin + i * ends[1]:.15g}") for i in range(count))
+        else:
+            found.add(begin)
     return sorted(found)
 
 

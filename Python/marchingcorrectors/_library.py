@@ -158,18 +158,14 @@ def start():
                               "before the fork.")
 
 
-def _list():
-    text = ctypes.c_void_p()
-    lib.mcor_list_devices(ctypes.byref(text))
-    return take_text(text.value)
-
-
 def devices() -> List[str]:
     """The devices, "device (platform)" each, in the order of their numbers: the built-in one, whose kernels
     are in this package, then those of OpenCL drivers, as the system's loader lists them.
     """
     start()
-    return [line.partition(": ")[2] for line in _list().splitlines()]
+    text = ctypes.c_void_p()
+    lib.mcor_list_devices(ctypes.byref(text))
+    return [line.partition(": ")[2] for line in take_text(text.value).splitlines()]
 
 
 class InputWarning(UserWarning):
@@ -228,8 +224,7 @@ class Context:
         self._used_by = None  # This is the thread that holds the lock.
         self._handle = ctypes.c_void_p()
         self._wanted = "" if device is None else str(device)
-        start()
-        if not _list():
+        if not devices():
             raise DeviceError(NO_DEVICE)
         status = lib.mcor_create_context(self._wanted.encode(errors="replace"), ctypes.byref(self._handle))
         if status:

@@ -75,14 +75,9 @@ class Film:
         self.velocity, self.steps = velocity, 0
         self._first = self._last = None  # These are time codes.
         self._parts: Dict[str, _Part] = {}
-        self._stage: Any = None
         self._outputs, self._unsaved, self._left_out = Outputs(inputs, [path]), 0, set()
 
     def __enter__(self) -> Film:
-        self._open()
-        return self
-
-    def _open(self):
         from pxr import Sdf, Tf, Usd, UsdGeom
 
         self._beside = self._outputs.beside(self.path)
@@ -94,6 +89,7 @@ class Film:
         self._layer.comment = "by marching-correctors"
         self._stage = Usd.Stage.Open(self._layer)
         self._stage.SetDefaultPrim(UsdGeom.Xform.Define(self._stage, "/film").GetPrim())
+        return self
 
     def add(self, surface: Surface, time: float = 0.0, velocities: Optional[np.ndarray] = None,
             spray: Optional[Spray] = None) -> None:
@@ -104,8 +100,6 @@ class Film:
         """
         from pxr import UsdGeom
 
-        if self._stage is None:
-            self._open()
         code = round(float(time) * self.fps * self.slow, 6)  # Without the rounding, a whole frame could be off by a bit.
         if not np.isfinite(code) or self._last is not None and code <= self._last:
             raise InvalidArgument(f"The time {time:g} does not come after that of the step before. Put the steps in order, or give the "
@@ -119,7 +113,10 @@ class Film:
         if len(surface.triangles) or "lines" not in {*wanted, *self._parts}:
             wanted["surface"] = self._mesh_of(surface, arrays, velocities)
         if spray is not None:
-            wanted["spray"] = self._spray_of(spray)
+            wanted["spray"] = "Points", {
+                "points": ("Point3f", spray.positions), "widths": ("Float", spray.widths), **self._common({}, spray.velocities),
+                "extent": ("Float3", _extent(spray.positions, np.max(spray.widths, initial=0.0) / 2)),
+                **({} if spray.ids is None else {"ids": ("Int64", spray.ids)})}
         try:
             if self._first is None:
                 if self.up not in ("y", "z"):
@@ -181,13 +178,6 @@ class Film:
                                "curveVertexCounts": ("Int", counts), "widths": ("Float", np.full(len(points), width)),
                                **self._common(arrays, velocities, lambda array: array[at])}
 
-    def _spray_of(self, spray):
-        values = {"points": ("Point3f", spray.positions), "widths": ("Float", spray.widths),
-                  "extent": ("Float3", _extent(spray.positions, np.max(spray.widths, initial=0.0) / 2))}
-        if spray.ids is not None:
-            values["ids"] = ("Int64", spray.ids)
-        return "Points", {**values, **self._common({}, spray.velocities)}
-
     def _save(self):
         from pxr import Tf
 
@@ -215,10 +205,6 @@ class Film:
         finally:
             self._parts, self._stage, self._layer = {}, None, None  # This closes the file.
             self._outputs.__exit__(None if is_whole else Exception)
-
-    def close(self) -> None:
-        """Ends a film that has no with block: the file takes its place."""
-        self.__exit__(None)
 
 
 def _extent(points, more=0.0):

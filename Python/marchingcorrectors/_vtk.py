@@ -3,6 +3,7 @@
 """VTK's data sets: the particles of a set, or of all blocks joined to one set, as arguments of the core, which finds their arrays; and a surface as
 vtkPolyData, with a run's results, settings and costs as field data, as vtkMarchingCorrectorsOutput has them."""
 import ctypes
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,13 +22,6 @@ GHOSTS = "vtkGhostType"
 # These options of mcor_options are left out: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.
-
-
-class NoNumbers:
-    """The shape of an array that has no numbers, such as an array of text."""
-
-    def __init__(self, array):
-        self.shape = array.GetNumberOfTuples(), array.GetNumberOfComponents()
 
 
 def name_of(array):
@@ -52,9 +46,9 @@ def to_numpy(array):
 
 
 def named(data):
-    """Returns (name, values) of all arrays, for the core."""
-    return [(array.GetName(), to_numpy(array) if isinstance(array, vtkDataArray) else NoNumbers(array))
-            for array in abstract_arrays_of(data)]
+    """Returns (name, values) of all arrays, for the core; the shape alone of an array that has no numbers, such as text."""
+    return [(array.GetName(), to_numpy(array) if isinstance(array, vtkDataArray) else SimpleNamespace(
+        shape=(array.GetNumberOfTuples(), array.GetNumberOfComponents()))) for array in abstract_arrays_of(data)]
 
 
 def choose_array(arrays):
@@ -360,18 +354,23 @@ class Particles(Arguments):
         return lib.mcor_estimate_cells(given, ctypes.byref(self.options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """Returns marks that differ if the particles, or the scalar, differ. The data set's own time counts, too: users change
-        arrays in place, and call only its Modified()."""
+        """Returns marks that differ if the particles, the scalar, or the options on which factors of smoothing lengths depend (and some more) differ.
+        The data set's own time counts, too: users change arrays in place, and call only its Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())
 
-        choice, given = self.choice, self.input
+        choice, given, options = self.choice, self.input, self.options
         particles = [sign(thing) for thing in (self.points, self.points.GetPoints().GetData(), self.fluid, *self.used.values())]
         particles += [self.found.fluid_value, choice.Kernel, *(getattr(given, name).constant for name in QUANTITIES),
                       given.smoothing_length_is_support_radius, given.estimate_smoothing_length, given.ignore_solids,
                       tuple(choice.Within), *choice.Only]
-        return particles, [sign(self.scalar), sign(self.dot), given.scalar_component]
+        is_free = options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
+        values = [options.wall_share, *(options.iso_values[:options.iso_count] if is_free else [])]
+        for name, (_, scope, _) in c.OPTIONS.items():
+            value = getattr(options, name)
+            values += [] if scope == ["SURFACE", "KEEPS"] else value[:] if isinstance(value, ctypes.Array) else [value]
+        return particles, [sign(self.scalar), sign(self.dot), given.scalar_component], values
 
 
 # -- surfaces, and field data --
@@ -496,13 +495,3 @@ def add_parameters(data, particles, wall_share):
                 add(data, name, [value[:]])
         elif name not in NOT_TOLD:
             add(data, name, {number: word for word, number in words.items()}.get(value, [value]))
-
-
-def describe(run):
-    """Returns a line "Name: values" for each array."""
-    lines = []
-    for i in range(run.GetNumberOfArrays()):
-        array = run.GetAbstractArray(i)
-        values = ", ".join(array.GetVariantValue(v).ToString() for v in range(array.GetNumberOfValues()))
-        lines.append(f"{array.GetName()}: {values}\n")
-    return "".join(lines)

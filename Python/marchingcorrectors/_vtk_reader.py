@@ -52,11 +52,6 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
         except io.FileError:  # RequestInformation says the sentence.
             return None
 
-    def _read(self, name, step):
-        if self._kept[0] != (name, step):
-            self._kept = ((name, step), self._open(name, step))
-        return self._kept[1]
-
     def _open(self, name, step=0):
         types = [int(word) if word.isdigit() else word for word in (self._types or "gas").replace(",", " ").split()]
         try:
@@ -98,7 +93,9 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
                 wanted = information.Get(Pipeline.UPDATE_TIME_STEP())
                 i = max((i for i, (time, _, _) in enumerate(steps) if time <= wanted), default=0)
             time, name, step = steps[i]
-            data = to_vtk(self._read(name, step))
+            if self._kept[0] != (name, step):
+                self._kept = (name, step), self._open(name, step)
+            data = to_vtk(self._kept[1])
         except io.FileError as error:
             self._fail(error)
             return 0

@@ -201,11 +201,10 @@ class Films(unittest.TestCase):
     def test_lines(self):
         line = np.arange(8) * 0.1
         points = np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3)
-        film = Film(self.at("lines.usdc"), slow=2)
-        for i in range(2):
-            surface = mc.free_surface(points * (1 + i), smoothing_length=0.13 * (1 + i), attributes={"velocity": points})
-            film.add(surface, i)
-        film.close()
+        with Film(self.at("lines.usdc"), slow=2) as film:
+            for i in range(2):
+                surface = mc.free_surface(points * (1 + i), smoothing_length=0.13 * (1 + i), attributes={"velocity": points})
+                film.add(surface, i)
         _, prims = self.open("lines.usdc")
         curves = prims["lines"]
         self.assertNotIn("surface", prims)

@@ -29,8 +29,8 @@ READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{
            **{ending: ("molecules", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
            ".data": ("molecules", "read_data", False), ".ply": ("tables", "read_ply", False), ".npz": ("tables", "read_arrays", False),
            ".npy": ("tables", "read_arrays", False), ".vtp": ("vtk_files", "read_xml", False), ".vtu": ("vtk_files", "read_xml", False),
-           ".vtk": ("vtk_files", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("", "read_pieces", False), ".pvtu": ("", "read_pieces", False),
-           ".pvd": ("", "read_list", True), ".series": ("", "read_list", True)}
+           ".vtk": ("vtk_files", "read_legacy", False), ".vtkhdf": ("hdf5", "read_vtkhdf", True), ".pvtp": ("", "read_pieces", False),
+           ".pvtu": ("", "read_pieces", False), ".pvd": ("", "read_list", True), ".series": ("", "read_list", True)}
 HDF5 = (".hdf5", ".h5", ".h5part")
 ENDINGS = (*HDF5, ".bi4", ".bgeo", *READERS, ".gz")
 PathName = Union[str, "os.PathLike[str]"]
@@ -49,10 +49,7 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
     Raises FileError. No code that a file may hold is run.
     """
-    if isinstance(path, (str, os.PathLike)):
-        paths = [Path(path)]
-    else:
-        paths = [Path(each) for each in path]
+    paths = [Path(each) for each in ([path] if isinstance(path, (str, os.PathLike)) else path)]
     if not paths:
         raise FileError("No file was given.")
     try:

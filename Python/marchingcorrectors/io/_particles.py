@@ -77,15 +77,9 @@ class Lazy(Mapping):
     def __repr__(self):
         return f"<arrays: {', '.join(self) or 'none'}>"
 
-    def __reduce__(self):
+    def __getstate__(self):
         """Lets pickle and copy take the arrays themselves, not the open file."""
-        return _keep, (dict(self), self._file)
-
-
-def _keep(arrays, file):
-    made = Lazy(arrays, file)
-    made._kept.update(arrays)
-    return made
+        return {"_read": dict.fromkeys(self), "_kept": dict(self), "_file": self._file}
 
 
 class Particles:
@@ -99,30 +93,26 @@ class Particles:
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
+    smoothing_length: Union[None, str, float] = None
+    mass: Union[None, str, float] = None
+    volume: Union[None, str, float] = None
+    density: Union[None, str, float] = None
+    kernel: Optional[str] = None
+    rho0: Optional[float] = None
+    support_radius, h_factor, dimension, up = False, 1.0, 3, "z"
+    solid: Optional[np.ndarray] = None
+    period: Optional[Sequence[float]] = None
+    cell: Optional[Sequence[float]] = None
+    time: Optional[float] = None
+    times: Optional[Sequence[float]] = None
+
     def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
                  **more: Any) -> None:
         self.file, self.layout = str(file), layout
         self._positions = Lazy({"": positions}, file)
         self.arrays: Mapping[str, np.ndarray] = Lazy(arrays, file)
-        self.smoothing_length: Union[None, str, float] = None
-        self.mass: Union[None, str, float] = None
-        self.volume: Union[None, str, float] = None
-        self.density: Union[None, str, float] = None
-        self.kernel: Optional[str] = None
-        self.rho0: Optional[float] = None
-        self.support_radius, self.h_factor = False, 1.0
-        self.solid: Optional[np.ndarray] = None
-        self.period: Optional[Sequence[float]] = None
-        self.cell: Optional[Sequence[float]] = None
-        self.time: Optional[float] = None
-        self.times: Optional[Sequence[float]] = None
-        self.dimension: int = 3
-        self.up = "z"
         self.parameters: Dict[str, Any] = {}
-        for name, value in more.items():
-            if not hasattr(self, name):
-                raise TypeError(name)
-            setattr(self, name, value)
+        vars(self).update(more)
 
     @property
     def positions(self) -> np.ndarray:

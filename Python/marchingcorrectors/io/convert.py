@@ -167,8 +167,11 @@ class Outputs:
             if identity in found:
                 raise FileError(f"{path} would be written twice; choose another name for the output.")
             found.add(identity)
-        for path in steps:
-            if os.path.lexists(path) and not _is_step(path):
+        for path in filter(os.path.lexists, steps):
+            is_step = False
+            with contextlib.suppress(OSError), open(path, "rb") as file:
+                is_step = STEP_MARK in file.read(256)
+            if not is_step:
                 raise FileError(say("FILM_STEP_TAKEN", path))
 
     def write(self, path, data):
@@ -236,11 +239,3 @@ def _sentences(path):
         yield
     except OSError as error:
         raise FileError(f"{path} could not be written: {error.strerror}.") from None
-
-
-def _is_step(path):
-    try:
-        with open(path, "rb") as file:
-            return STEP_MARK in file.read(256)
-    except OSError:
-        return False

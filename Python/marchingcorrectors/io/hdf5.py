@@ -109,10 +109,6 @@ def check_claims(groups):
         check_claim(os.path.basename(path), f"'{group.name}'", claimed, os.path.getsize(path))
 
 
-def loaders(parts, names):
-    return {name: lambda n=name: load(parts, n) for name in names}
-
-
 def number(attributes, name, default=None):
     """Returns an attribute's first number."""
     try:
@@ -208,7 +204,7 @@ def read_gadget(path, file, types):
     parts, names = find_parts(files_of(path, int(number(header, "NumFilesPerSnapshot", 1))), wanted)
     if not parts:
         raise no_particles(path, wanted)
-    arrays = loaders(parts, [name for name in names if name != "Coordinates"])
+    arrays = {name: lambda n=name: load(parts, n) for name in names if name != "Coordinates"}
     h = next((name for name in ("SmoothingLengths", "SmoothingLength") if name in arrays), None)
     swift, gamma = h == "SmoothingLengths", number(attributes(file, "HydroScheme"), "Kernel gamma")
     if swift and gamma is None:
@@ -315,15 +311,6 @@ def is_h5part(names):
     return any(re.fullmatch("Step#[0-9]+", name) for name in names)
 
 
-def box_of(attributes):
-    """Returns the period from SPH-EXA's box, x0, x1, y0, ..., and boundaryType: 0 open, 1 periodic, 2 fixed."""
-    box, kinds = np.ravel(attributes.get("box", ())), np.ravel(attributes.get("boundaryType", ()))
-    if len(box) != 6 or len(kinds) != 3 or not np.isfinite(box.astype(float)).all():
-        return None
-    bounds = [float(side) if int(kinds[i // 2]) == 1 else 0.0 for i, side in enumerate(box)]
-    return bounds if any(bounds) else None
-
-
 def read_h5part(path, file, step):
     """Reads a group Step#N for each step, with x, y, z and arrays of one value per particle."""
     steps = sorted((int(name[5:]), name) for name in file if is_h5part([name]))
@@ -336,10 +323,14 @@ def read_h5part(path, file, step):
     if len(axes) < 3:
         raise FileError(f"{path.name}: of x, y and z of its positions {name} has {', '.join(axes) or 'none'}.")
     part = Part(path, group.name, data_set(group, "x").size)
-    arrays = loaders([part], [each for each in names_of(group, part.count, 1) if each not in axes])
+    arrays = {each: lambda n=each: load([part], n) for each in names_of(group, part.count, 1) if each not in axes}
     add_velocity(arrays, arrays)
+    # SPH-EXA's box is x0, x1, y0, ..., and boundaryType 0 for open sides, 1 for periodic, 2 for fixed ones.
+    box, kinds = np.ravel(group.attrs.get("box", ())), np.ravel(group.attrs.get("boundaryType", ()))
+    is_box = len(box) == 6 and len(kinds) == 3 and np.isfinite(box.astype(float)).all()
+    period = [float(side) if int(kinds[i // 2]) == 1 else 0.0 for i, side in enumerate(box)] if is_box else [0.0]
     return Particles(path.name, "H5Part", lambda: np.stack([load([part], axis) for axis in "xyz"], axis=1), arrays,
-                     **usual_quantities(list(arrays)), time=times[i], times=times, period=box_of(group.attrs))
+                     **usual_quantities(list(arrays)), time=times[i], times=times, period=period if any(period) else None)
 
 
 def integers(group, place):

@@ -196,9 +196,8 @@ def read_gro(path, step):
     return Body(values[:, :3], arrays, period=period_of(cell, [0.0] * 3, [True] * 3), **times)
 
 
-def sections_of(path, lines):
-    """Returns the head, {word: numbers before it}, and {section: (its style, its first line)}."""
-    head, sections = {}, {}
+def read_data(path):
+    lines, head, sections = lines_of(path), {}, {}  # head: {word: numbers before it}; sections: {name: (style, first line)}
     for i, line in enumerate(lines[1:], 1):
         text, _, remark = line.partition("#")
         words = text.split()
@@ -207,24 +206,17 @@ def sections_of(path, lines):
         elif not sections and words:
             numbers = [word for word in words if not word[0].isalpha()]
             head[" ".join(words[len(numbers):])] = numbers_of(" ".join(numbers))
-    return head, sections
 
+    def rows_of_section(name, count):
+        rows = [row for row in (line.partition("#")[0] for line in lines[sections[name][1]:]) if row.strip()][:count]
+        if len(rows) < count:
+            raise FileError(f"{path.name} ends too early: it claims {count} atoms.")
+        return rows
 
-def rows_in(path, lines, begin, count):
-    rows = [line.partition("#")[0] for line in lines[begin:] if line.partition("#")[0].strip()][:count]
-    if len(rows) < count:
-        raise FileError(f"{path.name} ends too early: it claims {count} atoms.")
-    return rows
-
-
-def read_data(path):
-    lines = lines_of(path)
-    head, sections = sections_of(path, lines)
     count = int(head["atoms"][0]) if len(head.get("atoms", ())) == 1 and head["atoms"][0] >= 0 else -1
     if count < 0 or "Atoms" not in sections:
         raise FileError(f"{path.name} is no data file of LAMMPS: it has no line 'N atoms', or no section Atoms.")
-    style, begin = sections["Atoms"]
-    rows = rows_in(path, lines, begin, count)
+    style, rows = sections["Atoms"][0], rows_of_section("Atoms", count)
     width = len(rows[0].split()) if rows else 5
     style = style or ("atomic" if width == 5 else "")
     if style not in STYLES:
@@ -239,13 +231,13 @@ def read_data(path):
         raise FileError(f"{path.name}: its positions are no numbers.")
     order = {number: i for i, number in enumerate(columns["id"].tolist())}
     if "Velocities" in sections:
-        found = columns_of(path.name, rows_in(path, lines, sections["Velocities"][1], count), ["id", "vx", "vy", "vz"])
+        found = columns_of(path.name, rows_of_section("Velocities", count), ["id", "vx", "vy", "vz"])
         if sorted(found["id"].tolist()) != sorted(order):
             raise FileError(f"{path.name}: its section Velocities has other atoms than its section Atoms.")
         columns["Velocity"] = np.empty((count, 3))
         columns["Velocity"][[order[number] for number in found["id"].tolist()]] = np.stack([found["v" + axis] for axis in "xyz"], 1)
     if "Masses" in sections and "mass" not in columns:
-        masses = columns_of(path.name, rows_in(path, lines, sections["Masses"][1], int(head.get("atom types", [0])[0])), ["type", "mass"])
+        masses = columns_of(path.name, rows_of_section("Masses", int(head.get("atom types", [0])[0])), ["type", "mass"])
         of_type = dict(zip(masses["type"].tolist(), masses["mass"].tolist()))
         columns["mass"] = np.array([of_type.get(kind, np.nan) for kind in columns["type"].tolist()], float)
     return Body(points, columns)

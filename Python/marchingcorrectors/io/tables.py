@@ -115,27 +115,26 @@ def join_vectors(columns):
     return joined
 
 
-class NoPositions(FileError):
-    """The error for a table in which no name tells positions."""
-
-
 def axes_of(columns, behind=""):
     """Returns the names of the columns x, y and z, with these letters behind, as far as they exist."""
     found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
     return [name for name in found if name is not None]
 
 
-def body_of(file, columns, positions=(), **more):
-    """Makes a Body of a table. positions: the names of the columns of positions; if empty, usual names tell them."""
+def body_of(file, columns, positions=(), unnamed=(), **more):
+    """Makes a Body of a table. positions: the names of the columns of positions; if empty, usual names tell them, and if no name does, `unnamed` are
+    taken."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         at = usual([name for name in arrays if arrays[name].ndim == 2 and arrays[name].shape[1] <= 3], "position")
         positions = axes_of(columns)
         points = None if at is None else arrays.pop(at)
         count = len(positions) if points is None else points.shape[1]
+        if count == 0 and unnamed:
+            return body_of(file, columns, unnamed, **more)
         if count == 0:
-            raise NoPositions(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
-                              f"Points:2; there are {', '.join(columns)}.")
+            raise FileError(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+                            f"Points:2; there are {', '.join(columns)}.")
         if count != 3 and count != len(columns):
             found = positions if at is None else [f"{at}:{i}" for i in range(count)]
             raise FileError(f"{file}: of the three columns of positions only {' and '.join(found)} is found; there are "
@@ -194,12 +193,8 @@ def read_table(path):
     if not rows:
         raise FileError(f"{path.name} has no row of values.")
     columns = columns_of(path.name, rows, names, separator)
-    try:
-        return body_of(path.name, columns)
-    except NoPositions:
-        if separator is not None or any(columns[name].dtype.kind not in "fi" for name in names[:3]):
-            raise
-        return body_of(path.name, columns, names[:3])
+    is_plain = separator is None and all(columns[name].dtype.kind in "fi" for name in names[:3])
+    return body_of(path.name, columns, unnamed=names[:3] if is_plain else ())
 
 
 PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import marchingcorrectors as mc
+from test_numpy import H, V, lattice
 
 RUN = """
 import numpy as np, marchingcorrectors as mc
@@ -95,11 +96,7 @@ class Usual(Case):
         self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
 
 
-N = 12
-H, V = 0.13, 0.001
-INDICES = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3)
-POSITIONS = (INDICES * 0.1 + np.random.default_rng(1).normal(0, 0.004, (N ** 3, 3))).astype(np.float32)
-DISTANCE = np.linalg.norm(POSITIONS - 0.55, axis=1).astype(np.float32)
+POSITIONS, DISTANCE = lattice(np.float32)
 
 
 class OnCuda:

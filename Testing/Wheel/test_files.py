@@ -5,6 +5,7 @@ files."""
 import gzip
 import importlib.util
 import itertools
+import re
 import struct
 import sys
 import tempfile
@@ -131,17 +132,23 @@ class Case(unittest.TestCase):
         self.assertIn(words, f"{caught.exception.code}: {caught.exception}")
         self.assertNotIn("\n", str(caught.exception))
 
-    def fuzz(self, makers, random, tries, damage, least, readings=({},)):
-        """Reads each file after it was cut off, or changed by `damage`: either particles come, or a FileError of one line, which must happen at least
-        `least` times."""
-        refused = 0
+    def fuzz(self, makers, least, tries, readings=({},), in_numbers=False):
+        """Reads each file after it was cut off, after bits of its head were turned, or after bits anywhere (in_numbers: numbers in its head) were changed:
+        either particles come, or a FileError of one line, which must happen at least `least` times. makers: {name: function(path, random)}."""
+        random, refused = np.random.default_rng(44), 0
         for name, make in makers.items():
-            make(self.at(name))
+            make(self.at(name), random)
             whole = self.at(name).read_bytes()
             for i in range(tries):
                 data = bytearray(whole[:random.integers(1, len(whole))] if i % 3 == 0 else whole)
                 for _ in range(0 if i % 3 == 0 else random.integers(1, 9)):
-                    damage(data, i % 3 == 1)
+                    numbers = list(re.finditer(rb"\d+", bytes(data[:4000]))) if in_numbers and i % 3 == 2 else []
+                    if numbers:
+                        found = numbers[random.integers(len(numbers))]
+                        other = random.choice([b"-1", b"99999999999", b"1e300", b"nan", b"0"])
+                        data[found.start():found.end()] = other.ljust(found.end() - found.start())
+                    else:
+                        data[random.integers(min(len(data), 4000 if in_numbers or i % 3 == 1 else len(data)))] ^= 1 << random.integers(8)
                 self.at(name).write_bytes(data)
                 try:
                     for words in readings:

@@ -1,7 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the guide's pages for Python: the blocks of python.md as they stand, and the recipes of readers-python.md on files in each code's layout.
-Runs mypy --strict and pyright on their blocks and on a user's program: types are known, and mistakes are found."""
+Runs mypy --strict and pyright on their blocks and on a user's program: types are known, and mistakes are found. Runs the notebook of
+Examples/Notebook in its own folder, as people do: it must print the texts and draw the pictures that are stored in it.
+
+    test_guide.py write
+stores what the notebook prints and draws now. Look at the pictures then.
+"""
+import base64
+import io
 import json
 import os
 import re
@@ -12,13 +19,17 @@ import unittest
 from pathlib import Path
 
 import h5py
+import nbformat
 import numpy as np
 import pyvista
+from nbclient import NotebookClient
+from PIL import Image
 from python_page import run_blocks
 from solver_files import SPACING
 from test_files import DENSITY, MASS, X, write_gadget, write_phantom
 
 SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
+NOTEBOOK = SOURCES / "Examples" / "Notebook" / "dam_break.ipynb"
 FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)
 
 
@@ -178,5 +189,48 @@ class Types(unittest.TestCase):
                 self.assertIn(kind.lower(), text.lower(), program)
 
 
+def texts(cell):
+    """Returns the texts that the cell prints and shows, without what drivers write to stderr."""
+    return "".join(output["text"] if output.output_type == "stream" else output.get("data", {}).get("text/plain", "")
+                   for output in cell.get("outputs", []) if output.get("name") != "stderr"
+                   and "image/png" not in output.get("data", {}))
+
+
+def pictures(cell):
+    return [np.asarray(Image.open(io.BytesIO(base64.b64decode(output["data"]["image/png"]))).convert("RGB"), float)
+            for output in cell.get("outputs", []) if "image/png" in output.get("data", {})]
+
+
+def run(notebook):
+    NotebookClient(notebook, timeout=900, kernel_name="python3",
+                   resources={"metadata": {"path": str(NOTEBOOK.parent)}}).execute()
+    for cell in notebook.cells:
+        cell.metadata = {}
+        if cell.cell_type == "code":
+            cell.outputs = [output for output in cell.outputs if output.get("name") != "stderr"]
+    return notebook
+
+
+class Notebook(unittest.TestCase):
+    def test_notebook(self):
+        kept, now, drawn = nbformat.read(NOTEBOOK, 4), run(nbformat.read(NOTEBOOK, 4)), 0
+        for old, new in zip(kept.cells, now.cells):
+            self.assertEqual(texts(new), texts(old))
+            self.assertEqual(len(pictures(new)), len(pictures(old)))
+            for picture, expected in zip(pictures(new), pictures(old)):
+                self.assertEqual(picture.shape, expected.shape)
+                differ = np.mean(np.abs(picture - expected).max(axis=2) > 40)  # Renderers and fonts differ a little.
+                background = np.mean((picture == picture[0, 0]).all(axis=2))
+                self.assertTrue(differ < 0.05 and 0.3 < background < 0.97, (differ, background))
+                drawn += 1
+        self.assertTrue(drawn == 3 and NOTEBOOK.stat().st_size < 200_000, (drawn, NOTEBOOK.stat().st_size))
+
+
 if __name__ == "__main__":
-    unittest.main()
+    if sys.argv[1:] == ["write"]:
+        metadata = nbformat.read(NOTEBOOK, 4).metadata
+        made = run(nbformat.read(NOTEBOOK, 4))
+        made.metadata = metadata
+        nbformat.write(made, NOTEBOOK)
+    else:
+        unittest.main()

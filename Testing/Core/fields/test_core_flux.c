@@ -33,18 +33,16 @@ static particle_set make_pool(double jitter)
 /* Makes the middle slice of the pool, in a plane of constant x, y or z; the other coordinates keep their order. */
 static particle_set make_slice(int axis)
 {
-  particle_set set = particle_set_make(24 * 14);
+  particle_set set = make_pool(0);
   int64_t n = 0;
-  for (int i = 0; i < 24 * 14; ++i)
+  for (int64_t i = 0; i < set.count; ++i)
   {
-    const double u = i % 24 + 0.5, v = i / 24 + 0.5;
-    if (v < 10 + 0.15 * u)
+    const double u = set.position[3 * i], v = set.position[3 * i + 2];
+    if (set.position[3 * i + 1] < 1)
     {
       set.position[3 * n + axis] = 8;
       set.position[3 * n + (axis == 0 ? 1 : 0)] = u;
-      set.position[3 * n + (axis == 2 ? 1 : 2)] = v;
-      set.smoothing_length[n] = 1.3;
-      set.volume[n++] = 1;
+      set.position[3 * n++ + (axis == 2 ? 1 : 2)] = v;
     }
   }
   set.count = n;
@@ -133,8 +131,7 @@ static mcor_flux_reading flux_of(
   CORE_FLUXES found;
   CORE_OK(context, mcor_flux(context, input, options, &section, 1, &found));
   assert_int_equal(found.count, 1);
-  const mcor_flux_reading reading = found.readings[0];
-  return reading;
+  return found.readings[0];
 }
 
 /* Checks that the flux is rho v A to within 1e-6. */

@@ -5,7 +5,7 @@
 
 #include "core_ranks.h"
 #include "mcor_plane.h"
-
+#include "mcor_vector.h"
 
 #define ALLOWED 1e-6 /* relative to the most that a particle adds to a pixel */
 #define PROFILE 8192
@@ -100,11 +100,7 @@ static double add_particle(const column* c, const mcor_projection* view, const d
   double at[2], most = 0;
   for (int k = 0; k < 2; ++k)
   {
-    at[k] = -view->low[k];
-    for (int a = 0; a < 3; ++a)
-    {
-      at[k] += view->axes[3 * k + a] * x[a];
-    }
+    at[k] = mcor_dot(view->axes + 3 * k, x) - view->low[k];
   }
   for (int p = 0; p < view->size[0] * view->size[1]; p += step)
   {

@@ -165,21 +165,18 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
     double width, height;
     const double x = mcor_place_of(column, 0, i, &width);
     double *sums = job->sums + i * (n + 1), *values = job->values + i * (n + 1);
-    sums[0] = 0;
     for (int l = 0; l <= n; ++l)
     {
+      double cell = 0;
       const double y = mcor_place_of(column, 1, l, &height);
       values[l] = mcor_density_at(job, x, y) * width * height;
-    }
-    for (int l = 0; l < n; ++l)
-    {
-      double cell = 0;
-      for (int g = 0; g < MCOR_CELL_POINTS; ++g)
+      for (int g = 0; g < MCOR_CELL_POINTS && l > 0; ++g)
       {
-        const double y = mcor_place_of(column, 1, n + 1 + MCOR_CELL_POINTS * l + g, &height);
-        cell += mcor_cell_weight[g] * mcor_density_at(job, x, y) * width * height;
+        const int point = n + 1 + MCOR_CELL_POINTS * (l - 1) + g;
+        const double at = mcor_place_of(column, 1, point, &height);
+        cell += mcor_cell_weight[g] * mcor_density_at(job, x, at) * width * height;
       }
-      sums[l + 1] = sums[l] + cell;
+      sums[l] = l > 0 ? sums[l - 1] + cell : 0;
     }
   }
   (void)slice;

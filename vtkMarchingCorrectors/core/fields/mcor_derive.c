@@ -45,19 +45,14 @@ typedef struct mcor_derive_run
 static bool mcor_invert(const double m[3][3], double inverse[3][3])
 {
   double det = 0, norm = 0, inverse_norm = 0;
-  for (int a = 0; a < 3; ++a)
+  for (int k = 0; k < 9; ++k)
   {
-    for (int b = 0; b < 3; ++b)
-    {
-      const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-      inverse[b][a] = m[a1][b1] * m[a2][b2] - m[a1][b2] * m[a2][b1];
-      norm += m[a][b] * m[a][b];
-      inverse_norm += inverse[b][a] * inverse[b][a];
-    }
-  }
-  for (int b = 0; b < 3; ++b)
-  {
-    det += m[0][b] * inverse[b][0];
+    const int a = k / 3, b = k % 3;
+    const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+    inverse[b][a] = m[a1][b1] * m[a2][b2] - m[a1][b2] * m[a2][b1];
+    norm += m[a][b] * m[a][b];
+    inverse_norm += inverse[b][a] * inverse[b][a];
+    det += a == 0 ? m[0][b] * inverse[b][0] : 0;
   }
   if (!(sqrt(norm) * sqrt(inverse_norm) < MCOR_WORST_CONDITION * fabs(det)))
   {
@@ -332,25 +327,18 @@ static void mcor_decompose_slice(void* data, int slice, int64_t first, int64_t l
   {
     const double(*j)[3] = (const double(*)[3])(job->gradients + 9 * i);
     double s[3][3], squares[3][3], trace = j[0][0] + j[1][1] + j[2][2], jj = 0;
-    for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < 9; ++k)
     {
-      for (int b = 0; b < 3; ++b)
-      {
-        s[a][b] = 0.5 * (j[a][b] + j[b][a]);
-        jj += j[a][b] * j[b][a];
-      }
+      const int a = k / 3, b = k % 3;
+      s[a][b] = 0.5 * (j[a][b] + j[b][a]);
+      jj += j[a][b] * j[b][a];
+      squares[a][b] = 0;
     }
-    for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < 27; ++k)
     {
-      for (int b = 0; b < 3; ++b)
-      {
-        squares[a][b] = 0;
-        for (int k = 0; k < 3; ++k)
-        {
-          const double left = j[a][k] - s[a][k], right = j[k][b] - s[k][b];
-          squares[a][b] += s[a][k] * s[k][b] + left * right;
-        }
-      }
+      const int a = k / 9, b = k / 3 % 3, c = k % 3;
+      const double left = j[a][c] - s[a][c], right = j[c][b] - s[c][b];
+      squares[a][b] += s[a][c] * s[c][b] + left * right;
     }
     if (flow->divergence)
     {

@@ -52,29 +52,22 @@ static const mcor_flux_form mcor_flux_forms[2] = {
 
 /* ---- pieces ---- */
 
-double mcor_piece_size(const mcor_flux_job* job, const mcor_flux_piece* piece)
+void mcor_measure_piece(const mcor_flux_job* job, mcor_flux_piece* piece)
 {
-  double edges[2][3], product[3];
-  mcor_subtract(piece->corner[1], piece->corner[0], edges[0]);
-  mcor_subtract(piece->corner[2], piece->corner[0], edges[1]);
-  mcor_cross(edges[0], edges[1], product);
-  return job->is_plane ? sqrt(mcor_dot(edges[0], edges[0]))
-                       : 0.5 * sqrt(mcor_dot(product, product));
-}
-
-/* Finds the longest side, from corner *side to the next one; returns how long it is. */
-static double mcor_longest_side(const mcor_flux_job* job, const mcor_flux_piece* piece, int* side)
-{
-  double longest = -1;
+  double ways[3][3], product[3], longest = -1;
   for (int c = 0; c < (job->is_plane ? 1 : 3); ++c)
   {
-    double way[3];
-    mcor_subtract(piece->corner[(c + 1) % 3], piece->corner[c], way);
-    const double square = mcor_dot(way, way);
-    *side = square > longest ? c : *side;
+    mcor_subtract(piece->corner[(c + 1) % 3], piece->corner[c], ways[c]);
+    const double square = mcor_dot(ways[c], ways[c]);
+    piece->side = square > longest ? c : piece->side;
     longest = fmax(longest, square);
   }
-  return sqrt(longest);
+  piece->size = piece->length = sqrt(longest);
+  if (!job->is_plane)
+  {
+    mcor_cross(ways[0], ways[2], product);
+    piece->size = 0.5 * sqrt(mcor_dot(product, product));
+  }
 }
 
 /* Appends the halves of a piece. *is_halved becomes false, and nothing is appended, where that makes
@@ -84,42 +77,21 @@ static mcor_status mcor_halve_piece(
   mcor_flux_job* job, const mcor_flux_piece* piece, bool* is_halved)
 {
   mcor_flux_piece halves[2] = { *piece, *piece };
-  int side = 0;
-  const double length = mcor_longest_side(job, piece, &side);
-  const int next = (side + 1) % 3;
+  const int side = piece->side, next = (side + 1) % 3;
   double middle[3], ways[2][3];
   mcor_point_between(piece->corner[side], piece->corner[next], 0.5, middle);
   mcor_subtract(middle, piece->corner[side], ways[0]);
   mcor_subtract(piece->corner[next], middle, ways[1]);
-  *is_halved = sqrt(fmax(mcor_dot(ways[0], ways[0]), mcor_dot(ways[1], ways[1]))) < 0.75 * length;
+  *is_halved =
+    sqrt(fmax(mcor_dot(ways[0], ways[0]), mcor_dot(ways[1], ways[1]))) < 0.75 * piece->length;
   memcpy(halves[0].corner[next], middle, sizeof middle);
   memcpy(halves[1].corner[side], middle, sizeof middle);
   for (int i = 0; i < 2 && *is_halved; ++i)
   {
+    mcor_measure_piece(job, &halves[i]);
     MCOR_APPEND(job->base.context, &job->parts, halves[i]);
   }
   return MCOR_OK;
-}
-
-/* Whether particles may be near a piece. Along a period, particles may be anywhere. */
-static bool mcor_is_near(const mcor_flux_job* job, const mcor_flux_piece* piece)
-{
-  const mcor_measure* measure = &job->base.context->measure;
-  const mcor_lattice* lattice = &job->base.context->lattice;
-  bool near = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    double low = INFINITY, high = -INFINITY;
-    for (int c = 0; c < job->form->corners; ++c)
-    {
-      low = fmin(low, piece->corner[c][a]);
-      high = fmax(high, piece->corner[c][a]);
-    }
-    near = near &&
-      (lattice->period[a] > 0 ||
-        (high >= measure->low[a] - lattice->cube && low <= measure->high[a] + lattice->cube));
-  }
-  return near;
 }
 
 /* Finds sample k of a piece. */
@@ -139,6 +111,8 @@ static void mcor_place_sample(
 static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
 {
   mcor_context* context = job->base.context;
+  const mcor_measure* measure = &context->measure;
+  const mcor_lattice* lattice = &context->lattice;
   const int most = MCOR_LEVEL_BATCH / job->form->points;
   const double cell = MCOR_FLUX_CELL * job->smoothing_length;
   for (*count = 0; *count < most && (job->parts.count > 0 || job->next < job->pieces.count);)
@@ -147,15 +121,19 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       job->parts.count > 0 ? job->parts.of[--job->parts.count] : job->pieces.of[job->next++];
     if (piece.depth == 0)
     {
+      const double cells = piece.length / cell, margin = piece.length + lattice->cube;
       double middle[3];
-      int side = 0;
-      bool is_halved = false;
+      bool is_near = true, is_halved = false;
       mcor_place_sample(job->form, &piece, job->form->points - 1, middle);
-      const bool is_near = mcor_is_near(job, &piece);
-      const double cells = mcor_longest_side(job, &piece, &side) / cell;
+      for (int a = 0; a < 3; ++a) /* along a period, particles may be anywhere */
+      {
+        is_near = is_near &&
+          (lattice->period[a] > 0 ||
+            (middle[a] >= measure->low[a] - margin && middle[a] <= measure->high[a] + margin));
+      }
       MCOR_FAIL_IF(is_near && cells > MCOR_FLUX_MOST_ALONG, context, MCOR_INVALID_ARGUMENT,
         MCOR_SAY(SECTION_CELLS_ALONG), mcor_label_section(job, piece.section).text, cells,
-        context->measure.h_min, MCOR_FLUX_MOST_ALONG);
+        measure->h_min, MCOR_FLUX_MOST_ALONG);
       if (is_near && cells > 1)
       {
         MCOR_TRY(mcor_halve_piece(job, &piece, &is_halved));
@@ -164,11 +142,10 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       {
         continue;
       }
-      const double size = mcor_piece_size(job, &piece);
-      job->found[piece.section].near += is_near && job->is_counting ? size : 0;
+      job->found[piece.section].near += is_near && job->is_counting ? piece.size : 0;
       if (!is_near || !mcor_owns_point(&job->base, middle))
       {
-        job->area_done += size;
+        job->area_done += piece.size;
         continue;
       }
       MCOR_FAIL_IF(++job->cells > MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
@@ -273,7 +250,7 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
 {
   mcor_flux_section* found = &job->found[piece->section];
   const double *weight = job->weight + first, *density = job->density + first;
-  const double size = mcor_piece_size(job, piece), level = job->base.level;
+  const double size = piece->size, level = job->base.level;
   const double tolerance =
     MCOR_FLUX_TOLERANCE * fmax(size, MCOR_FLUX_SMALL * sqrt(size) * sqrt(found->near));
   double value[MCOR_FLUX_POINTS][MCOR_FLUX_SUMS], sum[2][MCOR_FLUX_SUMS] = { { 0 } };
@@ -297,8 +274,7 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
     is_reached = is_reached || weight[k] != 0;
   }
   const bool is_cut = mcor_integrate_piece(job, weight, value, size, sum);
-  int side = 0;
-  const double length = mcor_longest_side(job, piece, &side) / job->smoothing_length;
+  const double length = piece->length / job->smoothing_length;
   const bool may_be_cut = !is_cut && nearest < MCOR_FLUX_BEND * length * length;
   bool is_settled = !may_be_cut || piece->depth > MCOR_FLUX_UNCLEAR_DEPTH, is_halved = false;
   /* How large each sum may be for a unit of area. */

@@ -17,6 +17,9 @@ typedef struct mcor_flux_piece
   int depth; /* 0: not yet a cell; else 1 + how often a cell was halved to make this piece */
   double corner[3][3]; /* in the device's coordinates; a line uses the first two */
   double normal[3];    /* one entry for each component of the velocity, unit length */
+  double size;         /* area of a triangle, or length of a line */
+  int side;            /* the longest side goes from this corner to the next one */
+  double length;       /* how long it is */
 } mcor_flux_piece;
 
 /* Results of a section. Sums are whole numbers of units, so their order does not matter. */
@@ -70,7 +73,7 @@ typedef struct mcor_flux_job
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
 mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number);
 
-/* mcor_flux.c. Returns the area of a triangle, or the length of a line. */
-double mcor_piece_size(const mcor_flux_job* job, const mcor_flux_piece* piece);
+/* mcor_flux.c. Finds the piece's size and its longest side. */
+void mcor_measure_piece(const mcor_flux_job* job, mcor_flux_piece* piece);
 
 #endif

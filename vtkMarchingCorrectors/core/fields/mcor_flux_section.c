@@ -70,7 +70,8 @@ static mcor_status mcor_add_triangle(mcor_flux_job* job, int64_t number, const d
       piece.normal[c++] = normal[axis];
     }
   }
-  job->found[number].area += mcor_piece_size(job, &piece);
+  mcor_measure_piece(job, &piece);
+  job->found[number].area += piece.size;
   MCOR_APPEND(job->base.context, &job->pieces, piece);
   return MCOR_OK;
 }

@@ -48,11 +48,16 @@ typedef struct mcor_gauge_part
 
 typedef MCOR_LIST(mcor_gauge_part) mcor_gauge_parts;
 
-/* Samples of a line: at i / steps for first <= i <= last; no particle reaches the rest. */
-typedef struct mcor_gauge_samples
+/* Weight sums at evenly spaced places of a line, from `first` to `last`, `step` apart. */
+typedef struct mcor_gauge_row
 {
-  int64_t line, steps, first, last;
-} mcor_gauge_samples;
+  int64_t line, count;
+  double first, step, last;
+  /* The row has the samples of a line that particles may reach: place i is (sample + i) / steps.
+   * steps is 0 if the row is of a part. */
+  int64_t steps, sample;
+  const double* weight; /* [count] */
+} mcor_gauge_row;
 
 /* A place on a line. A record's place is a crossing or, below 0, one of these facts. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
@@ -73,7 +78,7 @@ typedef struct mcor_gauge_job
   mcor_gauge_line* lines;       /* [line_count] `given`, in the device's coordinates */
   int64_t line_count;
   mcor_gauges* gauges;
-  MCOR_LIST(mcor_gauge_samples) samples;
+  MCOR_LIST(mcor_gauge_row) samples;
   mcor_gauge_places records;
   mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
   mcor_gauge_parts suspects; /* parts with an extremum that may be beyond the level */
@@ -173,15 +178,11 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   const double most = is_countable ? MCOR_GAUGE_MOST : MCOR_GAUGE_MOST_STEPS;
   MCOR_FAIL_IF(needed >= most, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(GAUGE_SAMPLES),
     mcor_label_of(line->name, number).text, needed + 1, m->h_min, most);
-  mcor_gauge_samples whole = {
-    .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
-  };
-  if (whole.last - whole.first < 2) /* a parabola needs three samples */
-  {
-    whole.first = whole.first >= 2 ? whole.last - 2 : 0;
-    whole.last = whole.first + 2;
-  }
-  MCOR_APPEND(context, &job->samples, whole);
+  const double n = last - first < 2 ? 2 : last - first; /* a parabola needs three samples */
+  const double begin = fmax(fmin(first, last - n), 0), sample = begin / steps;
+  MCOR_APPEND(context, &job->samples,
+    (mcor_gauge_row){ number, (int64_t)n + 1, sample, 1 / steps, sample + n * (1 / steps),
+      (int64_t)steps, (int64_t)begin, NULL });
   return MCOR_OK;
 }
 
@@ -210,15 +211,6 @@ static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
   return MCOR_OK;
 }
 
-/* Weight sums at evenly spaced places of a line. */
-typedef struct mcor_gauge_row
-{
-  int64_t line, count;
-  const mcor_gauge_samples* samples; /* of a line; NULL: the row is of a part */
-  double first, step, last;          /* the first place; the step; the last place */
-  const double* weight;              /* [count] */
-} mcor_gauge_row;
-
 static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 {
   return i + 1 == row->count ? row->last : row->first + (double)i * row->step;
@@ -228,11 +220,11 @@ static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 static bool mcor_owns_place(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
 {
   double point[3];
-  if (!row->samples || !job->base.has_box)
+  if (row->steps == 0 || !job->base.has_box)
   {
     return true;
   }
-  const double place = (double)(row->samples->first + i) / (double)row->samples->steps;
+  const double place = (double)(row->sample + i) / (double)row->steps;
   mcor_point_between(job->lines[row->line].from, job->lines[row->line].to, place, point);
   return mcor_owns_point(&job->base, point);
 }
@@ -317,8 +309,8 @@ static mcor_status mcor_look_closer(
     weight[0] = part->low_weight;
     memcpy(weight + 1, job->weights + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
     weight[sections] = part->high_weight;
-    const mcor_gauge_row row = { part->line, sections + 1, NULL, part->low,
-      (part->high - part->low) / sections, part->high, weight };
+    const mcor_gauge_row row = { part->line, sections + 1, part->low,
+      (part->high - part->low) / sections, part->high, 0, 0, weight };
     const int64_t before = parts->count, crossings = job->changed.count;
     MCOR_TRY(mcor_scan_row(job, &row, suspects ? parts : NULL));
     if (job->changed.count > crossings && (suspects || one))
@@ -336,24 +328,22 @@ static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64
   job->changed.count = job->suspects.count = job->inner.count = 0;
   for (int64_t l = first; l < last; ++l)
   {
-    const mcor_gauge_samples* s = &job->samples.of[l];
-    for (int64_t i = s->first; i <= s->last; ++i)
+    const mcor_gauge_row* row = &job->samples.of[l];
+    for (int64_t i = row->sample; i < row->sample + row->count; ++i)
     {
       MCOR_APPEND(job->base.context, &job->inner,
-        (mcor_gauge_place){ s->line, (double)i / (double)s->steps });
+        (mcor_gauge_place){ row->line, (double)i / (double)row->steps });
     }
   }
   MCOR_TRY(mcor_gauge_weights(job));
   const double* weight = job->weights;
   for (int64_t l = first; l < last; ++l)
   {
-    const mcor_gauge_samples* s = &job->samples.of[l];
-    const double begin = (double)s->first / (double)s->steps, step = 1 / (double)s->steps;
-    const int64_t end = s->last - s->first;
-    const mcor_gauge_row row = { s->line, end + 1, s, begin, step, begin + (double)end * step,
-      weight };
+    mcor_gauge_row* row = &job->samples.of[l];
+    const int64_t end = row->count - 1;
     bool reached = false;
-    MCOR_TRY(mcor_scan_row(job, &row, &job->suspects));
+    row->weight = weight;
+    MCOR_TRY(mcor_scan_row(job, row, &job->suspects));
     for (int64_t i = 0; i <= end && !reached; ++i)
     {
       reached = weight[i] != 0;
@@ -361,14 +351,15 @@ static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64
     if (reached)
     {
       MCOR_APPEND(
-        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
+        job->base.context, &job->records, (mcor_gauge_place){ row->line, MCOR_GAUGE_REACHED });
     }
-    if (s->last == s->steps && weight[end] >= job->base.level && mcor_owns_place(job, &row, end))
+    if (row->sample + end == row->steps && weight[end] >= job->base.level &&
+      mcor_owns_place(job, row, end))
     {
       MCOR_APPEND(
-        job->base.context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
+        job->base.context, &job->records, (mcor_gauge_place){ row->line, MCOR_GAUGE_ENDS_IN });
     }
-    weight += row.count;
+    weight += row->count;
   }
   for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
   {
@@ -483,7 +474,7 @@ static mcor_status mcor_gauge_all(mcor_level_job* base)
     int64_t points = 0;
     for (last = first; last < count && points < MCOR_GAUGE_TOGETHER; ++last)
     {
-      points += job->samples.of[last].last - job->samples.of[last].first + 1;
+      points += job->samples.of[last].count;
     }
     MCOR_TRY(mcor_report(base->context, "gauges", 0.2 + 0.8 * (double)first / (double)count,
       0.2 + 0.8 * (double)last / (double)count));

@@ -11,7 +11,6 @@
 
 #include <float.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* TOGETHER: particles between two reports of progress. GRAIN: the least number of particles that a
  * thread takes. ROWS: rows of pixels that a lock protects. */
@@ -30,12 +29,9 @@ static void mcor_read_amounts(
   const mcor_array* weight = &job->view->weight;
   const bool has_mass = mcor_is_given(&input->mass);
   const bool by_mass = has_mass && weight->data && weight->data == input->mass.data;
-  double volume[MCOR_CHUNK], other[MCOR_CHUNK];
-  mcor_read_size(input, first, count, volume);
-  if (job->volumes)
-  {
-    memcpy(volume, job->volumes + first, (size_t)count * sizeof *volume);
-  }
+  double size[MCOR_CHUNK], other[MCOR_CHUNK];
+  const double* volume = job->volumes ? job->volumes + first : size;
+  mcor_read_size(input, first, count, size);
   if (!mcor_projects_density(input))
   {
     mcor_read_scalar(input, first, count, other);

@@ -58,16 +58,14 @@ static inline char mcor_axis_letter(const mcor_context* context, int a)
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* mcor_turn_back turns three numbers of `width` bytes back, in place. mcor_unflatten_doubles turns
- * [count][3] numbers back; the constant coordinate of each becomes `constant`. */
-void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
+/* Turns [count][3] numbers back; the constant coordinate of each becomes `constant`. */
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
 
 /* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* mcor_plane_lines.c. Makes normals from lines if the gradient gives none; needs the lines of the
+/* Makes normals from lines if the gradient gives none; needs the lines of the
  * box's ring. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
 /* Makes the surface's polylines from the lines that its triangles stand for, and turns the surface

@@ -128,7 +128,7 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* Volumes count from one of the points, because coordinates may be large. mcor_plane_lines.c
+/* Volumes count from one of the points, because coordinates may be large. mcor_plane.c
  * measures lines. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {

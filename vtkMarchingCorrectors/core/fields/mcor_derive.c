@@ -9,8 +9,6 @@
  * is exact for linear A. */
 
 #include "mcor_box.h"
-#include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_probe.h"
 

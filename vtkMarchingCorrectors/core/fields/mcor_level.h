@@ -6,7 +6,6 @@
 /* What gauges and fluxes share: a call that measures where fluid is, from weight sums at points. There
  * is fluid where the weight sum is at least a level. */
 
-#include "mcor_input.h"
 #include "mcor_probe.h"
 
 /* Points that are on the device at a time. */

@@ -7,8 +7,6 @@
 
 #include "mcor_probe.h"
 #include "mcor_box.h"
-#include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 
 #include <math.h>
@@ -33,14 +31,6 @@ bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
   memcpy(context->box.points, options->box, sizeof options->box);
   return context->box.of_points = true;
 }
-
-/* Points of a batch during upload, and the results of each slice of them. */
-typedef struct mcor_point_job
-{
-  const mcor_probe_run* run;
-  void *node, *offset;               /* views */
-  mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
-} mcor_point_job;
 
 /* Reads positions of points [first, first + count) of the batch, from the lattice's origin, in
  * edges. */
@@ -85,15 +75,15 @@ static void mcor_read_points(
 /* Writes nodes and offsets of points; the node is -1 if no particle may reach the point. */
 static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_point_job* job = data;
-  const mcor_context* context = job->run->context;
+  mcor_probe_run* run = data;
+  const mcor_context* context = run->context;
   const mcor_lattice* lattice = &context->lattice;
   mcor_findings found = mcor_no_findings();
   double at[3][MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
-    mcor_read_points(job->run, begin, count, at);
+    mcor_read_points(run, begin, count, at);
     for (int i = 0; i < count; ++i)
     {
       bool located = true;
@@ -107,14 +97,14 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
       {
         const double x = located ? at[a][i] : -1;
         const cl_int node = (cl_int)x;
-        ((cl_int*)job->node)[4 * (begin + i) + a] = node;
-        mcor_put_real(context, job->offset, 4 * (begin + i) + a, x - node);
+        ((cl_int*)run->view.node)[4 * (begin + i) + a] = node;
+        mcor_put_real(context, run->view.offset, 4 * (begin + i) + a, x - node);
         found.least[a] = located ? fmin(found.least[a], node) : found.least[a];
         found.most[a] = fmax(found.most[a], node);
       }
     }
   }
-  job->slices[slice] = found;
+  run->slices[slice] = found;
 }
 
 /* Writes the caller's points [first, last) to the device. */
@@ -122,19 +112,18 @@ static mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_
 {
   mcor_context* context = run->context;
   const size_t n = (size_t)(last - first), real = context->cl.real_size;
-  mcor_point_job job = { .run = run };
-  const mcor_mapping views[] = { { &run->batch.in_node, n * 4 * sizeof(cl_int), &job.node },
-    { &run->batch.in_offset, n * 4 * real, &job.offset } };
+  const mcor_mapping views[] = { { &run->batch.in_node, n * 4 * sizeof(cl_int), &run->view.node },
+    { &run->batch.in_offset, n * 4 * real, &run->view.offset } };
   MCOR_TRY(mcor_reserve(context, &run->batch.in_node, views[0].bytes));
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, views[1].bytes));
   int slices = 0;
   run->first = first;
   run->count = (int)n;
-  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &job.node);
-  MCOR_THEN(status, mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset));
+  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &run->view.node);
+  MCOR_THEN(status, mcor_map(context, views[1].buffer, views[1].bytes, true, &run->view.offset));
   MCOR_THEN(status,
-    mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices));
-  const mcor_findings found = mcor_merge_findings(job.slices, slices);
+    mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, run, &slices));
+  const mcor_findings found = mcor_merge_findings(run->slices, slices);
   run->inside = (int)found.sums[0];
   for (int a = 0; a < 3 && run->inside > 0; ++a) /* the box of the points' bricks */
   {

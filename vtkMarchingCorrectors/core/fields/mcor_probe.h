@@ -5,7 +5,7 @@
 
 /* A probe under way. */
 
-#include "mcor_internal.h"
+#include "mcor_input.h"
 
 typedef struct mcor_probe_run
 {
@@ -17,13 +17,13 @@ typedef struct mcor_probe_run
   bool is_sum;
   double* weights_with_solids; /* weight sums of fluid and solids at the points; NULL: not wanted */
   mcor_point_batch batch;
-  /* The device's results, and views of them. */
   mcor_buffer weight, weight_with_solids, sums, weight_gradient, gradients;
-  struct
+  struct /* what is mapped of the batch and of the device's results */
   {
-    void *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
+    void *node, *offset, *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
   } view;
-  int64_t first;     /* first point of the batch */
+  mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
+  int64_t first;                     /* first point of the batch */
   int count, inside; /* points of the batch; points of it that particles may reach */
 } mcor_probe_run;
 

@@ -6,7 +6,6 @@
 /* The image of a projection, and the particles that are spread over it. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_vector.h"
 
 /* ---- mcor_column.c ----

@@ -24,8 +24,6 @@
  * the limits of N are multiplied by 0.31. */
 
 #include "mcor_box.h"
-#include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_probe.h"
 

@@ -5,7 +5,6 @@
  * bricks that are proved to be inside with their nodes. */
 
 #include "core_fixture.h"
-#include "mcor_sph_kernel.h"
 
 /* The first kernel returns for each box (first brick, and edge in cubes) the low and high value,
  * their rounding, the weight, its rounding, the count and the state; the second returns which
@@ -94,19 +93,11 @@ static void free_particles(particles* p)
   free(p->value);
 }
 
-static double norm_of(mcor_sph_kernel kernel)
-{
-#define NORM(id, name, support, norm, ...) norm,
-  static const double norms[] = { MCOR_SPH_KERNEL_TABLE(NORM) };
-#undef NORM
-  return norms[kernel];
-}
-
 /* Computes F + level (*field) and the trimming weight at a point, in double precision. */
 static void evaluate(const particles* p, const mcor_options* options, double iso,
   const double at[3], double* field, double* weight)
 {
-  const double norm = norm_of(options->sph_kernel);
+  const double norm = mcor_kernel_of(options->sph_kernel)->norm;
   *field = *weight = 0;
   for (int i = 0; i < p->count; ++i)
   {

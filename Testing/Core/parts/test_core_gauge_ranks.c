@@ -9,24 +9,16 @@
 #define LINES 90
 #define SECTIONS 4
 
-/* Makes a block of particles with holes, in random order. */
+/* Makes a block of particles with holes, in random order. If the set has solids, every seventh particle is one. */
 static particle_set make_sparse(void)
 {
   particle_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 0.4;
+    set.solid[i] = i % 7 == 0;
   }
   return set;
-}
-
-/* Makes every seventh particle a solid. */
-static void set_solids(particle_set* set)
-{
-  for (int64_t i = 0; i < set->count; ++i)
-  {
-    set->solid[i] = i % 7 == 0;
-  }
 }
 
 typedef struct gauge_job
@@ -215,7 +207,6 @@ static void check_ranks(mcor_context* context, gauge_job* job, int kind)
 static void test_same_bits(void** state)
 {
   CORE_SET set = make_sparse();
-  set_solids(&set);
   for (int kind = 0; kind < 6; ++kind)
   {
     mcor_gauge_line lines[LINES];
@@ -243,7 +234,6 @@ static void test_same_fluxes(void** state)
     { .shape = MCOR_SECTION_TRIANGLES, .points = points[3], .point_count = 3 }
   };
   CORE_SET set = make_sparse();
-  set_solids(&set);
   for (int kind = 0; kind < 4; ++kind)
   {
     set.has_solids = kind % 2;

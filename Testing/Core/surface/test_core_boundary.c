@@ -5,6 +5,7 @@
  * on the host. */
 
 #include "core_fixture.h"
+#include "mcor_vector.h"
 
 static const char source[] =
   "__kernel void test_eigen(const int count, __global const real* in, __global real* out)\n"
@@ -34,17 +35,16 @@ static void check_eigen(const double m[6], const double found[4], double toleran
 {
   const double full[3][3] = { { m[0], m[3], m[5] }, { m[3], m[1], m[4] }, { m[5], m[4], m[2] } };
   const double *e = found + 1, value = found[0];
-  double length = 0, scale = 0;
+  double scale = 0;
   for (int a = 0; a < 3; ++a)
   {
-    length += e[a] * e[a];
     scale = fmax(scale, fabs(full[a][0]) + fabs(full[a][1]) + fabs(full[a][2]));
   }
   const double small = tolerance * scale + 1e-19;
-  CORE_CHECK(fabs(length - 1) < 4 * tolerance, length);
+  CORE_CHECK(fabs(mcor_dot(e, e) - 1) < 4 * tolerance, mcor_dot(e, e));
   for (int a = 0; a < 3; ++a)
   {
-    const double rest = full[a][0] * e[0] + full[a][1] * e[1] + full[a][2] * e[2] - value * e[a];
+    const double rest = mcor_dot(full[a], e) - value * e[a];
     CORE_CHECK(fabs(rest) < 10 * small, value, rest, a, scale);
   }
   uint64_t seed = 3;
@@ -74,15 +74,12 @@ static void test_eigenvalues(void** state)
     core_build(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, (mcor_type)precision);
     core_extend_program(*state, source);
     const size_t real = precision == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
-    float single[6 * N];
-    double host[4 * N];
+    double host[6 * N];
     for (int i = 0; i < 6 * N; ++i)
     {
-      single[i] = (float)matrices[i / 6][i % 6];
+      mcor_put_real(*state, host, i, matrices[i / 6][i % 6]);
     }
-    CORE_OK(*state,
-      mcor_write(*state, &in, real == sizeof(float) ? (const void*)single : (const void*)matrices,
-        N * 6 * real));
+    CORE_OK(*state, mcor_write(*state, &in, host, N * 6 * real));
     CORE_OK(*state, mcor_reserve(*state, &out, N * 4 * sizeof(double)));
     CORE_OK(*state,
       MCOR_LAUNCH(

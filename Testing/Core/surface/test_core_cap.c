@@ -28,7 +28,7 @@ static void cap_check_volume(const mcor_surface* closed, const particle_set* set
   {
     SAMPLES = 20000
   };
-  oracle_field field =
+  CORE_FIELD field =
     oracle_make_field(set, (oracle_kernel)options->sph_kernel, (oracle_kind)options->field, 1);
   uint64_t seed = 3;
   int inside = 0;
@@ -43,7 +43,6 @@ static void cap_check_volume(const mcor_surface* closed, const particle_set* set
     oracle_evaluate(&field, NULL, at, &sample);
     inside += sample.value >= options->iso_values[0];
   }
-  oracle_free_field(&field);
   const double part = (double)inside / SAMPLES;
   const double whole = (planes[1] - planes[0]) * (planes[3] - planes[2]) * (planes[5] - planes[4]);
   const double expected = whole * part, error = whole * sqrt(part * (1 - part) / SAMPLES);

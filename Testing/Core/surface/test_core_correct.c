@@ -55,14 +55,13 @@ static void test_every_particle_counts(void** state)
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     const double range = oracle_scalar_range(&set);
     double worst = 0;
-    oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+    CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
       oracle_sample sample;
       oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
       worst = fmax(worst, fabs(sample.value - iso) / range);
     }
-    oracle_free_field(&field);
     CORE_CHECK(surface.point_count > 20 && worst < 1e-10, run, worst, surface.point_count);
   }
 }
@@ -104,7 +103,7 @@ static void test_reported_numbers(void** state)
     sum / (double)corrected.point_count, most, s->correction_mean, s->correction_max);
   worst += 2 * FLT_EPSILON * fmax(iso - s->scalar_min, s->scalar_max - iso);
   CORE_CHECK(fabs(worst - s->residual_max) <= 1e-6 * worst, worst, s->residual_max);
-  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   for (int64_t i = 0; i < corrected.point_count; ++i)
   {
     oracle_sample sample;
@@ -112,7 +111,6 @@ static void test_reported_numbers(void** state)
     CORE_CHECK(
       fabs(sample.value - iso) <= s->residual_max, fabs(sample.value - iso), s->residual_max);
   }
-  oracle_free_field(&field);
   assert_int_equal(preview.statistics.vertices_corrected, 0);
   assert_true(preview.statistics.correction_max == 0);
 }

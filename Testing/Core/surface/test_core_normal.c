@@ -74,7 +74,7 @@ static void test_triangle_normals(void** state)
  * array; all are compared with the mean in double precision. */
 static void check_attributes(mcor_context* context, int solids)
 {
-  particle_set set = core_make_block(10, 0.2, 3, core_ball);
+  CORE_SET set = core_make_block(10, 0.2, 3, core_ball);
   const int64_t n = set.count;
   CORE_FREED double* constant = oracle_allocate(n, sizeof(double));
   CORE_FREED double* many = oracle_allocate(n * 9, sizeof(double));
@@ -125,7 +125,6 @@ static void check_attributes(mcor_context* context, int solids)
     }
   }
   CORE_CHECK(surface.point_count > 100, surface.point_count);
-  particle_set_free(&set);
 }
 
 static void test_attributes(void** state)

@@ -58,7 +58,6 @@ typedef struct mcor_filling
   mcor_fill_line* lines; /* [line_count], ascending by iso value, without repetitions */
   int line_count;
   mcor_cap_nodes nodes; /* the plane's nodes, kept like nodes of an upper cap side */
-  double* value;        /* [nodes.node_count] */
   int32_t* band;        /* [nodes.node_count]: number of iso values that the node reaches */
   int32_t* number;      /* points of the surface at nodes, then at cuts; -1: none */
   mcor_cap_job cap;     /* vertices: points where trimming ends the region */
@@ -74,17 +73,6 @@ typedef struct mcor_filling
 } mcor_filling;
 
 /* ---- Before all lines ---- */
-
-static void mcor_take_fill_node(
-  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
-{
-  mcor_filling* fill = data;
-  const int64_t to = points->to[i];
-  fill->value[to] = mcor_get_real(context, points->value, i);
-  fill->nodes.margin[to] = mcor_cap_margin(context, points, i);
-  fill->nodes.bricks.of[to / MCOR_SIDE_NODES].valid |=
-    (cl_ulong)mcor_cap_is_valid(context, points, i) << to % MCOR_SIDE_NODES;
-}
 
 mcor_status mcor_begin_fill(mcor_context* context)
 {
@@ -127,13 +115,10 @@ mcor_status mcor_begin_fill(mcor_context* context)
     nodes->range[a][1] = box->last[a];
   }
   MCOR_TRY(mcor_find_cap_bricks(context, 1, nodes));
-  fill->value = calloc((size_t)nodes->node_count, sizeof *fill->value);
+  nodes->value = calloc((size_t)nodes->node_count, sizeof *nodes->value);
   fill->band = calloc((size_t)nodes->node_count, sizeof *fill->band);
-  MCOR_TRY(mcor_allocated(context, fill->value && fill->band));
-  mcor_cap_points points = { .take = mcor_take_fill_node, .data = fill };
-  const mcor_status status = mcor_ask_cap_nodes(context, nodes, false, &points);
-  mcor_free_cap_points(context, &points);
-  return status;
+  MCOR_TRY(mcor_allocated(context, nodes->value && fill->band));
+  return mcor_ask_cap_nodes(context, nodes, false);
 }
 
 /* ---- The lines of one iso value ---- */
@@ -215,7 +200,7 @@ mcor_status mcor_take_lines(mcor_context* context)
     const mcor_cap_brick* brick = &nodes->bricks.of[n / MCOR_SIDE_NODES];
     const int bit = (int)(n % MCOR_SIDE_NODES);
     const bool above = brick->above >> bit & 1, joined = brick->joined[2] >> bit & 1;
-    fill->band[n] += brick->is_known ? above : fill->value[n] >= line->iso;
+    fill->band[n] += brick->is_known ? above : nodes->value[n] >= line->iso;
     MCOR_TRY(
       mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));
   }
@@ -491,8 +476,8 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   {
     return MCOR_OK;
   }
-  free(fill->value); /* no longer needed: the bands are known */
-  fill->value = NULL;
+  free(fill->nodes.value); /* no longer needed: the bands are known */
+  fill->nodes.value = NULL;
   fill->border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *fill->border);
   MCOR_TRY(mcor_allocated(context, fill->border));
   MCOR_TRY(mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, fill));
@@ -538,7 +523,6 @@ void mcor_end_fill(mcor_context* context)
     mcor_free_cap_nodes(&fill->nodes);
     mcor_free_cap_job(&fill->cap);
     free(fill->lines);
-    free(fill->value);
     free(fill->band);
     free(fill->number);
     free(fill->triangles.of);

@@ -104,7 +104,7 @@ typedef struct mcor_means
   const mcor_context* context;
   const mcor_input* input;
   const cl_int* scanned;
-  const void* values;
+  void* values;
   mcor_surface* surface;
 } mcor_means;
 
@@ -130,27 +130,13 @@ static void mcor_store_means(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Copies the means of all components from the device to the surface. */
-static mcor_status mcor_store_attributes(
-  mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
-{
-  const mcor_buffer* means = &context->mesh.means;
-  const int vertices = context->mesh.vertex_count;
-  void* view;
-  MCOR_TRY(mcor_map(context, means,
-    (size_t)vertices * (size_t)context->attributes.count * context->cl.real_size, false, &view));
-  mcor_means job = { context, input, scanned, view, surface };
-  const mcor_status status =
-    mcor_parallel_run(context, vertices, MCOR_LIGHT_GRAIN, mcor_store_means, &job, NULL);
-  MCOR_TRY(mcor_unmap(context, means, &view));
-  return status;
-}
-
 /* Adds the attributes of the vertices that go to the output, see mcor_is_output. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
-  const mcor_mesh* mesh = &context->mesh;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* means = &mesh->means;
+  const size_t vertices = (size_t)mesh->vertex_count, real = context->cl.real_size;
   const int varying = context->attributes.varying_count;
   const mcor_component* component = context->attributes.varying;
   /* Writes the constant components, which the list of varying components lacks. The list is in the
@@ -175,18 +161,23 @@ mcor_status mcor_add_attributes(
       }
     }
   }
-  if (varying > 0)
+  for (int first = 0; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
   {
-    MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
-  }
-  for (int first = MCOR_ATTRIBUTE_LIMIT; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
-  {
-    MCOR_TRY(mcor_load_attributes(context, input, first));
-    MCOR_TRY(mcor_reserve(context, &context->mesh.means,
-      (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
-    MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_means",
-      MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-    MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
+    if (first > 0) /* the correction has evaluated the first components */
+    {
+      MCOR_TRY(mcor_load_attributes(context, input, first));
+      MCOR_TRY(mcor_reserve(context, means, vertices * (size_t)context->attributes.count * real));
+      MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_means",
+        MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, means)));
+    }
+    mcor_means job = { .context = context, .input = input, .scanned = scanned, .surface = surface };
+    const mcor_mapping view = { means, vertices * (size_t)context->attributes.count * real,
+      &job.values };
+    mcor_status status = mcor_map_all(context, &view, 1);
+    MCOR_THEN(status,
+      mcor_parallel_run(
+        context, mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_store_means, &job, NULL));
+    MCOR_TRY(mcor_unmap_all(context, &view, 1, status));
   }
   return MCOR_OK;
 }

@@ -42,12 +42,13 @@ struct mcor_cap_points
   mcor_buffer eigenvalues;
 };
 
-/* Adds a point at an offset (NULL: 0) from a node. Evaluates the batch if it is full. */
+/* Adds a point at an offset (NULL: 0) from a node; evaluates the batch if it is full. All zero but
+ * for `take` and `data`: no points yet. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
-/* Evaluates the points of the last, unfilled batch. */
-mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* points);
-void mcor_free_cap_points(mcor_context* context, mcor_cap_points* points);
+/* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if that
+ * is MCOR_OK, the first failure. */
+mcor_status mcor_end_cap_points(mcor_context* context, mcor_cap_points* points, mcor_status status);
 /* Returns the trim margin of point i: above 0 if the point remains after trimming. */
 double mcor_cap_margin(const mcor_context* context, const mcor_cap_points* points, int64_t i);
 bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* points, int64_t i);
@@ -114,6 +115,7 @@ typedef struct mcor_cap_nodes
   MCOR_LIST(mcor_cap_brick) bricks; /* bricks on the side come first */
   int64_t side_count, node_count;   /* numbers of bricks and nodes on the side */
   double* margin;                   /* [node_count], trim margins of nodes above */
+  double* value; /* [node_count], the field at nodes, if filled regions want it; else NULL */
 } mcor_cap_nodes;
 
 /* Returns a node's bit in the masks of its brick. The node has coordinate `along` on the side's
@@ -153,10 +155,9 @@ bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
 /* Copies the masks of the marched bricks. */
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
-/* Requests the field at the nodes that need it: nodes of the side, or (is_inner) nodes one further
+/* Evaluates the field at the nodes that need it: nodes of the side, or (is_inner) nodes one further
  * in. */
-mcor_status mcor_ask_cap_nodes(
-  mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points);
+mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner);
 /* Calls `visit` for the squares of all bricks. at, node: number and position of a square's lowest
  * node. */
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
@@ -165,7 +166,7 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
 /* Loads the nodes of axis a's lower or upper side. opposite: the period's other side if it is
  * loaded already, else NULL. */
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
-  const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
+  const mcor_cap_nodes* opposite, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 
 /* ---- mcor_cap_make.c: the squares ---- */
@@ -201,7 +202,6 @@ typedef struct mcor_cap_triangle
 typedef struct mcor_cap_job
 {
   mcor_context* context;
-  mcor_cap_points points;
   /* The surface's vertices by their lattice edge (lower node and axis); for a pinched edge, its
    * first vertex. */
   mcor_table edges[3];

@@ -355,23 +355,22 @@ static void mcor_move_cut(
 
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
 {
-  mcor_cap_points* points = &job->points;
-  points->take = mcor_move_cut;
-  points->data = job;
   int64_t left = job->lines.count;
   for (int step = 0; step < MCOR_PLACE_STEPS && left > 0; ++step)
   {
+    mcor_cap_points points = { .take = mcor_move_cut, .data = job };
+    mcor_status status = MCOR_OK;
     left = 0;
-    for (int64_t i = 0; i < job->lines.count; ++i)
+    for (int64_t i = 0; i < job->lines.count && status == MCOR_OK; ++i)
     {
       const mcor_cap_vertex* vertex = &job->vertices.of[job->lines.of[i].vertex];
       if (!job->lines.of[i].done)
       {
-        MCOR_TRY(mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+        status = mcor_add_cap_point(job->context, &points, vertex->node, vertex->offset, i);
+        ++left;
       }
-      left += !job->lines.of[i].done;
     }
-    MCOR_TRY(mcor_take_cap_points(job->context, points));
+    MCOR_TRY(mcor_end_cap_points(job->context, &points, status));
   }
   return MCOR_OK;
 }
@@ -426,7 +425,6 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
 
 void mcor_free_cap_job(mcor_cap_job* job)
 {
-  mcor_free_cap_points(job->context, &job->points);
   for (int a = 0; a < 3; ++a)
   {
     mcor_table_free(&job->edges[a]);
@@ -467,8 +465,8 @@ mcor_status mcor_cap(mcor_context* context)
       if (status == MCOR_OK && has[upper])
       {
         mcor_cap_nodes* nodes = &sides[upper];
-        status = mcor_load_cap_side(
-          context, axis, upper, upper && are_one ? &sides[0] : NULL, &job.points, nodes);
+        status =
+          mcor_load_cap_side(context, axis, upper, upper && are_one ? &sides[0] : NULL, nodes);
         MCOR_THEN(status, mcor_visit_cap_squares(context, nodes, mcor_visit_cap_square, &job));
       }
     }

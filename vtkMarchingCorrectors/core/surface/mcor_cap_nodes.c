@@ -34,6 +34,7 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
   mcor_table_free(&nodes->index);
   free(nodes->bricks.of);
   free(nodes->margin);
+  free(nodes->value);
 }
 
 /* Finds the plane of a side, and the range of its nodes. */
@@ -290,16 +291,21 @@ static void mcor_take_cap_node(
   {
     nodes->margin[to] = mcor_cap_margin(context, points, i);
   }
+  if (nodes->value)
+  {
+    nodes->value[to] = mcor_get_real(context, points->value, i);
+  }
 }
 
 /* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
  * above, whose margins are needed, and for nodes of unknown bricks. One node further in, asks for
  * unknown nodes beside valid nodes above: a square without vertices needs to know whether they are
  * valid. */
-mcor_status mcor_ask_cap_nodes(
-  mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points)
+mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner)
 {
-  for (int64_t at = MCOR_SIDE_NODES; at < nodes->node_count; ++at)
+  mcor_cap_points points = { .take = mcor_take_cap_node, .data = nodes };
+  mcor_status status = MCOR_OK;
+  for (int64_t at = MCOR_SIDE_NODES; at < nodes->node_count && status == MCOR_OK; ++at)
   {
     const mcor_cap_brick* brick = &nodes->bricks.of[at / MCOR_SIDE_NODES];
     const int bit = mcor_side_bit(nodes, nodes->plane, at);
@@ -317,10 +323,10 @@ mcor_status mcor_ask_cap_nodes(
     {
       node[nodes->axis] = is_inner ? nodes->inner : nodes->plane;
       node[2] = context->space.flat ? 0 : node[2];
-      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, at));
+      status = mcor_add_cap_point(context, &points, node, NULL, at);
     }
   }
-  return mcor_take_cap_points(context, points);
+  return mcor_end_cap_points(context, &points, status);
 }
 
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
@@ -354,17 +360,15 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
   return MCOR_OK;
 }
 
-mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
-  const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes)
+mcor_status mcor_load_cap_side(
+  mcor_context* context, int axis, int upper, const mcor_cap_nodes* opposite, mcor_cap_nodes* nodes)
 {
-  points->take = mcor_take_cap_node;
-  points->data = nodes;
   mcor_set_cap_extent(context, axis, upper, nodes);
   MCOR_TRY(mcor_find_cap_bricks(context, context->run.iso.value, nodes));
   MCOR_TRY(mcor_take_cap_masks(context, nodes));
   if (!opposite)
   {
-    MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false, points));
+    MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false));
   }
   /* Copies the results of the period's opposite side: a period apart, sums have the same bits. */
   for (int64_t to = MCOR_SIDE_NODES; opposite && to < nodes->node_count; ++to)
@@ -383,5 +387,5 @@ mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
     }
     nodes->margin[to] = opposite->margin[(int64_t)number * MCOR_SIDE_NODES + to % MCOR_SIDE_NODES];
   }
-  return mcor_ask_cap_nodes(context, nodes, true, points);
+  return mcor_ask_cap_nodes(context, nodes, true);
 }

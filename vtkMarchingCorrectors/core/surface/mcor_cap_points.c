@@ -12,16 +12,8 @@
 
 /* ---- The field ---- */
 
-void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
-{
-  MCOR_RELEASE_EACH(context, &p->on_device);
-  mcor_release(context, &p->eigenvalues);
-  free(p->node);
-  free(p->offset);
-  free(p->to);
-}
-
-mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
+/* Evaluates the points of the batch, which is then empty. */
+static mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
 {
   if (p->count == 0)
   {
@@ -73,6 +65,17 @@ mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* p, const 
   }
   p->to[p->count++] = to;
   return p->count < MCOR_CAP_BATCH ? MCOR_OK : mcor_take_cap_points(context, p);
+}
+
+mcor_status mcor_end_cap_points(mcor_context* context, mcor_cap_points* p, mcor_status status)
+{
+  MCOR_THEN(status, mcor_take_cap_points(context, p));
+  MCOR_RELEASE_EACH(context, &p->on_device);
+  mcor_release(context, &p->eigenvalues);
+  free(p->node);
+  free(p->offset);
+  free(p->to);
+  return status;
 }
 
 /* Returns the weight of the fluid alone. */

@@ -183,20 +183,20 @@ mcor_status mcor_trim(mcor_context* context)
     return MCOR_OK;
   }
   MCOR_TRY(mcor_evaluate_margins(context));
+  const mcor_buffer* quantity = mcor_trim_quantity(context);
+  const double threshold = mcor_trim_threshold(context);
   const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_reserve(context, &trim->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_MEDIUM, batches,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
-    MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity),
+    MCOR_REAL(threshold), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
   MCOR_TRY(mcor_scan(context, &trim->remaining, batches, &remaining));
   MCOR_TRY(mcor_scan(context, &trim->cuts, batches, &cuts));
   MCOR_TRY(mcor_reserve(context, &trim->keys, (size_t)cuts * sizeof(cl_ulong)));
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches, MCOR_INT(mesh->triangle_count),
-      MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(mcor_trim_quantity(context)),
-      MCOR_REAL(mcor_trim_threshold(context)), MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity),
+    MCOR_REAL(threshold), MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
   MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
     &mesh->cut_edges, &trim->index, &cut_count));
@@ -204,11 +204,10 @@ mcor_status mcor_trim(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &trim->cells, follows ? (size_t)remaining * sizeof(cl_ulong) : 0));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_MEDIUM, batches,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
-    MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
-    MCOR_BUFFER(&trim->index), MCOR_INT(follows), MCOR_BUFFER(&context->box.cells),
-    MCOR_BUFFER(&trim->cells), MCOR_BUFFER(&trim->triangles)));
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity),
+    MCOR_REAL(threshold), MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining),
+    MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->index), MCOR_INT(follows),
+    MCOR_BUFFER(&context->box.cells), MCOR_BUFFER(&trim->cells), MCOR_BUFFER(&trim->triangles)));
   mcor_take_buffer(context, &trim->triangles, &mesh->triangles);
   mcor_take_buffer(context, &trim->cells, &context->box.cells);
   mesh->triangle_count = remaining;

@@ -2,21 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The command line program: reads particles from a file, writes a surface to a file. See --help.
-#include "ColorScale.h"
-#include "DataFile.h"
 #include "Extra.h"
 #include "Failures.h"
 #include "Job.h"
-#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Runs.h"
 #include "Sharing.h"
 #include "Text.h"
 
-#include "vtkFieldData.h"
 #include "vtkLogger.h"
 #include "vtkPointSet.h"
-#include "vtkPolyData.h"
 #include "vtkVersion.h"
 
 #include <algorithm>
@@ -110,18 +105,7 @@ bool Execute(int argc, char* argv[])
   {
     const std::unique_ptr<Sharing> session = NewRankSession(job);
     bool isGood = false;
-    const std::string failure = FailureOf(
-      [&]
-      {
-        session->OnAll(
-          [&job]
-          {
-            Require(job.Picture.File.empty() && job.Repeat == 1,
-              "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
-              "but no --screenshot or --repeat; run these without mpirun");
-          });
-        isGood = Make(*session);
-      });
+    const std::string failure = FailureOf([&] { isGood = Make(*session); });
     if (!failure.empty() && session->IsFirst())
     {
       Say(failure);
@@ -132,110 +116,6 @@ bool Execute(int argc, char* argv[])
   return Make(alone);
 }
 
-}
-
-bool MakeSurface(Sharing& sharing)
-{
-  const Job& job = sharing.Options;
-  std::vector<std::string> outputs; // this process's files; on the first process, all files
-  const bool isInPieces = EndsWith(job.Output, ".pvtp");
-  for (int rank = 0; isInPieces && rank < sharing.GetCount(); ++rank)
-  {
-    if (sharing.IsFirst() || rank == sharing.GetRank())
-    {
-      outputs.push_back(PieceName(job.Output, rank));
-    }
-  }
-  if (sharing.IsFirst())
-  {
-    outputs.insert(outputs.end(),
-      { job.Output, job.Text("--stats"), job.Text("--components"), job.Picture.File,
-        job.Text("--widening") });
-  }
-  sharing.OnAll(
-    [&]
-    {
-      OpenSources(job.InputFiles());
-      CheckOutputs(outputs);
-    });
-  const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
-  sharing.OnAll([&] { SetUpSurface(job, particles); });
-  std::vector<vtkSmartPointer<vtkFieldData>> runs;
-  std::vector<double> wallSeconds;
-  std::string pieces;
-  Run run;
-  for (int i = 0; i < job.Repeat; ++i)
-  {
-    run.Surface = nullptr; // one run must end before the next begins
-    sharing.OnAll([&] { run = Extract(sharing); });
-    pieces.clear();
-    sharing.OnAll([&] { AddPieces(pieces, sharing, run, particles); });
-    runs.emplace_back(run.Statistics);
-    wallSeconds.push_back(run.WallSeconds);
-    if (!job.Has("--quiet") && sharing.IsFirst())
-    {
-      std::cout << (i == 0 ? DescribeRun(runs.back(), job.Has("--verbose")) : "")
-                << DescribeSeconds(runs.back(), job.Has("--verbose")) << std::flush;
-    }
-  }
-  const double peakResidentBytes = PeakResidentBytes();
-  run.Surface = isInPieces ? run.Surface : sharing.Merge(run.Surface);
-  ColorScale colors(job.Picture);
-  OutputFiles files;
-  sharing.OnAll(
-    [&]
-    {
-      if (isInPieces)
-      {
-        const std::string piece = PieceName(job.Output, sharing.GetRank());
-        files.Write(piece, SurfaceBytes(piece, run.Surface, colors));
-      }
-      if (!sharing.IsFirst())
-      {
-        return;
-      }
-      if (!isInPieces)
-      {
-        Inspect(job, job.Output, run, particles, colors, sharing.GetCount() == 1);
-      }
-      for (const std::string& warning : run.Warnings)
-      {
-        Say("warning: " + warning);
-      }
-      files.Write(job.Output,
-        isInPieces ? ListPieces(job.Output, sharing.GetCount(), run.Surface)
-                   : SurfaceBytes(job.Output, run.Surface, colors));
-      if (job.Has("--components"))
-      {
-        files.Write(job.Text("--components"), pieces);
-      }
-    });
-  sharing.OnAll([&] { files.Commit(); }); // only if all processes have written all files
-  if (job.Has("--widening"))
-  {
-    vtkSmartPointer<vtkPolyData> widened;
-    const vtkSmartPointer<vtkPointSet> used = vtkPointSet::SafeDownCast(job.Surface->GetInput());
-    sharing.OnAll([&] { widened = Widen(job, used); });
-    widened = sharing.Append(widened);
-    sharing.OnFirst([&] { WriteDataSet(job.Text("--widening"), widened); });
-  }
-  sharing.OnFirst(
-    [&]
-    {
-      if (job.Has("--stats"))
-      {
-        std::cout.flush(); // the file may be /dev/stdout
-        WriteOutput(job.Text("--stats"),
-          StatisticsAsJson(job, runs, wallSeconds, run.Warnings, peakResidentBytes));
-      }
-      if (!job.Picture.File.empty())
-      {
-        const Picture picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(job.Picture.File,
-          DrawSurface(sharing, job.Picture.File, run.Surface, particles, picture, colors));
-      }
-    });
-  return true;
 }
 
 const Extra& LoadExtra()

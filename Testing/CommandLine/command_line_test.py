@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 import particle_files as files
 
@@ -115,6 +116,21 @@ class CommandLineTest(unittest.TestCase):
         for i in range(count):
             files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + up * i) for x, y, z in points], arrays)
         files.write_pvd(self.directory / "steps.pvd", [(step * i, f"step_{i}.vtp") for i in range(count)])
+
+    def chosen(self, keep):
+        """Returns the points and the arrays of the particles for whose number keep() is true."""
+        picked = list(filter(keep, range(len(self.points))))
+        return [self.points[i] for i in picked], {name: [values[i] for i in picked] for name, values in self.arrays.items()}
+
+    def in_plane(self):
+        """Returns the points and the arrays of the lowest layer of particles."""
+        return self.chosen(lambda i: self.points[i][2] == self.points[0][2])
+
+    def listed(self, name):
+        """Returns [(time, path)] as a .pvd file lists them."""
+        root = xml.etree.ElementTree.parse(self.directory / name).getroot()
+        self.assertEqual(root.get("type"), "Collection")
+        return [(float(e.get("timestep")), self.directory / e.get("file")) for e in root.iter("DataSet")]
 
     def misbehaving(self, **variables):
         """Returns the environment for a run with misbehave.c and these variables MCOR_..."""

@@ -108,6 +108,12 @@ def write_vtp(path, points, arrays, extra=""):
     path.write_bytes(xml(points, arrays, extra=extra))
 
 
+def add_field(path, name, values):
+    """Adds an array of field data to a .vtp file."""
+    array = xml_array(name, values, form=f'format="ascii" NumberOfTuples="{len(values)}"')
+    path.write_text(path.read_text().replace("<PolyData>", f"<PolyData><FieldData>{array}</FieldData>"))
+
+
 def write_vtu(path, points, arrays, cells=None):
     path.write_bytes(xml(points, arrays, "UnstructuredGrid", cells=cells))
 

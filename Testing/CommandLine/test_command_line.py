@@ -85,18 +85,6 @@ class Usage(CommandLineTest):
             (["surface", self.input, self.output, "--line", "0,0,0,1,0,0"], "surface needs one INPUT and one OUTPUT, but .* for lines")]:
             self.refuse(self.run_program(*arguments), 2, sentence)
 
-    def test_options_that_exclude_each_other(self):
-        for first, second in [
-            ("--free-surface", "--scalar=Radius"), ("--smoothing-length=0.1", "--dp=0.1"), ("--support-radius", "--dp=0.1"),
-            ("--cube-factor=1", "--cube-size=1"), ("--fluid=Kind=0", "--walls=w.vtp"), ("--no-attributes", "--attributes=Kind"),
-            ("--tolerance=1", "--preview"), ("--iteration-limit=3", "--preview"),
-            ("--gauge=a=0,0,0:0,0,1", "--gauge-grid=1,1:0,0,0,0,0,1"), ("--gauges=g", "--gauge-grid=1,1:0,0,0,0,0,1")]:
-            names = [option.split("=")[0] for option in (first, second)]
-            contour = [] if {"--free-surface", "--gauge-grid"} & set(names) or "--gauge" in first else ISO
-            for pair in ((first, second), (second, first)):
-                with self.subTest(pair):
-                    self.refuse(self.extract(*contour, *pair), 2, "{} and {} exclude each other: .*; leave out one".format(*names))
-
     def test_options_that_do_not_fit(self):
         """Options that do not fit are refused. test_modes.py tries the needs in Options.def; other rules are tried here."""
         free = ["--free-surface"]
@@ -123,7 +111,10 @@ class Usage(CommandLineTest):
         tried = 0
         for option, form in re.findall(r"(?m)^  (--[\w-]+) (\S+) ", text):
             numbers = re.fullmatch(r"[A-Z]{1,2}(\[.*|\|BEGIN.*)?|MIB", form)
-            for value in ("x", "1x", "", "nan", "1e999", "0x1p3", "+-1") if numbers else ("nonesuch",) if re.fullmatch("[-a-z_|0-9]+", form) else ():
+            values = ("x", "1x", " 1", "", "nan", "1e999", "0x1p3", "+-1") if numbers else ()
+            values += ("nonesuch",) if re.fullmatch("[-a-z_|0-9]+", form) else ()
+            values += ("-1",) if numbers and option not in ("--iso", "--times") else ("-2", "0") if form.startswith("NAME|VALUE") else ()
+            for value in values:
                 with self.subTest(option, value=value):
                     tried += 1
                     self.refuse(self.run_program(self.input, self.output, f"{option}={value}"), 2, f"{option} (needs (?!--)|must be)")
@@ -133,7 +124,6 @@ class Usage(CommandLineTest):
         good = [self.input, self.output]
         for arguments, sentence in [
             ([], "INPUT or OUTPUT is missing"),
-            ([self.input], "INPUT or OUTPUT is missing"),
             ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
             ([self.input, "film.usdc", *ISO], "marchingcorrectors surface INPUT... film.usdc .*convert FILM.pvd film.usdc"),
             ([self.input, "surface.png", *ISO],
@@ -157,10 +147,8 @@ class Usage(CommandLineTest):
             ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
-            ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
             ([*good, *ISO, "--component", "-2"], "--component needs a whole number from 0"),
             ([*good, *ISO, "--component", "2147483648"], "whole number up to 2147483647, not '21"),
-            ([*good, *ISO, "--component", " 1"], "--component needs a whole number"),
             ([*good, "-iso", "1"], "unknown option -iso; did you mean --iso[?]"),
             ([*good, *ISO, "-q"], r"unknown option -q \("),
             ([self.input, "-surface.vtp", *ISO], "unknown option -surface.vtp"),
@@ -169,14 +157,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--iso", "0.4"], "--iso is given twice"),
             ([*good, *ISO, "--stats", "-h"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
-            ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
             ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, or .* not '--quiet'"),
-            ([*good, *ISO, "--memory-limit", "0"], "--memory-limit needs a whole number from 1"),
-            ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
-            ([*good, *ISO, "--node-threshold", "-1"], "--node-threshold must be 0 or greater"),
-            ([*good, *ISO, "--smoothing-length", "-2"], "--smoothing-length must be greater than 0"),
-            ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
-            ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
             ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
             ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
             ([*good, *ISO, "--periodic", "0,1,1,0,0,1"],
@@ -198,7 +179,6 @@ class Usage(CommandLineTest):
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
             ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "--line is for lines, not for slices; leave it out"),
             ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "--screenshot is for .* not for lines"),
-            ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
         ]:
             with self.subTest(sentence):
                 self.refuse(self.run_program(*arguments), 2, sentence)
@@ -299,9 +279,7 @@ class Options(CommandLineTest):
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
     def test_quiet(self):
-        result = self.extract(*ISO, "--quiet")
-        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
-        self.assertTrue(self.output.exists())
+        self.assertEqual(self.extract_good(*ISO, "--quiet").stdout, "")
 
     def test_statistics(self):
         found = self.succeed(*ISO)
@@ -560,13 +538,11 @@ class Options(CommandLineTest):
     def test_period_of_field_data(self):
         """Field data with a period are mentioned, and used only with --periodic. core_find tests their forms."""
         free, length = ["--free-surface", "--no-attributes"], 10 * files.SPACING
-        plain = self.input.read_text()
         self.succeed(*free, "--periodic", f"{length!r},{length!r},0")
         expected = self.output.read_bytes()
         self.output.unlink()
         self.refuse(self.extract(*free, "--periodic", "auto"), 1, says("NO_PERIOD"))
-        size = files.xml_array("BoxSize", [length, length, 0.0], form='format="ascii" NumberOfTuples="3"')
-        self.input.write_text(plain.replace("<PolyData>", f"<PolyData><FieldData>{size}</FieldData>"))
+        files.add_field(self.input, "BoxSize", [length, length, 0.0])
         self.assertRegex(self.extract(*free).stderr, "warning: .* BoxSize .*--periodic auto")
         self.assertEqual(self.extract(*free, "--periodic", "0,0,0").stderr, "")
         self.succeed(*free, "--periodic", "auto")
@@ -574,13 +550,11 @@ class Options(CommandLineTest):
 
     def test_repeat(self):
         found = self.succeed(*ISO, "--repeat", "3")
-        self.assertEqual(len(found["runs"]), 3)
         written = self.output.read_bytes()
+        self.assertEqual([run["statistics"]["triangles"] for run in found["runs"]], [found["statistics"]["triangles"]] * 3)
+        self.assertGreater(min(run["seconds"]["total"] for run in found["runs"]), 0)
         self.succeed(*ISO)
         self.assertEqual(self.output.read_bytes(), written)
-        for run in found["runs"]:
-            self.assertGreater(run["seconds"]["total"], 0)
-            self.assertEqual(run["statistics"]["triangles"], found["statistics"]["triangles"])
 
     def test_device(self):
         first = self.run_program("--list-devices").stdout.splitlines()[0]
@@ -636,9 +610,8 @@ class Picture(CommandLineTest):
 
     def test_bands(self):
         """Bands have a legend of as many steps, the lowest first. z is upwards where particles are those of DualSPHysics."""
-        plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
-        arrays = {name: [values[i] for i in plane] for name, values in self.arrays.items() if name in ("Radius", "SmoothingLength")}
-        files.write_vtp(self.input, [self.points[i] for i in plane], arrays)
+        points, arrays = self.in_plane()
+        files.write_vtp(self.input, points, {name: arrays[name] for name in ("Radius", "SmoothingLength")})
         rows = self.picture("s.vtp", "--scalar", "Radius", "--iso=-1,0.2,0.3,0.6", "--filled")[2]
         steps = list(dict.fromkeys(row[1168] for row in rows if max(row[1168]) - min(row[1168]) > 40))
         self.assertEqual(len(steps), 4)

@@ -1,16 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Films by the program marching-correctors: test_film.py PROGRAM PRELOAD."""
-import csv
 import json
 import re
 import signal
 import subprocess
 import time
-import xml.etree.ElementTree
 
 import particle_files as files
-from command_line_test import CommandLineTest, column, main, says
+from command_line_test import CommandLineTest, column, main, read_table, says
 
 FREE = ["--free-surface"]
 
@@ -40,12 +38,8 @@ class Film(CommandLineTest):
         self.run_good(*arguments, self.film, *FREE, "--stats", statistics)
         return json.loads(statistics.read_text())
 
-    def listed(self):
-        """Returns [(time, path)] as the film's list has them."""
-        root = xml.etree.ElementTree.parse(self.film).getroot()
-        self.assertEqual(root.get("type"), "Collection")
-        return [(float(e.get("timestep")), self.directory / e.get("file"))
-                for e in root.iter("DataSet")]
+    def listed(self, name=None):
+        return super().listed(name or self.film)
 
     def surfaces(self):
         return sorted(p.name for p in self.directory.glob("film_*"))
@@ -131,8 +125,7 @@ class Film(CommandLineTest):
 
         def rows(*arguments):
             self.run_good(*arguments, "--probe", "points.csv", "--quiet")
-            with open(table, encoding="utf-8") as stream:
-                return list(csv.DictReader(stream))
+            return read_table(table)
         found = rows(*paths, table, "--time-step", "0.1", "--times", "0:0.2:0.05")
         self.assertEqual([(float(row["time"]), row["point"], row["name"], row["valid"]) for row in found],
                          [(0.05 * i if i != 3 else 0.15, str(k), name, str(int(k < 2))) for i in range(5) for k, name in enumerate(("middle", "side", "far"))])
@@ -170,8 +163,7 @@ class Film(CommandLineTest):
         film = ["steps.pvd", self.film, *FREE, "--times", "0,0.03,0.05,0.1", "--numbers", numbers, "--components", "pieces.csv", "--quiet"]
         for period in ("1,1,1", "0,1,0,1,0,1"):
             self.run_good(*film, "--periodic", period)
-            with open(numbers, encoding="utf-8") as stream:
-                rows = list(csv.DictReader(stream))
+            rows = read_table(numbers)
             self.assertEqual(column(rows, "pieces"), ["1"] * 4)
             for row in rows:
                 self.assertAlmostEqual(float(row["area"]) / float(rows[0]["area"]), 1, delta=0.01)

@@ -49,11 +49,9 @@ class Meter(CommandLineTest):
     def test_times(self):
         """The time in a single file is used. Where files hold no time, one line tells what this means for velocities."""
         for step in range(3):
-            points, arrays = files.drop_at(0.05 * step)
-            files.write_vtp(self.directory / f"step_{step}.vtp", points, arrays)
-            text = (self.directory / f"step_{step}.vtp").read_text()
-            told = files.xml_array("TimeValue", [0.5 + 0.05 * step], form='format="ascii" NumberOfTuples="1"')
-            (self.directory / f"timed_{step}.vtp").write_text(text.replace("<PolyData>", f"<PolyData><FieldData>{told}</FieldData>"))
+            for name in ("step", "timed"):
+                files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))
+            files.add_field(self.directory / f"timed_{step}.vtp", "TimeValue", [0.5 + 0.05 * step])
         steps, timed = ([f"{name}_{i}.vtp" for i in range(3)] for name in ("step", "timed"))
         untold = "^marching-correctors: warning: the files tell no times, so the steps are at 0, 1, 2, .*--time-step, which is about 0.05.* by 'Velocity'\n$"
         for source, says, times in ((steps, untold, [0, 1, 2]), (timed, "^$", [0.5, 0.55, 0.6]), (timed[1:2], "^$", [0.55]),
@@ -63,9 +61,8 @@ class Meter(CommandLineTest):
         self.run_good(*steps, self.table, *self.one, "--time-step", "0.05")
         stored = [f"stored_{i}.vtp" for i in range(4)]
         for i, name in enumerate(stored):
-            text = (self.directory / steps[i % 2]).read_text()
-            array = files.xml_array("dt", [0.05 if i < 2 else 0.2], form='format="ascii" NumberOfTuples="1"')
-            (self.directory / name).write_text(text.replace("<PolyData>", f"<PolyData><FieldData>{array}</FieldData>"))
+            files.write_vtp(self.directory / name, *files.drop_at(0.05 * (i % 2)))
+            files.add_field(self.directory / name, "dt", [0.05 if i < 2 else 0.2])
         for source, end, times in ((stored[:2], r"'dt' says, 0.05; give .* with --time-step\n$", [0, 0.05]),
                                    (stored[2:], r"'dt' says, 0.2; give .* with --time-step, which is about 0.05.* by 'Velocity'\n$", [0, 0.2]),
                                    (stored[1:3], "at 0, 1, 2", [0, 1])):  # In these files the time differs.
@@ -74,11 +71,9 @@ class Meter(CommandLineTest):
 
     def test_steps_without_fluid(self):
         """A step without particles, or without particles of the fluid's type, gives rows like other steps, in a plane, too."""
-        plane = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
         z = self.points[0][2]
         for flat in (False, True):
-            chosen = plane if flat else range(len(self.points))
-            points, arrays = [self.points[i] for i in chosen], {name: [values[i] for i in chosen] for name, values in self.arrays.items()}
+            points, arrays = self.in_plane() if flat else (self.points, dict(self.arrays))
             arrays["Mass"] = [(10 if flat else 1) * mass for mass in arrays["Mass"]]
             one = [self.one[0], f"wall=0.1,-1,{z}:0.1,1,{z}"] if flat or self.one[0] == "--gauge" else self.one
             files.write_vtp(self.directory / "wet.vtp", points, {**arrays, "Kind": [1.0] * len(points)})

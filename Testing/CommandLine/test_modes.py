@@ -17,6 +17,7 @@ import re
 import particle_files as files
 from command_line_test import CommandLineTest, main
 
+OPTIONS = pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options"
 BOX = "-0.15,0.15,-0.4,0.4,-0.4,0.02"
 # Each mode has its input files, its output and the options that a plain command line needs.
 MODES = {
@@ -142,9 +143,9 @@ class Modes(CommandLineTest):
         files.write_image(self.directory / "many.vti", "0 99 0 99 0 9", "-0.5 -0.5 -0.5", "0.01 0.01 0.1")
         many = files.lattice(36)[0]
         (self.directory / "many.vtp").write_bytes(files.xml(many, {"SmoothingLength": [0.13] * len(many)}, form="inline"))
-        flat = [i for i, p in enumerate(self.points) if p[2] == self.points[0][2]]
-        files.write_vtp(self.directory / "flat.vtp", [(*self.points[i][:2], 0.0) for i in flat],
-                        {name: [values[i] for i in flat] for name, values in self.arrays.items() if name != "Mass"})
+        flat, arrays = self.in_plane()
+        del arrays["Mass"]
+        files.write_vtp(self.directory / "flat.vtp", [(x, y, 0.0) for x, y, _ in flat], arrays)
         beside = [(x + 0.8, y, z) for x, y, z in self.points if x < -0.1]
         files.write_vtp(self.directory / "walls.vtp", beside, {
             "SmoothingLength": [0.13] * len(beside), "Mass": [1.0] * len(beside), "Density": [1000.0] * len(beside)})
@@ -226,9 +227,19 @@ class Modes(CommandLineTest):
         listed = {option: ["x" * (option in acting[mode]) for mode in MODES] for option in TRIALS}
         self.assertEqual(said, listed)
 
+    def test_options_that_exclude_each_other(self):
+        """In either order, a sentence names both options of a row of Exclusions in Job.cxx."""
+        pairs = re.findall(r'\n  \{ "(--[\w-]+)", "(--[\w-]+)", ', (OPTIONS / "Job.cxx").read_text(encoding="utf-8"))
+        self.assertGreater(len(pairs), 9)
+        for first, second in pairs:
+            words = [f"{option}={TRIALS[option].value}".rstrip("=") for option in (first, second)]
+            for order in (words, words[::-1]):
+                with self.subTest(order):
+                    self.one_sentence(self.run_program(*STEPS, "out.pvd", *order), 2, f"{first} and {second} exclude each other: .*; leave out one")
+
     def test_what_options_need(self):
         """Without what an option needs by its row in Options.def, the sentence names what is needed."""
-        text = (pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options" / "Options.def").read_text(encoding="utf-8")
+        text = (OPTIONS / "Options.def").read_text(encoding="utf-8")
         rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
         self.assertGreater(len(rows), 15)
         for option, modes, needs in rows:

@@ -49,10 +49,8 @@ class Project(CommandLineTest):
 
     def test_plane(self):
         """For particles in a plane, the image shows the field itself."""
-        points = [(x, y, 0.5) for x, y, z in self.points if z == self.points[0][2]]
-        arrays = {name: self.arrays[name][:100] for name in ("SmoothingLength", "Density", "Mass")}
-        arrays["Mass"] = [10.0] * 100
-        files.write_vtp(self.directory / "plane.vtp", points, arrays)
+        points, arrays = self.in_plane()
+        files.write_vtp(self.directory / "plane.vtp", points, {**arrays, "Mass": [10.0] * 100})
         name, size, _, values = self.project("--project", "z", "--resolution", "15", source="plane.vtp")
         self.assertEqual((name, size), ("ColumnDensity", [15, 15, 1]))
         self.assertAlmostEqual(values[7 * 15 + 7], 1000, delta=10)
@@ -70,15 +68,12 @@ class Project(CommandLineTest):
         options = ["--project", "z", "--resolution", "9", "--box=-1,1,-1,1,-1,1"]
         self.project(*options)
         expected = self.image.read_bytes()
-        files.write_vtp(self.directory / "half.vtp", self.points[:500],
-                        {name: array[:500] for name, array in self.arrays.items()})
+        files.write_vtp(self.directory / "half.vtp", *self.chosen(lambda i: i < 500))
         files.write_vtp(self.directory / "bare.vtp", self.points, {"Mass": self.arrays["Mass"]})
         done = self.run_program(self.input, "bare.vtp", "half.vtp", "film.pvd", *options)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"film_0001.vti \(time 1\): " + says("NO_SMOOTHING_LENGTH"))
-        listed = xml.etree.ElementTree.parse(self.directory / "film.pvd").getroot().iter("DataSet")
-        self.assertEqual([(one.get("file"), one.get("timestep")) for one in listed],
-                         [("film_0000.vti", "0"), ("film_0002.vti", "2")])
+        self.assertEqual([(time, path.name) for time, path in self.listed("film.pvd")], [(0, "film_0000.vti"), (2, "film_0002.vti")])
         text = (self.directory / "film_0000.vti").read_bytes()
         self.assertEqual(re.sub(b"\n<!-- .* -->", b"", text), expected)
         self.run_good(self.input, "half.vtp", "column_%04d.vti", *options)
@@ -102,8 +97,7 @@ class Project(CommandLineTest):
                 source = self.directory / f"film_000{step}.vti"
                 self.assertEqual(self.read(source)[:3], (name, size, spacing))
                 self.assertTrue(all(map(empty, self.read(source)[3])))
-            listed = xml.etree.ElementTree.parse(self.directory / "film.pvd").getroot().iter("DataSet")
-            self.assertEqual([one.get("file") for one in listed], [f"film_000{step}.vti" for step in range(4)])
+            self.assertEqual([path.name for _, path in self.listed("film.pvd")], [f"film_000{step}.vti" for step in range(4)])
         result = self.run_program("none.vtp", "none.vtp", "nothing.pvd", *options)
         self.one_sentence(result, 1, "no particle is seen")
 

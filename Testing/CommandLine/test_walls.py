@@ -17,11 +17,9 @@ class Walls(CommandLineTest):
         self.wall = self.write("WallBoundary_0.vtp", lambda kind, point: kind == 1)
 
     def write(self, name, chosen, without=()):
-        picked = [i for i, (kind, point) in enumerate(zip(self.arrays["Kind"], self.points)) if chosen(kind, point)]
         path = self.directory / name
-        WRITERS[path.suffix](path, [self.points[i] for i in picked],
-                             {array: [values[i] for i in picked] for array, values in self.arrays.items()
-                              if array not in without})
+        points, arrays = self.chosen(lambda i: chosen(self.arrays["Kind"][i], self.points[i]))
+        WRITERS[path.suffix](path, points, {array: values for array, values in arrays.items() if array not in without})
         return path
 
     def surface(self, *options, source=None):

@@ -27,15 +27,14 @@ namespace
 const long DeepestGroup = 64; ///< a damaged file may have a circle of groups
 
 /// Holds an object of HDF5, and closes it.
-class Handle
+struct Handle
 {
-public:
+  const hid_t Id;
   explicit Handle(hid_t id)
     : Id(id)
   {
   }
   Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
   ~Handle()
   {
     if (this->Id >= 0)
@@ -43,11 +42,7 @@ public:
       H5Idec_ref(this->Id);
     }
   }
-
   operator hid_t() const { return this->Id; }
-
-private:
-  hid_t Id;
 };
 
 herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* found)
@@ -207,20 +202,16 @@ public:
   {
     std::vector<std::string> names;
     const Handle opened(this->Has(group) ? H5Gopen2(this->Root, group, H5P_DEFAULT) : -1);
-    hsize_t count = 0;
-    if (opened >= 0)
+    const auto add = [](hid_t parent, const char* name, const H5L_info_t*, void* found) -> herr_t
     {
-      H5Gget_num_objs(opened, &count);
-    }
-    for (hsize_t i = 0; i < count; ++i)
-    {
-      char name[256] = {};
-      const auto length = H5Gget_objname_by_idx(opened, i, name, sizeof(name));
-      if (length > 0 && length < 256 && H5Gget_objtype_by_idx(opened, i) == H5G_DATASET)
+      const Handle object(H5Oopen(parent, name, H5P_DEFAULT));
+      if (object >= 0 && H5Iget_type(object) == H5I_DATASET)
       {
-        names.emplace_back(name);
+        static_cast<std::vector<std::string>*>(found)->emplace_back(name);
       }
-    }
+      return 0;
+    };
+    H5Literate(opened, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
     return names;
   }
 

@@ -82,7 +82,7 @@ struct Rule
 {
   unsigned Of;
   bool (*Holds)(const Job& j);
-  const char* Sentence; ///< with {output}, {endings} and {--option}, see Filled()
+  const char* Sentence; ///< with {output}, {endings} and {--option}, see Check()
 };
 #define IF(...) [](const Job& j) -> bool { return __VA_ARGS__; }
 
@@ -181,6 +181,9 @@ const std::vector<Rule> Rules = {
   { CONTOUR | POINTS, IF(j.Has("--derive") && !UsesDerived(j)),
     "what --derive makes is neither the --scalar nor among the --attributes; ask for one of its "
     "arrays, or leave out --derive" },
+  { ALL, IF(LaunchedCount() > 1 && (j.Has("--screenshot") || j.Repeat > 1)),
+    "several processes share a surface, a film, a probe, a projection, gauges or fluxes, but no "
+    "--screenshot or --repeat; run these without mpirun" },
   { ALL,
     IF(j.Has("--support-radius") && (j.NeighborRatio > 0.0 || j.SmoothingLength == "estimate")),
     "--support-radius is for a smoothing length that is given, not for an estimate; leave out "
@@ -193,25 +196,6 @@ const std::vector<Rule> Rules = {
     "--max-level is for adaptive cubes; leave out --max-level, or --cubes uniform" },
 };
 #undef IF
-
-/// Returns the sentence with values in place of the names in braces.
-std::string Filled(std::string sentence, const Job& job)
-{
-  for (std::size_t at = 0; (at = sentence.find('{', at)) != std::string::npos;)
-  {
-    const std::size_t end = sentence.find('}', at);
-    const std::string name = sentence.substr(at + 1, end - at - 1);
-    std::string said = vtkSPHSay(MCOR_SAY(WALL_SHARE_IN_VAIN), "add --solids wall");
-    said.pop_back(); // "(see --help)" follows, not a full stop
-    const std::string text = name == "output" ? job.Output
-      : name == "WALL_SHARE_IN_VAIN"          ? said
-      : name == "endings"                     ? SurfaceFileEndings()
-                                              : job.Given.at(name);
-    sentence.replace(at, end + 1 - at, text);
-    at += text.size();
-  }
-  return sentence;
-}
 
 /// Returns the option of this name; nullptr if there is none.
 const Option* FindOption(const std::string& name)
@@ -288,7 +272,16 @@ void Check(const Job& job)
   {
     if ((rule.Of & mode) && rule.Holds(job))
     {
-      throw UsageError(Filled(rule.Sentence, job));
+      const auto valueOf = [&job](const std::string& name)
+      {
+        std::string inVain = vtkSPHSay(MCOR_SAY(WALL_SHARE_IN_VAIN), "add --solids wall");
+        inVain.pop_back(); // "(see --help)" follows, not a full stop
+        return name == "output"          ? job.Output
+          : name == "WALL_SHARE_IN_VAIN" ? inVain
+          : name == "endings"            ? SurfaceFileEndings()
+                                         : job.Text(name.c_str());
+      };
+      throw UsageError(Filled(rule.Sentence, valueOf));
     }
   }
 }
@@ -341,9 +334,9 @@ std::vector<std::string> Job::InputFiles() const
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
   files.insert(
     files.end(), { this->Text("--probe"), this->Text("--gauges"), this->Text("--fluxes") });
-  for (const Place& section : this->Fluxes)
+  for (const Place& place : this->Places)
   {
-    files.push_back(section.File);
+    files.push_back(place.File);
   }
   return files;
 }

@@ -56,21 +56,14 @@ struct SliceOptions
   int Resolution = 512;     ///< points along the longest side
 };
 
+struct Job;
+
 /// A place to measure at: the line of a gauge, or a section that fluid flows through.
 struct Place
 {
   std::string Name;
-  std::vector<double> Numbers;
-  std::string File; ///< a section's triangles; empty: the numbers tell the section
-  /// Adds the section to the filter.
-  void (*Add)(vtkSPHFlux* flux, const char* name, const double* numbers) = nullptr;
-};
-
-/// Many upright gauges, over a rectangle.
-struct GaugeGrid
-{
-  int Counts[2] = { 0, 0 }; ///< along x and y; 0: there is no grid
-  std::array<double, 6> Bounds = {};
+  std::string File; ///< a section's triangles; empty: numbers tell the place
+  std::function<void(const Job& job)> Add; ///< adds the place to the job's filter
 };
 
 /// What a command line asks for: the filters, set up as far as possible before the input is read,
@@ -121,9 +114,9 @@ struct Job
   bool HasTimes() const { return !this->Times.empty() || this->FramesPerSecond > 0.0; }
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
   SliceOptions Slice;
-  std::vector<Place> Gauges;
-  GaugeGrid Grid;        ///< if it is given, there are no other gauges
-  std::vector<Place> Fluxes;
+  std::vector<Place> Places; ///< gauges, or sections
+  /// Upright gauges over a rectangle: counts along x and y, and bounds. Empty, or the only gauges.
+  std::vector<double> Grid;
   /// The particles get the gradient of this array, and what follows from the gradient.
   std::string Derive;
 
@@ -166,15 +159,15 @@ const std::vector<Option>& AllOptions();
 Place ToGauge(const std::string& option, const std::string& text);
 
 /// Reads nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
-GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
+std::vector<double> ToGaugeGrid(const std::string& option, const std::string& text);
 
 /// Reads NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Lists the places of the options and of their files, in the order of the options. Throws
-/// UsageError if two places have one name, or std::runtime_error if a file cannot be read.
-std::vector<Place> ListGauges(const Job& job);
-std::vector<Place> ListSections(const Job& job);
+/// Adds the places of the options, then those of their file, to the job's filter of fluxes or of
+/// gauges. Returns how many there are. Throws UsageError if two places have one name, or
+/// std::runtime_error if a file cannot be read.
+std::size_t AddPlaces(const Job& job);
 
 /// Reads the command line into the job. Throws UsageError, see Text.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);

@@ -3,9 +3,11 @@
 #include "Job.h"
 
 #include "Formats.h"
+#include "ParticleFile.h"
 #include "Text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -44,37 +46,6 @@ std::string ToRowName(Text option, Text noun, Text text)
   return name;
 }
 
-/// Returns the places, followed by the places in the option's file, if the option is given. Each line of the file is a
-/// place, unless it is empty or begins with #.
-std::vector<Place> WithFile(std::vector<Place> places, const Job& job, const char* option,
-  Text nouns, Text form, Place (*parse)(Text option, Text text))
-{
-  if (job.Has(option))
-  {
-    const std::string file = job.Text(option), origin = option + (" " + file);
-    CheckRegularFile(file); // /dev/zero and some pipes never end, so reading stops here
-    std::ifstream source(file, std::ios::binary);
-    const std::size_t before = places.size();
-    for (std::string line; std::getline(source, line);)
-    {
-      const std::size_t first = line.find_first_not_of(" \t\r");
-      if (first != std::string::npos && line[first] != '#')
-      {
-        const std::size_t last = line.find_last_not_of(" \t\r");
-        places.push_back(parse(origin, line.substr(first, last + 1 - first)));
-      }
-    }
-    Need(places.size() > before, origin + " has no " + nouns + "; it needs lines " + form);
-  }
-  std::set<std::string> known;
-  for (const Place& place : places)
-  {
-    Need(known.insert(place.Name).second,
-      "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
-  }
-  return places;
-}
-
 }
 
 Place ToGauge(Text option, Text text)
@@ -84,30 +55,27 @@ Place ToGauge(Text option, Text text)
     ParsePlaces(text.substr(std::min(equals + 1, text.size())), { 3, 3 });
   Need(
     equals > 0 && !ends.empty(), option, std::string("a name and two places, ") + GaugeForm, text);
-  const Place gauge = { ToRowName(option, "gauge", text.substr(0, equals)), ends, "" };
+  const std::string name = ToRowName(option, "gauge", text.substr(0, equals));
   Need(!std::equal(ends.begin(), ends.begin() + 3, ends.begin() + 3),
-    option + ": gauge '" + gauge.Name +
+    option + ": gauge '" + name +
       "' has no length, because both its ends are the same; give it two");
-  return gauge;
+  return { name, "",
+    [name, e = ends](const Job& job)
+    { job.Gauge->AddGauge(name.c_str(), e[0], e[1], e[2], e[3], e[4], e[5]); } };
 }
 
-GaugeGrid ToGaugeGrid(Text option, Text text)
+std::vector<double> ToGaugeGrid(Text option, Text text)
 {
-  GaugeGrid grid;
   const std::vector<double> n = ParsePlaces(text, { 2, 6 });
   Need(!n.empty() && n[2] <= n[3] && n[4] <= n[5] && n[6] < n[7], option,
     "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
-  std::copy(n.begin() + 2, n.end(), grid.Bounds.begin());
-  for (std::size_t a = 0; a < 2; ++a)
-  {
-    grid.Counts[a] = static_cast<int>(std::clamp(n[a], 0.0, 1e6));
-    Need(n[a] >= 1.0 && n[a] == grid.Counts[a], option, "whole numbers of gauges, 1 or more", text);
-  }
-  Need(static_cast<double>(grid.Counts[0]) * grid.Counts[1] <= 1e6,
+  Need(std::min(n[0], n[1]) >= 1.0 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]), option,
+    "whole numbers of gauges, 1 or more", text);
+  Need(n[0] * n[1] <= 1e6,
     option +
       " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of "
       "the bounds at a time");
-  return grid;
+  return n;
 }
 
 Place ToFlux(Text option, Text text)
@@ -116,7 +84,7 @@ Place ToFlux(Text option, Text text)
   {
     const char* Begin;
     std::vector<std::size_t> Counts;
-    decltype(Place::Add) Add;
+    void (*Add)(vtkSPHFlux* flux, const char* name, const double* n);
   } forms[] = {
     { "disc:", { 3, 3, 1 },
       [](auto* flux, auto* name, auto* n) { flux->AddDisc(name, n, n + 3, n[6]); } },
@@ -128,53 +96,78 @@ Place ToFlux(Text option, Text text)
   const std::size_t equals = text.find('=');
   const bool isNamed = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
   Need(isNamed, option, std::string("a section with a name, ") + FluxForm, text);
-  Place section;
-  section.Name = ToRowName(option, "section", text.substr(0, equals));
+  const std::string name = ToRowName(option, "section", text.substr(0, equals));
+  const std::string section = text.substr(equals + 1);
   for (const char* ending : { ".vtp", ".vtu", ".vtk", ".stl", ".ply", ".obj" })
   {
     if (EndsWith(text, ending))
     {
-      section.File = text.substr(equals + 1);
-      return section;
+      return { name, section,
+        [name, section](const Job& job)
+        { job.Flux->AddSurface(name.c_str(), ReadDataSet(section)); } };
     }
   }
   for (const auto& form : forms)
   {
     const std::string begin = form.Begin;
-    section.Add = form.Add;
-    section.Numbers =
-      ParsePlaces(text.substr(std::min(equals + 1 + begin.size(), text.size())), form.Counts);
-    if (text.compare(equals + 1, begin.size(), begin) == 0 && !section.Numbers.empty())
+    const std::vector<double> numbers = section.compare(0, begin.size(), begin) == 0
+      ? ParsePlaces(section.substr(begin.size()), form.Counts)
+      : std::vector<double>();
+    if (!numbers.empty())
     {
-      return section;
+      return { name, "",
+        [name, numbers, add = form.Add](const Job& job)
+        { add(job.Flux, name.c_str(), numbers.data()); } };
     }
   }
   throw UsageError(option + " needs a section with a name, " + FluxForm + ", not '" + text + "'");
 }
 
-std::vector<Place> ListGauges(const Job& job)
+std::size_t AddPlaces(const Job& job)
 {
-  std::vector<Place> gauges = WithFile(job.Gauges, job, "--gauges", "gauges", GaugeForm, ToGauge);
-  const std::array<double, 6>& b = job.Grid.Bounds;
-  const auto at = [&job, &b](std::size_t axis, int i)
+  const bool isFlux = job.Mode() == FLUX;
+  const char* option = isFlux ? "--fluxes" : "--gauges";
+  const std::string nouns = isFlux ? "sections" : "gauges";
+  std::vector<Place> places = job.Places;
+  if (job.Has(option))
   {
-    const int last = job.Grid.Counts[axis] - 1;
-    const double t = last > 0 ? static_cast<double>(i) / last : 0.0;
-    return (1.0 - t) * b[2 * axis] + t * b[2 * axis + 1];
+    const std::string file = job.Text(option), origin = option + (" " + file);
+    CheckRegularFile(file); // /dev/zero and some pipes never end, so reading stops here
+    std::ifstream source(file, std::ios::binary);
+    for (std::string line; std::getline(source, line);)
+    {
+      const std::size_t first = line.find_first_not_of(" \t\r");
+      if (first != std::string::npos && line[first] != '#')
+      {
+        const std::size_t last = line.find_last_not_of(" \t\r");
+        places.push_back(
+          (isFlux ? ToFlux : ToGauge)(origin, line.substr(first, last + 1 - first)));
+      }
+    }
+    Need(places.size() > job.Places.size(),
+      origin + " has no " + nouns + "; it needs lines " + (isFlux ? FluxForm : GaugeForm));
+  }
+  std::set<std::string> known;
+  for (const Place& place : places)
+  {
+    Need(known.insert(place.Name).second,
+      "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
+    place.Add(job);
+  }
+  const std::vector<double> n = job.Grid.empty() ? std::vector<double>(8) : job.Grid;
+  const auto at = [&n](std::size_t axis, int i)
+  {
+    const double t = n[axis] > 1.0 ? i / (n[axis] - 1.0) : 0.0;
+    return (1.0 - t) * n[2 + 2 * axis] + t * n[3 + 2 * axis];
   };
-  for (int j = 0; j < job.Grid.Counts[1]; ++j)
+  for (int j = 0; j < n[1]; ++j)
   {
-    for (int i = 0; i < job.Grid.Counts[0]; ++i)
+    for (int i = 0; i < n[0]; ++i)
     {
       const double x = at(0, i), y = at(1, j);
-      gauges.push_back(
-        { std::to_string(i) + " " + std::to_string(j), { x, y, b[4], x, y, b[5] }, "" });
+      const std::string name = std::to_string(i) + " " + std::to_string(j);
+      job.Gauge->AddGauge(name.c_str(), x, y, n[6], x, y, n[7]);
     }
   }
-  return gauges;
-}
-
-std::vector<Place> ListSections(const Job& job)
-{
-  return WithFile(job.Fluxes, job, "--fluxes", "sections", FluxForm, ToFlux);
+  return places.size() + static_cast<std::size_t>(n[0] * n[1]);
 }

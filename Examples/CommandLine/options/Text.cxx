@@ -179,6 +179,19 @@ std::string Joined(const std::vector<std::string>& texts, const std::string& sig
   return joined;
 }
 
+std::string Filled(
+  std::string text, const std::function<std::string(const std::string& name)>& valueOf)
+{
+  for (std::size_t at = 0; (at = text.find('{', at)) != std::string::npos;)
+  {
+    const std::size_t end = text.find('}', at);
+    const std::string value = valueOf(text.substr(at + 1, end - at - 1));
+    text.replace(at, end + 1 - at, value);
+    at += value.size();
+  }
+  return text;
+}
+
 std::string FailureOf(const std::function<void()>& work)
 {
   try
@@ -334,12 +347,12 @@ std::string ToQuantity(Text option, Text text)
   return Printable(text);
 }
 
-std::vector<double> ToNumbers(Text option, Text text)
+std::vector<double> ToNumbers(Text option, Text text, double (*read)(Text option, Text text))
 {
   std::vector<double> values;
   for (Text item : ItemsOf(text))
   {
-    values.push_back(ToNumber(option, item));
+    values.push_back(read(option, item));
   }
   return values;
 }
@@ -352,11 +365,7 @@ double ToLimit(Text option, Text text)
 
 std::vector<double> ToBox(Text option, Text text)
 {
-  std::vector<double> box;
-  for (Text item : ItemsOf(text))
-  {
-    box.push_back(ToLimit(option, item));
-  }
+  const std::vector<double> box = ToNumbers(option, text, ToLimit);
   Need(box.size() == 6, option, "six numbers, x0,x1,y0,y1,z0,z1", text);
   for (std::size_t a = 0; a < 3; ++a)
   {

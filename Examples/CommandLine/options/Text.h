@@ -66,6 +66,10 @@ std::string EscapedForXml(const std::string& text);
 std::string Joined(const std::vector<std::string>& texts, const std::string& sign = ", ",
   const char* last = nullptr);
 
+/// Returns the text with valueOf(NAME) in place of each {NAME}.
+std::string Filled(
+  std::string text, const std::function<std::string(const std::string& name)>& valueOf);
+
 // ---- Values of options ----
 
 /// Wrong usage; what() is one sentence.
@@ -103,7 +107,8 @@ int ToChoice(const std::string& option, const std::string& text, const Choices& 
 /// Accepts an array name, or a constant, which must be greater than 0.
 std::string ToQuantity(const std::string& option, const std::string& text);
 double ToLimit(const std::string& option, const std::string& text); ///< may be inf or -inf
-std::vector<double> ToNumbers(const std::string& option, const std::string& text);
+std::vector<double> ToNumbers(const std::string& option, const std::string& text,
+  double (*read)(const std::string& option, const std::string& text) = ToNumber);
 /// Returns x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.
 std::vector<double> ToBox(const std::string& option, const std::string& text);
 ///@}

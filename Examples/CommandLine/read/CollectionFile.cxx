@@ -153,13 +153,12 @@ std::vector<CollectionEntry> ReadCollection(
   std::vector<double> again;
   for (const CollectionEntry& entry : entries)
   {
-    const auto same = std::find_if(kept.begin(), kept.end(),
+    const auto ofTime = std::lower_bound(kept.begin(), kept.end(), entry.Time,
+      [](const CollectionEntry& other, double time) { return other.Time < time; });
+    const auto same = std::find_if(isSeries ? kept.end() : ofTime, kept.end(),
       [&entry](const CollectionEntry& other)
-      {
-        return other.Time == entry.Time &&
-          (other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part));
-      });
-    if (isSeries || same == kept.end())
+      { return other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part); });
+    if (same == kept.end())
     {
       kept.push_back(entry);
       continue;

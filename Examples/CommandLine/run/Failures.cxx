@@ -26,17 +26,15 @@
 namespace
 {
 
-/// Signals that people and batch systems send to end a program.
-const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
-
-/// All ending signals; and those that were not ignored at the start. nohup ignores hangups.
+/// All signals that people and batch systems send to end a program; and those that were not ignored at
+/// the start. nohup ignores hangups.
 sigset_t All, Awaited;
 
 void FindAwaited()
 {
   sigemptyset(&All);
   sigemptyset(&Awaited);
-  for (const int number : EndingSignals)
+  for (const int number : { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 })
   {
     struct sigaction action = {};
     sigaddset(&All, number);

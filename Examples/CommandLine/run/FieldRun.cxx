@@ -14,6 +14,7 @@
 #include "Sharing.h"
 #include "Text.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
@@ -32,6 +33,8 @@
 
 namespace
 {
+
+const char* const MaskName = "vtkValidPointMask";
 
 /// Makes points on the part of a line that lies in --box, with their distance from the line's
 /// beginning, for plots.
@@ -120,13 +123,12 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 /// Treats points of a file that are not in --box as points without fluid.
 void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
-  const double* box = job.Surface->GetBox();
+  const vtkBoundingBox box(job.Surface->GetBox());
   const bool isAsked = job.Has("--probe") && job.Surface->GetUseBox();
   for (vtkIdType i = 0; isAsked && i < result->GetNumberOfPoints(); ++i)
   {
     const double* x = result->GetPoint(i);
-    const bool isIn = x[0] >= box[0] && x[0] <= box[1] && x[1] >= box[2] && x[1] <= box[3] &&
-      x[2] >= box[4] && x[2] <= box[5];
+    const bool isIn = box.ContainsPoint(x);
     for (vtkAbstractArray* each : ArraysOf(result->GetPointData()))
     {
       auto* array = vtkDataArray::SafeDownCast(each);
@@ -139,11 +141,52 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
   }
 }
 
+/// Adds a row for each point. The first step decides on the columns. A value is empty if there is
+/// no fluid at the point, or no such array.
+void AddPointRows(const Job& job, double time, vtkDataSet* points,
+  std::vector<std::pair<std::string, int>>& columns, std::string& text)
+{
+  auto* probed = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
+  HideOutside(job, points, probed);
+  vtkPointData* arrays = probed->GetPointData();
+  if (columns.empty())
+  {
+    text = "time,point,x,y,z,valid";
+    for (vtkAbstractArray* array : ArraysOf(arrays))
+    {
+      const std::string name = array->GetName();
+      const int components = array->GetNumberOfComponents();
+      for (int c = 0; name != MaskName && c < components; ++c)
+      {
+        columns.emplace_back(name, c);
+        text += "," + TableField(name + (components > 1 ? ":" + std::to_string(c) : ""));
+      }
+    }
+    text += "\n";
+  }
+  vtkDataArray* mask = arrays->GetArray(MaskName);
+  for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
+  {
+    const double* x = points->GetPoint(p);
+    const bool isValid = mask && mask->GetComponent(p, 0) > 0.0;
+    text += Joined({ DigitsOf(time), std::to_string(p), DigitsOf(x[0]), DigitsOf(x[1]),
+                     DigitsOf(x[2]), isValid ? "1" : "0" },
+      ",");
+    for (const auto& [name, component] : columns)
+    {
+      vtkAbstractArray* array = arrays->GetAbstractArray(name.c_str());
+      const bool isOwn = points->GetPointData()->HasArray(name.c_str());
+      text += "," + (array && (isValid || isOwn) ? TableField(array, p, component) : std::string());
+    }
+    text += "\n";
+  }
+}
+
 /// Returns a line of text about the points, or about the image.
 std::string Describe(vtkDataSet* data)
 {
   std::ostringstream line;
-  if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray("vtkValidPointMask")))
+  if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray(MaskName)))
   {
     const char* begin = mask->GetPointer(0);
     line << "points      " << data->GetNumberOfPoints() << ", "
@@ -157,6 +200,23 @@ std::string Describe(vtkDataSet* data)
   return line.str();
 }
 
+}
+
+double Evaluate(Sharing& sharing, vtkPointSet* particles, vtkDataSet* points,
+  const std::string& progress)
+{
+  const Job& job = sharing.Options;
+  vtkSPHAlgorithm* const filter =
+    points ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
+  double seconds = 0.0;
+  sharing.OnAll(
+    [&] { filter->SetInputDataObject(points ? 1 : 0, SetUpParticles(filter, job, particles)); });
+  if (points)
+  {
+    filter->SetInputDataObject(0, points);
+  }
+  sharing.OnAll([&] { seconds = Update(filter, sharing, progress); });
+  return seconds;
 }
 
 vtkImageData* SeenImage(const Job& job)
@@ -175,133 +235,70 @@ std::string DescribeSize(vtkImageData* image)
   return text.str();
 }
 
-std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file,
+std::string Draw(const Job& job, const std::string& file, vtkDataSet* data, vtkDataSet* frame,
   const Picture& picture, ColorScale& colors)
 {
-  vtkSmartPointer<vtkDataSet> shown = field;
-  std::string name;
+  vtkSmartPointer<vtkDataSet> shown = data;
+  std::string name = job.Picture.ColorBy;
   int axis = job.Slice.Axis;
-  if (job.Mode() & POINTS)
+  if (job.Mode() & CONTOUR)
+  {
+    colors.Suggest(data, job.Surface->GetIsoValueArrayName());
+    name = colors.GetName();
+  }
+  else if (job.Mode() & POINTS)
   {
     vtkNew<vtkThreshold> valid; // without this, arrays would be 0 elsewhere, which looks like a value
-    valid->SetInputData(field);
-    valid->SetInputArrayToProcess(
-      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
+    valid->SetInputData(data);
+    valid->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, MaskName);
     valid->SetLowerThreshold(0.5);
     valid->SetUpperThreshold(2.0);
     valid->Update();
     shown = valid->GetOutput();
-    name = vtkSPHChooseArray(shown->GetPointData());
+    name = name.empty() ? vtkSPHChooseArray(shown->GetPointData()) : name;
     name = name.empty() ? "WeightSum" : name;
   }
   else
   {
     const double* sight = job.Projection->GetDirection();
-    name = field->GetPointData()->GetScalars()->GetName();
+    name = name.empty() ? data->GetPointData()->GetScalars()->GetName() : name;
     axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
-    axis = vtkImageData::SafeDownCast(field)->GetDimensions()[axis] == 1 ? axis : -1;
+    axis = vtkImageData::SafeDownCast(data)->GetDimensions()[axis] == 1 ? axis : -1;
   }
-  colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
+  colors.SetName(name);
   colors.Include(shown);
-  return picture(file, shown, field, colors, axis);
+  return picture(file, shown, frame, colors, axis);
 }
 
-namespace
+void WritePicture(const Job& job, vtkDataSet* data, vtkDataSet* frame, ColorScale& colors)
 {
-
-/// Makes a table of the field at the points of a file, with a row for each step and point.
-class PointTable : public TableSeries
-{
-public:
-  explicit PointTable(Sharing& sharing)
-    : TableSeries(sharing, sharing.Options.Output)
+  const std::string& file = job.Picture.File;
+  if (!file.empty())
   {
-    sharing.OnFirst([this] { this->Points = ReadDataSet(this->Options.Text("--probe")); });
+    WriteOutput(
+      file, Draw(job, file, data, frame, LoadExtra().NewPicture(job.Picture), colors));
   }
-
-  bool Make()
-  {
-    return this->TableSeries::Make(std::to_string(this->Points->GetNumberOfPoints()) + " points");
-  }
-
-private:
-  void AddRows(std::size_t i, vtkPointSet* particles) override
-  {
-    vtkSPHProbe* probe = this->Options.Probe;
-    this->Shared.OnAll(
-      [&]
-      {
-        probe->SetInputDataObject(1, SetUpParticles(probe, this->Options, particles));
-        probe->SetInputDataObject(0, this->Points);
-        Update(probe, this->Shared, this->Progress(i));
-      });
-    this->Shared.OnFirst(
-      [&]
-      {
-        auto* probed = vtkDataSet::SafeDownCast(probe->GetOutput());
-        HideOutside(this->Options, this->Points, probed);
-        this->AddRows(this->Times.Get()[i], probed);
-      });
-  }
-
-  /// Adds a row for each point. The first step decides on the columns. A value is empty if there is
-  /// no fluid at the point, or no such array.
-  void AddRows(double time, vtkDataSet* points)
-  {
-    vtkPointData* arrays = points->GetPointData();
-    if (this->Columns.empty())
-    {
-      this->Text = "time,point,x,y,z,valid";
-      for (vtkAbstractArray* array : ArraysOf(arrays))
-      {
-        const std::string name = array->GetName();
-        const int components = array->GetNumberOfComponents();
-        for (int c = 0; name != MaskName && c < components; ++c)
-        {
-          this->Columns.emplace_back(name, c);
-          this->Text += "," + TableField(name + (components > 1 ? ":" + std::to_string(c) : ""));
-        }
-      }
-      this->Text += "\n";
-    }
-    vtkDataArray* mask = arrays->GetArray(MaskName);
-    for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
-    {
-      const double* x = points->GetPoint(p);
-      const bool isValid = mask && mask->GetComponent(p, 0) > 0.0;
-      this->Text += Joined({ DigitsOf(time), std::to_string(p), DigitsOf(x[0]), DigitsOf(x[1]),
-                             DigitsOf(x[2]), isValid ? "1" : "0" },
-        ",");
-      for (const auto& [name, component] : this->Columns)
-      {
-        vtkAbstractArray* array = arrays->GetAbstractArray(name.c_str());
-        const bool isOwn = this->Points->GetPointData()->HasArray(name.c_str());
-        this->Text +=
-          "," + (array && (isValid || isOwn) ? TableField(array, p, component) : std::string());
-      }
-      this->Text += "\n";
-    }
-  }
-
-  static constexpr const char* MaskName = "vtkValidPointMask";
-  vtkSmartPointer<vtkDataSet> Points = vtkSmartPointer<vtkPolyData>::New(); ///< empty on others
-  std::vector<std::pair<std::string, int>> Columns; ///< the columns' arrays and components
-};
-
 }
 
 bool MakePointTable(Sharing& sharing)
 {
-  return PointTable(sharing).Make();
+  const Job& job = sharing.Options;
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // empty on others
+  sharing.OnFirst([&] { points = ReadDataSet(job.Text("--probe")); });
+  std::vector<std::pair<std::string, int>> columns; // the columns' arrays and components
+  const auto addRows = [&](const ParticleTimes::Moment& moment, std::string& text)
+  {
+    Evaluate(sharing, moment.Particles, points, moment.Progress);
+    sharing.OnFirst([&] { AddPointRows(job, moment.Time, points, columns, text); });
+  };
+  return MakeTable(sharing, std::to_string(points->GetNumberOfPoints()) + " points", addRows,
+    [] { return ""; });
 }
 
 bool MakeField(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  const bool isProbe = job.Mode() & POINTS;
-  vtkSPHAlgorithm* const filter =
-    isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // empty on others
+  vtkSmartPointer<vtkDataSet> points; // null for a projection
   sharing.OnFirst(
     [&]
     {
@@ -313,24 +310,16 @@ bool MakeField(Sharing& sharing)
         CheckDataSetFile(job.Output, points);
       }
     });
-  const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
-  double seconds = 0.0;
-  sharing.OnAll(
-    [&]
+  const vtkSmartPointer<vtkPointSet> particles = sharing.ReadInput();
+  if (job.Mode() & POINTS)
+  {
+    sharing.OnAll([&] { points = job.Has("--probe") ? points : MakePoints(job, particles); });
+    if (!sharing.IsFirst())
     {
-      if (isProbe && !job.Has("--probe"))
-      {
-        const vtkSmartPointer<vtkDataSet> made = MakePoints(job, particles);
-        points = sharing.IsFirst() ? made : points;
-      }
-      const vtkSmartPointer<vtkPointSet> source = SetUpParticles(filter, job, particles);
-      filter->SetInputDataObject(isProbe ? 1 : 0, source);
-      if (isProbe)
-      {
-        filter->SetInputDataObject(0, points);
-      }
-    });
-  sharing.OnAll([&] { seconds = Update(filter, sharing); });
+      points = vtkSmartPointer<vtkPolyData>::New();
+    }
+  }
+  const double seconds = Evaluate(sharing, particles, points, "");
   sharing.OnFirst(
     [&]
     {
@@ -339,19 +328,15 @@ bool MakeField(Sharing& sharing)
         Say("warning: " + warning);
       }
       vtkDataSet* result =
-        isProbe ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
+        points ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
       HideOutside(job, points, result);
       if (!job.Has("--quiet"))
       {
         std::cout << Describe(result) << "seconds     " << seconds << "\n";
       }
       WriteDataSet(job.Output, result);
-      if (!job.Picture.File.empty())
-      {
-        ColorScale colors(job.Picture);
-        const Picture picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(job.Picture.File, DrawField(job, result, job.Picture.File, picture, colors));
-      }
+      ColorScale colors(job.Picture);
+      WritePicture(job, result, result, colors);
     });
   return true;
 }

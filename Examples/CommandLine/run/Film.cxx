@@ -61,36 +61,39 @@ vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
   return empty;
 }
 
-class Film : public Series
+/// Makes a surface, or an image, for each time, with the lists, tables and pictures that belong to them.
+class Film
 {
 public:
   explicit Film(Sharing& sharing)
-    : Series(sharing)
-    , Surfaces(ListSurfaces(this->Options, this->Times.Get().size()))
-    , Colors(this->Options.Picture)
-    , FrameColors(this->Options.Picture)
-    , ListFile(IsCollectionFile(this->Options.Output) ? this->Options.Output : "")
-    , PieceFile(this->Options.Text("--components"))
-    , NumberFile(this->Options.Text("--numbers"))
+    : Shared(sharing)
+    , Options(sharing.Options)
+    , Times(sharing)
+    , Surfaces(ListSurfaces(Options, Times.Get().size()))
+    , IsListed(IsCollectionFile(Options.Output))
+    , Colors(Options.Picture)
+    , FrameColors(Options.Picture)
+    , ListFile(IsListed ? Options.Output : "")
+    , PieceFile(Options.Text("--components"))
+    , NumberFile(Options.Text("--numbers"))
   {
     const Job& job = this->Options;
     if (job.Has("--numbers"))
     {
-      AddGauges(job);
+      AddPlaces(job);
     }
+    std::vector<std::string> outputs = this->Surfaces;
+    for (std::size_t i = 0; !job.Picture.File.empty() && i < this->Surfaces.size(); ++i)
+    {
+      outputs.push_back(NameOfStep(job.Picture.File, i));
+    }
+    outputs.insert(outputs.end(),
+      { job.Text("--stats"), job.Text("--components"), job.Text("--numbers"),
+        this->IsListed ? job.Output : "" });
     sharing.OnFirst(
-      [this, &job]
+      [&]
       {
-        std::vector<std::string> outputs = this->Surfaces;
-        for (std::size_t i = 0; !job.Picture.File.empty() && i < this->Surfaces.size(); ++i)
-        {
-          outputs.push_back(NameOfStep(job.Picture.File, i));
-        }
-        outputs.insert(outputs.end(),
-          { job.Text("--stats"), job.Text("--components"), job.Text("--numbers"),
-            IsCollectionFile(job.Output) ? job.Output : "" });
-        this->Times.OpenFiles();
-        CheckOutputs(outputs);
+        this->Times.CheckFiles(outputs);
         Need(Printable(job.Output) == job.Output,
           job.Output + " has characters in its name that a .pvd file cannot hold");
         // The user has not named the files beside a .pvd file, so each must be new, or a step of an
@@ -98,7 +101,7 @@ public:
         for (const std::string& surface : this->Surfaces)
         {
           std::error_code error;
-          Need(!IsCollectionFile(job.Output) || !fs::exists(fs::symlink_status(surface, error)) ||
+          Need(!this->IsListed || !fs::exists(fs::symlink_status(surface, error)) ||
               IsFilmStep(surface),
             vtkSPHSay(MCOR_SAY(FILM_STEP_TAKEN), surface.c_str()));
         }
@@ -111,7 +114,11 @@ public:
 
   bool Make()
   {
-    const bool isGood = this->MakeAll();
+    const bool isGood = this->Times.ForEach(
+      this->Surfaces,
+      [this](Moment& moment)
+      { this->Options.Has("--project") ? this->MakeImage(moment) : this->MakeSurface(moment); },
+      [this](const Moment& moment) { this->Report(moment, nullptr, 0.0); });
     this->Shared.OnFirst(
       [this]
       {
@@ -131,45 +138,20 @@ public:
   }
 
 private:
-  std::string Label(std::size_t i) const override
-  {
-    return this->Surfaces[i] + " (time " + TimeText(this->Times.Get()[i]) + ")";
-  }
+  using Moment = ParticleTimes::Moment;
 
-  bool IsOfTimes() const override
-  {
-    return this->Options.Has("--numbers") || this->Options.Has("--components");
-  }
-
-  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
-  {
-    const std::string progress = "step " + std::to_string(i + 1) + " of " +
-      std::to_string(this->Surfaces.size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
-    this->Options.Has("--project") ? this->MakeImage(i, particles, progress, warnings)
-                                   : this->MakeSurface(i, particles, progress, warnings);
-  }
-
-  void Miss(std::size_t i, const std::string& error) override
-  {
-    const double time = this->Times.Get()[i];
-    this->Reports.push_back(StepAsJson(time, this->Times.ListFiles(time), error, nullptr, 0.0));
-  }
-
-  void MakeImage(std::size_t i, vtkPointSet* particles, const std::string& progress,
-    std::vector<std::string>& warnings)
+  void MakeImage(Moment& moment)
   {
     vtkSPHProjection* projection = this->Options.Projection;
-    double seconds = 0.0;
-    this->Shared.OnAll(
-      [&] { projection->SetInputData(SetUpParticles(projection, this->Options, particles)); });
-    this->Shared.OnAll([&] { seconds = Update(projection, this->Shared, progress); });
-    Messages().AddWarningsTo(warnings);
+    const double seconds = Evaluate(this->Shared, moment.Particles, nullptr, moment.Progress);
+    Messages().AddWarningsTo(moment.Warnings);
     this->Shared.OnFirst(
       [&]
       {
         vtkImageData* image = projection->GetImage();
         const bool isSeen = image->GetNumberOfPoints() > 0 && image->GetPointData()->GetScalars();
-        this->Waiting.emplace_back(i, seconds);
+        this->Waiting.emplace_back(moment, seconds);
+        this->Waiting.back().first.Particles = nullptr; // many steps may wait
         if (isSeen)
         {
           this->Empty = EmptyImage(this->Options, image);
@@ -178,85 +160,84 @@ private:
         {
           for (const auto& [step, cost] : std::exchange(this->Waiting, {}))
           {
-            vtkImageData* shown = isSeen && step == i ? image : this->Empty.Get();
-            this->Write(step, DataSetBytes(this->Surfaces[step], shown),
+            const bool isOwn = isSeen && step.Number == moment.Number;
+            vtkImageData* shown = isOwn ? image : this->Empty.Get();
+            this->Write(step, DataSetBytes(this->Surfaces[step.Number], shown),
               [&](const std::string& frame)
-              { return DrawField(this->Options, shown, frame, this->Drawn, this->FrameColors); });
+              { return Draw(this->Options, frame, shown, shown, this->Drawn, this->FrameColors); });
             this->Keep(step, nullptr, DescribeSize(shown), cost);
           }
         }
       });
   }
 
-  void MakeSurface(std::size_t i, vtkPointSet* particles, const std::string& progress,
-    std::vector<std::string>& warnings)
+  void MakeSurface(Moment& moment)
   {
-    const double time = this->Times.Get()[i];
-    Run run;
-    this->Shared.OnAll(
-      [&]
-      {
-        SetUpSurface(this->Options, particles);
-        run = Extract(this->Shared, progress);
-      });
-    this->Shared.OnAll([&] { AddPieces(this->Pieces, this->Shared, run, particles, time); });
+    vtkPointSet* particles = moment.Particles;
+    Run run = Extract(this->Shared, particles, this->Pieces, moment.Time, moment.Progress);
     if (const vtkSmartPointer<vtkPolyData> whole = this->Shared.Merge(run.Surface))
     {
       run.Surface = whole;
     }
-    this->Shared.OnAll([&] { AddFilmNumbers(this->Numbers, this->Shared, run, particles, time); });
+    this->Shared.OnAll(
+      [&] { AddFilmNumbers(this->Numbers, this->Shared, run, particles, moment.Time); });
     this->Shared.OnFirst(
       [&]
       {
-        const std::string& file = this->Surfaces[i];
+        const std::string& file = this->Surfaces[moment.Number];
         vtkPolyData* surface = run.Surface;
-        Inspect(this->Options, file, run, particles, this->Colors, i == 0);
-        this->Write(i, SurfaceBytes(file, surface, this->Colors),
+        Inspect(this->Options, file, run, particles, this->Colors, moment.Number == 0);
+        this->Write(moment, SurfaceBytes(file, surface, this->Colors),
           [&](const std::string& frame) {
-            return DrawSurface(
-              this->Shared, frame, surface, particles, this->Drawn, this->FrameColors);
+            return Draw(
+              this->Options, frame, surface, particles, this->Drawn, this->FrameColors);
           });
         this->Last = run.Statistics;
         const vtkIdType triangles = surface->GetNumberOfPolys(),
                         lines = triangles > 0 ? 0 : surface->GetNumberOfLines();
-        this->Keep(i, run.Statistics,
+        this->Keep(moment, run.Statistics,
           std::to_string(surface->GetNumberOfPoints()) + " points, " +
             std::to_string(lines + triangles) + (lines > 0 ? " lines" : " triangles"),
           run.WallSeconds);
       });
-    warnings.insert(warnings.end(), run.Warnings.begin(), run.Warnings.end());
+    moment.Warnings.insert(moment.Warnings.end(), run.Warnings.begin(), run.Warnings.end());
   }
 
   /// Writes the step's file and picture: both or neither.
-  void Write(std::size_t i, const std::string& bytes,
+  void Write(const Moment& moment, const std::string& bytes,
     const std::function<std::string(const std::string& frame)>& draw)
   {
     OutputFiles files;
-    files.Write(
-      this->Surfaces[i], IsCollectionFile(this->Options.Output) ? MarkedStep(bytes) : bytes);
+    files.Write(this->Surfaces[moment.Number], this->IsListed ? MarkedStep(bytes) : bytes);
     if (this->Drawn)
     {
-      const std::string frame = NameOfStep(this->Options.Picture.File, i);
+      const std::string frame = NameOfStep(this->Options.Picture.File, moment.Number);
       files.Write(frame, draw(frame));
     }
     files.Commit();
   }
 
-  /// Lists a step that was written, and says so.
-  void Keep(std::size_t i, vtkFieldData* statistics, const std::string& what, double seconds)
+  void Report(const Moment& moment, vtkFieldData* statistics, double seconds)
   {
-    const double time = this->Times.Get()[i];
-    this->Entries += "    <DataSet timestep=\"" + DigitsOf(time) + "\" part=\"0\" file=\"" +
-      EscapedForXml(fs::path(this->Surfaces[i]).filename().string()) + "\"/>\n";
     if (this->Options.Has("--stats"))
     {
-      this->Reports.push_back(
-        StepAsJson(time, this->Times.ListFiles(time), this->Surfaces[i], statistics, seconds));
+      this->Reports.push_back(StepAsJson(moment.Time, this->Times.ListFiles(moment.Time),
+        moment.Error.empty() ? this->Surfaces[moment.Number] : moment.Error, statistics, seconds));
     }
+  }
+
+  /// Lists a step that was written, and says so.
+  void Keep(
+    const Moment& moment, vtkFieldData* statistics, const std::string& what, double seconds)
+  {
+    this->Entries += "    <DataSet timestep=\"" + DigitsOf(moment.Time) +
+      "\" part=\"0\" file=\"" +
+      EscapedForXml(fs::path(this->Surfaces[moment.Number]).filename().string()) + "\"/>\n";
+    this->Report(moment, statistics, seconds);
     this->List(false);
     if (!this->Options.Has("--quiet"))
     {
-      std::cout << Printable(this->Label(i)) << ": " << what << ", " << DigitsOf(seconds, 3) << " s"
+      std::cout << Printable(moment.Label) << ": " << what << ", " << DigitsOf(seconds, 3) << " s"
                 << std::endl;
     }
   }
@@ -276,7 +257,11 @@ private:
     }
   }
 
+  Sharing& Shared;
+  const Job& Options;
+  ParticleTimes Times;
   const std::vector<std::string> Surfaces;
+  const bool IsListed;                ///< whether a .pvd file lists the surfaces
   std::string Entries;                ///< entries of the .pvd file
   std::vector<std::string> Reports;   ///< JSON of all steps, for the statistics
   vtkSmartPointer<vtkFieldData> Last; ///< the last step that went well
@@ -285,7 +270,7 @@ private:
   GrowingFile ListFile, PieceFile, NumberFile;
   Picture Drawn;                       ///< empty if no pictures are wanted
   vtkSmartPointer<vtkImageData> Empty; ///< the image of a step without fluid; null: no place known
-  std::vector<std::pair<std::size_t, double>> Waiting; ///< steps without a known place, and seconds
+  std::vector<std::pair<Moment, double>> Waiting; ///< steps without a known place, and seconds
 };
 
 }

@@ -5,6 +5,7 @@
 #include "Failures.h"
 #include "Formats.h"
 #include "Job.h"
+#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Text.h"
 
@@ -205,7 +206,7 @@ std::string TimeText(double time)
   return DigitsOf(time, 12);
 }
 
-ParticleTimes::ParticleTimes(const Sharing& sharing)
+ParticleTimes::ParticleTimes(Sharing& sharing)
   : Shared(sharing)
 {
   const Job& job = sharing.Options;
@@ -228,7 +229,7 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
     [this](const Step& step) { return step.Walls != this->Steps.front().Walls; });
   for (const double time : this->Times)
   {
-    Need(!wallsMove || this->GetStored(time),
+    Need(!wallsMove || FindStep(this->Steps, time)->Time == time,
       "--times: " + TimeText(time) +
         " is between two steps, where walls of each step (--walls) are not known");
   }
@@ -286,12 +287,6 @@ std::vector<ParticleTimes::Step> ParticleTimes::GivenSteps(std::vector<std::stri
 
 ParticleTimes::~ParticleTimes() = default;
 
-const ParticleTimes::Step* ParticleTimes::GetStored(double time) const
-{
-  const auto next = FindStep(this->Steps, time);
-  return next->Time == time ? &*next : nullptr;
-}
-
 std::vector<std::string> ParticleTimes::ListFiles(double time) const
 {
   std::vector<std::string> files;
@@ -303,7 +298,7 @@ std::vector<std::string> ParticleTimes::ListFiles(double time) const
   return files;
 }
 
-void ParticleTimes::OpenFiles() const
+void ParticleTimes::CheckFiles(const std::vector<std::string>& outputs) const
 {
   std::vector<std::string> inputs = this->Shared.Options.InputFiles();
   for (const Step& step : this->Steps)
@@ -312,6 +307,7 @@ void ParticleTimes::OpenFiles() const
     inputs.insert(inputs.end(), step.Walls.begin(), step.Walls.end());
   }
   OpenSources(inputs);
+  CheckOutputs(outputs);
 }
 
 void ParticleTimes::Reset()
@@ -330,11 +326,13 @@ void ParticleTimes::Reset()
   }
 }
 
-std::string ParticleTimes::CheckTold()
+void ParticleTimes::CheckTold()
 {
-  if (this->AreTold)
+  const Job& job = this->Shared.Options;
+  const bool isOfTimes = !job.IsFilm() || job.Has("--numbers") || job.Has("--components");
+  if (this->AreTold || job.HasTimes() || !isOfTimes)
   {
-    return "";
+    return;
   }
   std::vector<std::string> told;
   const double step = this->Steps[1].Time - this->Steps[0].Time;
@@ -344,13 +342,16 @@ std::string ParticleTimes::CheckTold()
     this->Reset(); // without ids, particles cannot be matched
   }
   const double byVelocities = step * this->Interpolator->GetMotionRatio();
-  return "the files tell no times, so the steps are " +
-    (this->StoredStep > 0.0 ? "as far apart as their 'dt' says, " + DigitsOf(this->StoredStep, 3)
-                            : std::string("at 0, 1, 2, ...")) +
-    "; give the time between them with --time-step" +
-    (byVelocities > 0.0 ? ", which is about " + DigitsOf(byVelocities, 3) + " by '" +
-          this->Interpolator->GetUsedVelocityArrayName() + "'"
-                        : std::string());
+  if (this->Shared.IsFirst())
+  {
+    Say("warning: the files tell no times, so the steps are " +
+      (this->StoredStep > 0.0 ? "as far apart as their 'dt' says, " + DigitsOf(this->StoredStep, 3)
+                              : std::string("at 0, 1, 2, ...")) +
+      "; give the time between them with --time-step" +
+      (byVelocities > 0.0 ? ", which is about " + DigitsOf(byVelocities, 3) + " by '" +
+            this->Interpolator->GetUsedVelocityArrayName() + "'"
+                          : std::string()));
+  }
 }
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
@@ -372,62 +373,45 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
   return AddWalls(particles, this->Walls);
 }
 
-Series::Series(Sharing& sharing)
-  : Shared(sharing)
-  , Options(sharing.Options)
-  , Times(sharing)
+bool ParticleTimes::ForEach(const std::vector<std::string>& outputs,
+  const std::function<void(Moment&)>& work, const std::function<void(const Moment&)>& miss)
 {
-}
-
-std::string Series::Label(std::size_t i) const
-{
-  const double time = this->Times.Get()[i];
-  return this->Times.ListFiles(time).front() +
-    (this->Options.HasTimes() ? " (time " + TimeText(time) + ")" : "");
-}
-
-void Series::Miss(std::size_t, const std::string& error)
-{
-  Require(this->Times.Get().size() > 1, error);
-}
-
-std::string Series::Progress(std::size_t i) const
-{
-  return this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
-}
-
-bool Series::MakeAll()
-{
+  const Job& job = this->Shared.Options;
+  const std::size_t count = this->Times.size();
   bool isGood = true;
-  if (!this->Options.HasTimes() && this->IsOfTimes())
-  {
-    const std::string untold = this->Times.CheckTold();
-    if (!untold.empty() && this->Shared.IsFirst())
-    {
-      Say("warning: " + untold);
-    }
-  }
+  this->CheckTold();
   std::map<std::string, int> counts; // how often each warning came; only its first is printed
-  for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const std::string label = this->Label(i);
+    const double time = this->Times[i];
+    const std::string at = "time " + TimeText(time);
+    Moment moment = { i, time, outputs.empty() ? this->ListFiles(time).front() : outputs[i], "",
+      nullptr, {}, "" };
+    moment.Label += outputs.empty() && !job.HasTimes() ? "" : " (" + at + ")";
+    moment.Progress = count == 1
+      ? ""
+      : "step " + std::to_string(i + 1) + " of " + std::to_string(count) + ", " + at + ": ";
     const Activity making(
-      label + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
-    std::vector<std::string> warnings;
-    const std::string error = FailureOf(
+      moment.Label + ": the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
+    moment.Error = FailureOf(
       [&]
       {
-        const Sharing::Particles particles =
-          this->Shared.Read(this->Times, this->Times.Get()[i], warnings);
-        this->MakeStep(i, particles, warnings);
+        const auto step = FindStep(this->Steps, time);
+        const bool isOneFile =
+          step->Time == time && step->Files.size() == 1 && step->Walls.empty();
+        moment.Particles = this->Shared.Read(isOneFile ? step->Files.front() : "", true,
+          [&] { return this->At(time, moment.Warnings); });
+        work(moment);
       });
-    if (!error.empty())
+    if (!moment.Error.empty())
     {
-      this->Miss(i, error);
-      this->Times.Reset();
+      miss(moment);
+      this->Reset();
+      moment.Warnings = { moment.Error };
+      isGood = false;
     }
-    const std::string kind = error.empty() ? "warning: " : "";
-    for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
+    const std::string kind = moment.Error.empty() ? "warning: " : "";
+    for (const std::string& warning : moment.Warnings)
     {
       // Warnings of dry places count as one warning, even if they name other numbers of places.
       const mcor_says code = vtkSPHCodeOf(warning);
@@ -435,58 +419,54 @@ bool Series::MakeAll()
       if (this->Shared.IsFirst() &&
         ++counts[kind + (areDry ? "places are outside of all fluid" : warning)] == 1)
       {
-        const bool isNamed = warning.compare(0, label.size() + 1, label + " ") == 0;
-        Say(kind + (isNamed ? "" : label + ": ") + warning);
+        const bool isNamed =
+          warning.compare(0, moment.Label.size() + 1, moment.Label + " ") == 0;
+        Say(kind + (isNamed ? "" : moment.Label + ": ") + warning);
       }
     }
-    isGood = isGood && error.empty();
   }
-  for (const auto& [sentence, count] : counts)
+  for (const auto& [sentence, times] : counts)
   {
-    if (count > 1)
+    if (times > 1)
     {
-      Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
+      Say(std::to_string(times - 1) + (times == 2 ? " more step: " : " more steps: ") + sentence);
     }
   }
   return isGood;
 }
 
-TableSeries::TableSeries(Sharing& sharing, const std::string& file)
-  : Series(sharing)
-  , File(file)
+bool MakeTable(Sharing& sharing, const std::string& what,
+  const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,
+  const std::function<std::string()>& finish)
 {
+  const Job& job = sharing.Options;
+  const bool isImage = job.Has("--gauge-grid");
+  ParticleTimes times(sharing);
+  const std::size_t count = times.Get().size();
+  Require(!isImage || count == 1,
+    "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+  sharing.OnFirst([&] { times.CheckFiles({ job.Output }); });
+  GrowingFile file(isImage ? "" : job.Output);
+  std::string text;
+  const bool isGood = times.ForEach({},
+    [&](ParticleTimes::Moment& moment)
+    {
+      addRows(moment, text);
+      Messages().AddWarningsTo(moment.Warnings);
+      sharing.OnFirst([&] { file.Write(text, false); });
+    },
+    // The error of an only step is the program's.
+    [count](const ParticleTimes::Moment& moment) { Require(count > 1, moment.Error); });
   sharing.OnFirst(
-    [this]
+    [&]
     {
-      this->Times.OpenFiles();
-      CheckOutputs({ this->Options.Output });
-    });
-}
-
-bool TableSeries::Make(const std::string& what)
-{
-  const bool isGood = this->MakeAll();
-  this->Shared.OnFirst(
-    [this, &what]
-    {
-      Require(!this->Text.empty(), "no step could be measured, so no table was written");
-      this->File.Write(this->Text, true);
-      const std::string more = this->Finish();
-      if (!this->Options.Has("--quiet"))
+      Require(!text.empty(), "no step could be measured, so no table was written");
+      file.Write(text, true);
+      const std::string more = finish();
+      if (!job.Has("--quiet"))
       {
-        const std::size_t steps = this->Times.Get().size();
-        std::cout << what << ", " << steps << (steps == 1 ? " step" : " steps") << more << "\n";
+        std::cout << what << ", " << count << (count == 1 ? " step" : " steps") << more << "\n";
       }
     });
   return isGood;
-}
-
-void TableSeries::MakeStep(
-  std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings)
-{
-  this->AddRows(i, particles);
-  const std::vector<std::string>& told = Messages().Warnings;
-  std::copy_if(told.begin(), told.end(), std::back_inserter(warnings),
-    [this](const std::string& warning) { return this->IsTold(warning); });
-  this->Shared.OnFirst([this] { this->File.Write(this->Text, false); });
 }

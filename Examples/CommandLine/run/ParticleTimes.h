@@ -3,9 +3,9 @@
 #ifndef ParticleTimes_h
 #define ParticleTimes_h
 
-#include "OutputFile.h"
 #include "Sharing.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,37 +26,51 @@ public:
     std::vector<std::string> Walls; ///< files of the walls at this step
   };
 
+  /// One of the times, while work is done on it.
+  struct Moment
+  {
+    std::size_t Number;
+    double Time;
+    std::string Label;    ///< what sentences call it
+    std::string Progress; ///< stands in front of the line of progress
+    Sharing::Particles Particles;
+    std::vector<std::string> Warnings; ///< the work adds its own
+    std::string Error;                 ///< why reading or the work failed
+  };
+
   /// Throws UsageError or std::runtime_error with one sentence.
-  explicit ParticleTimes(const Sharing& sharing);
+  explicit ParticleTimes(Sharing& sharing);
   ~ParticleTimes();
   ParticleTimes(const ParticleTimes&) = delete;
   void operator=(const ParticleTimes&) = delete;
 
   const std::vector<double>& Get() const { return this->Times; }
 
-  /// Returns the step at this time; null if the time is between two steps.
-  const Step* GetStored(double time) const;
-
   /// Lists the files from which the particles at a time are made, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
-  /// Opens all files that will be read, see OpenSources().
-  void OpenFiles() const;
+  /// Opens all files that will be read, see OpenSources(), and checks the outputs.
+  void CheckFiles(const std::vector<std::string>& outputs) const;
 
-  /// Returns a warning if neither the files nor the user tell the times of several steps, which
-  /// tables need. Names the time between steps if velocities tell it.
-  std::string CheckTold();
+  /// Works on each time. outputs: the file of each, or empty. If a time fails, says so, calls miss(),
+  /// goes on with the others, and returns false at the end.
+  bool ForEach(const std::vector<std::string>& outputs, const std::function<void(Moment&)>& work,
+    const std::function<void(const Moment&)>& miss);
+
+private:
+  /// Lists the steps of files given one by one, and notes whether their times are told.
+  std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
+
+  /// Warns if neither the files nor the user tell the times of several steps, which tables need.
+  /// Names the time between steps if velocities tell it.
+  void CheckTold();
 
   /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), so that
   /// nothing is left of the failure.
   Sharing::Particles At(double time, std::vector<std::string>& warnings);
   void Reset();
 
-private:
-  /// Lists the steps of files given one by one, and notes whether their times are told.
-  std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
-
-  const Sharing& Shared;
+  Sharing& Shared;
   std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
   bool AreTold = true; ///< whether the files, a .pvd file or --time-step tell the times
@@ -68,58 +82,11 @@ private:
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 
-/// Works on each time of the input, and reports progress and failures.
-class Series
-{
-public:
-  explicit Series(Sharing& sharing);
-  virtual ~Series() = default;
-  Series(const Series&) = delete;
-  void operator=(const Series&) = delete;
-
-  /// If a time fails, reports it, goes on with the others, and returns false at the end.
-  bool MakeAll();
-
-protected:
-  /// Returns what sentences call a step: its file, and its time if the user asked for times.
-  virtual std::string Label(std::size_t i) const;
-  virtual void MakeStep(
-    std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
-  /// Notes that a step failed. If there is only one step, its error is the program's.
-  virtual void Miss(std::size_t i, const std::string& error);
-  /// Whether results contain the times. If not, times only order the steps.
-  virtual bool IsOfTimes() const { return true; }
-  /// Returns the words in front of a step's line of progress.
-  std::string Progress(std::size_t i) const;
-
-  Sharing& Shared;
-  const Job& Options;
-  ParticleTimes Times;
-};
-
-/// Makes a table, some rows for each time, which is written as it grows.
-class TableSeries : public Series
-{
-public:
-  /// file: empty if rows are not written.
-  TableSeries(Sharing& sharing, const std::string& file);
-
-  /// Returns false if a step failed. what: what was measured, for the message at the end.
-  bool Make(const std::string& what);
-
-protected:
-  /// Adds a step's rows to the text, which only the first process needs to have.
-  virtual void AddRows(std::size_t i, vtkPointSet* particles) = 0;
-  virtual bool IsTold(const std::string&) const { return true; } ///< whether a warning is told
-  virtual std::string Finish() { return ""; } ///< returns more text for the message
-
-  std::string Text;
-
-private:
-  void MakeStep(
-    std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override;
-
-  GrowingFile File;
-};
+/// Makes a table, some rows for each time, which is written as it grows. Returns false if a step
+/// failed. what: what was measured, for the message at the end. addRows() adds a moment's rows to
+/// the text, which only the first process needs to have. finish() returns more text for the message.
+bool MakeTable(Sharing& sharing, const std::string& what,
+  const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,
+  const std::function<std::string()>& finish);
 
 #endif

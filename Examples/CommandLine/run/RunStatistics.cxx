@@ -23,9 +23,13 @@
 namespace
 {
 
-/// The members of an object or a list of JSON: key and value, as text; a list has empty keys. VTK's own library for
-/// JSON is private in some builds.
-using Members = std::vector<std::pair<std::string, std::string>>;
+/// The members of an object or a list of JSON, as text. VTK's own library for JSON is private in some builds.
+using Members = std::vector<std::string>;
+
+std::string Of(const std::string& key, const std::string& value)
+{
+  return QuotedForJson(key) + ": " + value;
+}
 
 /// Writes a number so that it is read back exactly; NaN and infinity, which JSON lacks, become null.
 std::string Json(double number)
@@ -36,11 +40,7 @@ std::string Json(double number)
 /// Writes an object or a list, with one member on each line.
 std::string Json(const Members& members, const char* brackets = "{}")
 {
-  std::string text;
-  for (const auto& [key, value] : members)
-  {
-    text += (text.empty() ? "\n" : ",\n") + (key.empty() ? "" : QuotedForJson(key) + ": ") + value;
-  }
+  std::string text = (members.empty() ? "" : "\n") + Joined(members, ",\n");
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3)
   {
     text.insert(at + 1, "  "); // no value has a line break of its own
@@ -48,20 +48,10 @@ std::string Json(const Members& members, const char* brackets = "{}")
   return brackets[0] + text + (text.empty() ? "" : "\n") + brackets[1];
 }
 
-std::string JsonList(const std::vector<std::string>& values)
-{
-  Members members;
-  for (const std::string& value : values)
-  {
-    members.emplace_back("", value);
-  }
-  return Json(members, "[]");
-}
-
 std::string JsonTexts(std::vector<std::string> texts)
 {
   std::transform(texts.begin(), texts.end(), texts.begin(), QuotedForJson);
-  return JsonList(texts);
+  return Json(texts, "[]");
 }
 
 Members operator+(Members members, const Members& more)
@@ -156,7 +146,7 @@ std::string JsonGroup(vtkFieldData* run, const char* const (&names)[N])
   {
     if (*name && run->GetAbstractArray(name))
     {
-      members.emplace_back(Key(name), Json(run, name));
+      members.push_back(Of(Key(name), Json(run, name)));
     }
   }
   return Json(members);
@@ -168,44 +158,51 @@ std::string JsonSeconds(vtkFieldData* run)
   Members members;
   for (int i = 0; seconds && i < seconds->GetNumberOfComponents(); ++i)
   {
-    members.emplace_back(Key(seconds->GetComponentName(i)), Json(seconds->GetComponent(0, i)));
+    members.push_back(
+      Of(Key(seconds->GetComponentName(i)), Json(seconds->GetComponent(0, i))));
   }
   return Json(members);
+}
+
+Members ListCosts(vtkFieldData* run, double wallSeconds)
+{
+  return { Of("seconds", JsonSeconds(run)), Of("statistics", JsonGroup(run, StatisticNames)),
+    Of("wall_seconds", Json(wallSeconds)) };
 }
 
 /// Lists the program and its files; and, if there is a run, its device, arrays and parameters.
 Members ListSetting(const Job& job, vtkFieldData* run)
 {
-  Members setting = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
-    { "vtk", QuotedForJson(vtkVersion::GetVTKVersion()) },
-    job.IsFilm() ? std::make_pair("inputs", JsonTexts(job.Inputs))
-                 : std::make_pair("input", QuotedForJson(job.Inputs.front())) };
+  Members setting = { Of("program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION)),
+    Of("vtk", QuotedForJson(vtkVersion::GetVTKVersion())),
+    job.IsFilm() ? Of("inputs", JsonTexts(job.Inputs))
+                 : Of("input", QuotedForJson(job.Inputs.front())) };
   if (!job.Walls.empty())
   {
-    setting.emplace_back("walls", JsonTexts(job.Walls));
+    setting.push_back(Of("walls", JsonTexts(job.Walls)));
   }
-  setting.emplace_back("output", QuotedForJson(job.Output));
+  setting.push_back(Of("output", QuotedForJson(job.Output)));
   if (!run)
   {
     return setting;
   }
   setting = setting +
-    Members{ { "device", Json(run, "Device") }, { "platform", Json(run, "Platform") },
-      { "arrays", JsonGroup(run, ArrayNames) }, { "parameters", JsonGroup(run, ParameterNames) } };
+    Members{ Of("device", Json(run, "Device")), Of("platform", Json(run, "Platform")),
+      Of("arrays", JsonGroup(run, ArrayNames)), Of("parameters", JsonGroup(run, ParameterNames)) };
   vtkMarchingCorrectors* filter = job.Surface;
   if (*filter->GetFluidArrayName())
   {
     static const char* const solids[] = { "weight", "ignore", "wall",
       "auto" }; // in the order of the filter's numbers
-    Members fluid = { { "array", QuotedForJson(filter->GetFluidArrayName()) },
-      { "value", Json(filter->GetFluidValue()) },
-      { "solids", QuotedForJson(solids[filter->GetSolids()]) } };
+    Members fluid = { Of("array", QuotedForJson(filter->GetFluidArrayName())),
+      Of("value", Json(filter->GetFluidValue())),
+      Of("solids", QuotedForJson(solids[filter->GetSolids()])) };
     if (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL ||
       (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO && !filter->GetFreeSurface()))
     {
-      fluid.emplace_back("wall_share", Json(NumberOf(run, "WallShare", filter->GetWallShare())));
+      fluid.push_back(Of("wall_share", Json(NumberOf(run, "WallShare", filter->GetWallShare()))));
     }
-    setting.emplace_back("fluid", Json(fluid));
+    setting.push_back(Of("fluid", Json(fluid)));
   }
   return setting;
 }
@@ -228,33 +225,20 @@ double NumberOf(vtkFieldData* run, const std::string& name, double none)
   return numbers.empty() ? none : numbers.front();
 }
 
-std::string Fill(vtkFieldData* run, const std::string& form)
+std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms)
 {
   std::string text;
-  std::size_t begin = 0; // where the text of an alternative begins
-  bool isComplete = true;
-  for (std::size_t i = 0; i < form.size(); ++i)
+  bool isComplete = false;
+  for (std::size_t i = 0; i < forms.size() && !isComplete; ++i)
   {
-    const char c = form[i];
-    if (c == '{')
-    {
-      const std::size_t name = i + 1;
-      i = form.find('}', i);
-      const std::string value = Value(run, form.substr(name, i - name));
-      isComplete = isComplete && !value.empty();
-      text += value;
-    }
-    else if (c == '[' || c == '|' || c == ']')
-    {
-      text.resize(c == '[' || isComplete ? text.size() : begin);
-      i = c == '|' && isComplete ? form.find(']', i) : i;
-      begin = text.size();
-      isComplete = true;
-    }
-    else
-    {
-      text += c;
-    }
+    isComplete = true;
+    text = Filled(forms[i],
+      [run, &isComplete](const std::string& name)
+      {
+        const std::string value = Value(run, name);
+        isComplete = isComplete && !value.empty();
+        return value;
+      });
   }
   return text;
 }
@@ -292,83 +276,88 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
   std::string trimming; // may add triangles: a cut leaves one or two triangles of one
   if (!hasLines && NumberOf(run, "Triangles") - caps != NumberOf(run, "TrianglesBeforeTrimming"))
   {
-    trimming = "{TrianglesBeforeTrimming} before trimming, which cuts some in two";
+    trimming = Fill(run, { "{TrianglesBeforeTrimming} before trimming, which cuts some in two" });
   }
   if (caps > 0.0)
   {
-    trimming += std::string(trimming.empty() ? "" : "; ") + "{CapTriangles} " +
+    trimming += (trimming.empty() ? "" : "; ") + Fill(run, { "{CapTriangles} " }) +
       (hasLines ? "parts of them in caps" : "of them in caps");
   }
   trimming = trimming.empty() ? "" : " (" + trimming + ")";
-  const std::string volume =
-    "[array {VolumeArray}|{ParticleVolume}|{Mass} / {Density}|computed from {Mass}|computed]";
-  const bool leavesSpray =
-    NumberOf(run, "LoneParticles") > 0.0 && Fill(run, volume).compare(0, 8, "computed") != 0;
+  const std::string volume = Fill(run,
+    { "array {VolumeArray}", "{ParticleVolume}", "{Mass} / {Density}", "computed from {Mass}",
+      "computed" });
+  std::string text = Fill(run,
+    { "particles   {FluidParticles} fluid, {SolidParticles} solid; smoothing length "
+      "{SmoothingLengthRange:0}" });
+  text += areMany ? Fill(run, { " .. {SmoothingLengthRange:1}" }) : "";
+  text += Fill(run, { " (array {SmoothingLengthArray})", "" }) + "; volume: " + volume;
+  if (NumberOf(run, "LoneParticles") > 0.0 && volume.compare(0, 8, "computed") != 0)
+  {
+    text += Fill(run,
+      { "\nspray       a lone particle has no surface where volume x W(0) is below the iso value "
+        "({LoneParticles} of {FluidParticles}); --volume computed keeps drops" });
+  }
+  text += "\ncontour     " + Fill(run, { "{Scalar}", "weight sum" }) +
+    Fill(run, { " = {IsoValues}", "" }) +
+    Fill(run, { "; range {ScalarRange:0} .. {ScalarRange:1}", "" });
+  if (atLength)
+  {
+    text += Fill(run, { "; field {Field}", "" }) +
+      Fill(run,
+        { "; kernel {Kernel}; cube size {CubeSize}\n"
+          "device      {Device} ({Platform})\n"
+          "cells       {VirtualCells} of the virtual grid, {SeedCells} seeds "
+          "({SeedCellsNotIntersected} without surface), {CellsUsed} with surface\n"
+          "correction  " +
+          std::string(isPreview
+              ? "none (preview)"
+              : "vertices moved by: mean {CorrectionMean}, max {CorrectionMax}, deviation "
+                "{CorrectionStandardDeviation}; iterations: mean {IterationsMean}, max "
+                "{IterationsMax}; largest remaining error {ResidualMax}") });
+  }
   const std::string pieces = NumberOf(run, "Pieces") == 1.0 ? "piece" : "pieces";
-  return Fill(run,
-    std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
-                "smoothing length {SmoothingLengthRange:0}") +
-      (areMany ? " .. {SmoothingLengthRange:1}" : "") +
-      "[ (array {SmoothingLengthArray})]; volume: " + volume + "\n" +
-      (leavesSpray ? "spray       a lone particle has no surface where volume x W(0) is below the iso "
-                     "value ({LoneParticles} of {FluidParticles}); --volume computed keeps drops\n"
-                   : "") +
-      "contour     [{Scalar}|weight sum][ = {IsoValues}]"
-      "[; range {ScalarRange:0} .. {ScalarRange:1}]" +
-      (atLength ? "[; field {Field}]; kernel {Kernel}; cube size {CubeSize}\n"
-                  "device      {Device} ({Platform})\n"
-                  "cells       {VirtualCells} of the virtual grid, {SeedCells} seeds "
-                  "({SeedCellsNotIntersected} without surface), {CellsUsed} with surface\n"
-                  "correction  " +
-            std::string(isPreview
-                ? "none (preview)"
-                : "vertices moved by: mean {CorrectionMean}, max {CorrectionMax}, deviation "
-                  "{CorrectionStandardDeviation}; iterations: mean {IterationsMean}, max "
-                  "{IterationsMax}; largest remaining error {ResidualMax}")
-                : "") +
-      "\n[lines       {Points} points, {Lines} lines|"
-      "surface     {Points} points, {Triangles} triangles]" +
-      (atLength ? trimming : "") + "[; length {Length}][; {Pieces} " + pieces +
-      " of area {Area}|; area {Area}][, volume {Volume}]\n");
+  return text + "\n" +
+    Fill(run,
+      { "lines       {Points} points, {Lines} lines",
+        "surface     {Points} points, {Triangles} triangles", "" }) +
+    (atLength ? trimming : "") + Fill(run, { "; length {Length}", "" }) +
+    Fill(run, { "; {Pieces} " + pieces + " of area {Area}", "; area {Area}", "" }) +
+    Fill(run, { ", volume {Volume}", "" }) + "\n";
 }
 
-std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
-  const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
-  double peakResidentBytes)
+std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,
+  const std::vector<std::string>& warnings, double peakResidentBytes)
 {
-  vtkFieldData* last = runs.back();
+  vtkFieldData* last = runs.back().Statistics;
   std::vector<std::string> each;
-  for (std::size_t i = 0; i < runs.size(); ++i)
+  for (const Run& run : runs)
   {
-    each.push_back(Json(Members{ { "seconds", JsonSeconds(runs[i]) },
-      { "statistics", JsonGroup(runs[i], StatisticNames) },
-      { "wall_seconds", Json(wallSeconds[i]) } }));
+    each.push_back(Json(ListCosts(run.Statistics, run.WallSeconds)));
   }
   return Json(ListSetting(job, last) +
-           Members{ { "statistics", JsonGroup(last, StatisticNames) },
-             { "seconds", JsonSeconds(last) }, { "wall_seconds", Json(wallSeconds.back()) },
-             { "runs", JsonList(each) }, { "warnings", JsonTexts(warnings) },
-             { "peak_resident_bytes", Json(peakResidentBytes) } }) +
+           Members{ Of("statistics", JsonGroup(last, StatisticNames)),
+             Of("seconds", JsonSeconds(last)), Of("wall_seconds", Json(runs.back().WallSeconds)),
+             Of("runs", Json(each, "[]")), Of("warnings", JsonTexts(warnings)),
+             Of("peak_resident_bytes", Json(peakResidentBytes)) }) +
     "\n";
 }
 
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds)
 {
-  const Members members = { { "time", Json(time) }, { "inputs", JsonTexts(inputs) } };
+  const Members members = { Of("time", Json(time)), Of("inputs", JsonTexts(inputs)) };
   return Json(members +
-    (run
-        ? Members{ { "output", QuotedForJson(result) }, { "seconds", JsonSeconds(run) },
-            { "statistics", JsonGroup(run, StatisticNames) }, { "wall_seconds", Json(wallSeconds) },
-            { "peak_resident_bytes", Json(PeakResidentBytes()) } }
-        : Members{ { "error", QuotedForJson(result) } }));
+    (run ? Members{ Of("output", QuotedForJson(result)) } + ListCosts(run, wallSeconds) +
+          Members{ Of("peak_resident_bytes", Json(PeakResidentBytes())) }
+         : Members{ Of("error", QuotedForJson(result)) }));
 }
 
 std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run)
 {
   return Json(ListSetting(job, run) +
-           Members{
-             { "steps", JsonList(steps) }, { "peak_resident_bytes", Json(PeakResidentBytes()) } }) +
+           Members{ Of("steps", Json(steps, "[]")),
+             Of("peak_resident_bytes", Json(PeakResidentBytes())) }) +
     "\n";
 }
 

@@ -31,6 +31,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace
@@ -41,17 +42,16 @@ constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 /// Writes an elevation map: the array Level is the height of the surface.
 void WriteGrid(const Job& job, vtkTable* table)
 {
-  const GaugeGrid& grid = job.Grid;
+  const std::vector<double>& n = job.Grid;
   vtkNew<vtkImageData> image;
-  double spacing[3] = { 1.0, 1.0, 1.0 };
-  for (std::size_t a = 0; a < 2; ++a)
+  const auto spacing = [&n](std::size_t axis)
   {
-    const double length = grid.Bounds[2 * a + 1] - grid.Bounds[2 * a];
-    spacing[a] = grid.Counts[a] > 1 && length > 0.0 ? length / (grid.Counts[a] - 1) : 1.0;
-  }
-  image->SetDimensions(grid.Counts[0], grid.Counts[1], 1);
-  image->SetOrigin(grid.Bounds[0], grid.Bounds[2], grid.Bounds[4]);
-  image->SetSpacing(spacing);
+    const double length = n[3 + 2 * axis] - n[2 + 2 * axis];
+    return n[axis] > 1.0 && length > 0.0 ? length / (n[axis] - 1.0) : 1.0;
+  };
+  image->SetDimensions(static_cast<int>(n[0]), static_cast<int>(n[1]), 1);
+  image->SetOrigin(n[2], n[4], n[6]);
+  image->SetSpacing(spacing(0), spacing(1), 1.0);
   using Names = std::pair<const char*, const char*>;
   for (const Names& names :
     { Names("z", "Level"), Names("depth", "Depth"), Names("crossings", "Crossings") })
@@ -64,71 +64,26 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// Makes a table of what gauges or sections measure, or, for a grid of gauges, an image.
-class MeterTable : public TableSeries
+/// Adds a column to the table of fluxes: what has flowed since the first time, by trapezia between
+/// steps. passed: the time since the last step; before, sums: fluxes then, and integrals, of each section.
+void AddIntegrals(vtkTable* table, const std::string& name, double passed,
+  std::vector<double>& before, std::vector<double>& sums)
 {
-public:
-  explicit MeterTable(Sharing& sharing)
-    : TableSeries(sharing, sharing.Options.Has("--gauge-grid") ? "" : sharing.Options.Output)
-    , IsFlux(this->Options.Mode() == FLUX)
-    , IsImage(this->Options.Has("--gauge-grid"))
-    , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
+  auto* rates = vtkDoubleArray::SafeDownCast(table->GetColumnByName((name + "_flux").c_str()));
+  const std::vector<double> now(rates->Begin(), rates->End());
+  before = before.empty() ? now : before;
+  sums.resize(now.size());
+  vtkNew<vtkDoubleArray> column;
+  column->SetName(name.c_str());
+  for (std::size_t row = 0; row < sums.size(); ++row)
   {
-    Require(!this->IsImage || this->Times.Get().size() == 1,
-      "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+    // if the flux is NaN, so is the integral
+    sums[row] += passed * 0.5 * (before[row] + now[row]) + 0.0 * now[row];
+    column->InsertNextValue(sums[row]);
   }
-
-private:
-  std::string Finish() override
-  {
-    if (this->IsImage)
-    {
-      WriteGrid(this->Options, this->Meter->GetOutput());
-    }
-    return std::string("; volumes: ") + this->Meter->GetUsedVolume();
-  }
-
-  bool IsTold(const std::string& warning) const override
-  {
-    return !this->IsImage || warning.find("outside of all fluid") == std::string::npos;
-  }
-
-  void AddRows(std::size_t i, vtkPointSet* particles) override
-  {
-    const double time = this->Times.Get()[i];
-    vtkTable* table = nullptr;
-    this->Shared.OnAll(
-      [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, this->Progress(i)); });
-    for (std::size_t flux = 0; this->IsFlux && flux < 2; ++flux)
-    {
-      // Integrates over time, by trapezia between steps.
-      const std::string name = flux == 0 ? "volume" : "mass";
-      auto* rates = vtkDoubleArray::SafeDownCast(table->GetColumnByName((name + "_flux").c_str()));
-      std::vector<double>&before = this->Rates[flux], &sums = this->Sums[flux];
-      sums.resize(static_cast<std::size_t>(rates->GetNumberOfValues()));
-      const double passed = before.empty() ? 0.0 : time - this->LastTime;
-      before = before.empty() ? std::vector<double>(rates->Begin(), rates->End()) : before;
-      vtkNew<vtkDoubleArray> column;
-      column->SetName(name.c_str());
-      for (std::size_t row = 0; row < sums.size(); ++row)
-      {
-        const double now = rates->GetValue(static_cast<vtkIdType>(row));
-        // if the flux is NaN, so is the integral
-        sums[row] += passed * 0.5 * (before[row] + now) + 0.0 * now;
-        column->InsertNextValue(sums[row]);
-      }
-      table->AddColumn(column);
-      before.assign(rates->Begin(), rates->End());
-    }
-    this->LastTime = time;
-    AppendTable(this->Text, table);
-  }
-
-  const bool IsFlux, IsImage;
-  vtkSPHMeter* const Meter;
-  double LastTime = 0.0;
-  std::vector<double> Rates[2], Sums[2]; ///< last fluxes, and integrals: volume, mass; by section
-};
+  table->AddColumn(column);
+  before = now;
+}
 
 /// Returns the iso values of a run, ascending; if it had no particles, the requested ones.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
@@ -148,41 +103,54 @@ std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 }
 
 /// Returns the number of the level with this iso value, which may have been rounded to float.
-std::size_t LevelOf(const std::vector<Level>& levels, double iso)
+std::size_t LevelOf(const std::vector<double>& levels, double iso)
 {
   const auto next = std::min_element(levels.begin(), levels.end(),
-    [iso](const Level& a, const Level& b)
-    { return std::abs(a.Iso - iso) < std::abs(b.Iso - iso); });
+    [iso](double a, double b) { return std::abs(a - iso) < std::abs(b - iso); });
   return static_cast<std::size_t>(next - levels.begin());
 }
 
-/// Sets, for each iso value, the area that its lines enclose, if they are closed.
-void MeasureLines(Run& run, const std::string& isoName)
+/// Returns, for each iso value, the area that its lines enclose; NaN if they are not closed.
+std::vector<double> AreasOfLines(
+  vtkPolyData* surface, const std::string& isoName, const std::vector<double>& levels)
 {
-  vtkDataArray* isoValues = run.Surface->GetPointData()->GetArray(isoName.c_str());
-  std::vector<vtkVector3d> sums(run.Levels.size(), vtkVector3d(0.0));
-  std::vector<bool> areClosed(run.Levels.size(), true);
+  vtkDataArray* isoValues = surface->GetPointData()->GetArray(isoName.c_str());
+  std::vector<vtkVector3d> sums(levels.size(), vtkVector3d(0.0));
+  std::vector<double> areas(levels.size(), 0.0); // NaN: some line is open
   vtkNew<vtkIdList> line;
-  for (vtkIdType l = 0; isoValues && l < run.Surface->GetNumberOfLines(); ++l)
+  for (vtkIdType l = 0; isoValues && l < surface->GetNumberOfLines(); ++l)
   {
-    run.Surface->GetLines()->GetCellAtId(l, line);
+    surface->GetLines()->GetCellAtId(l, line);
     const vtkIdType first = line->GetId(0), last = line->GetNumberOfIds() - 1;
-    const std::size_t own = LevelOf(run.Levels, isoValues->GetComponent(first, 0));
-    areClosed[own] = areClosed[own] && first == line->GetId(last);
+    const std::size_t own = LevelOf(levels, isoValues->GetComponent(first, 0));
+    areas[own] = first == line->GetId(last) ? areas[own] : NoNumber;
     const auto at = [&](vtkIdType i) // relative to the first point
-    { return vtkVector3d(run.Surface->GetPoint(line->GetId(i))) - vtkVector3d(run.Surface->GetPoint(first)); };
+    { return vtkVector3d(surface->GetPoint(line->GetId(i))) - vtkVector3d(surface->GetPoint(first)); };
     for (vtkIdType i = 0; i < last; ++i)
     {
       sums[own] = sums[own] + at(i).Cross(at(i + 1));
     }
   }
-  for (std::size_t i = 0; i < sums.size(); ++i)
+  for (std::size_t i = 0; i < areas.size(); ++i)
   {
-    run.Levels[i].Area = areClosed[i] ? 0.5 * sums[i].Norm() : NoNumber;
+    areas[i] += 0.5 * sums[i].Norm();
   }
-}
+  return areas;
 }
 
+/// Returns the sum of a column over the pieces with this iso value, or over all; without a column, their number.
+double SumOf(vtkTable* pieces, const char* column, bool areAll, double iso = 0.0)
+{
+  double sum = 0.0;
+  for (vtkIdType row = 0; row < pieces->GetNumberOfRows(); ++row)
+  {
+    const bool isOwn = areAll || pieces->GetValueByName(row, "iso").ToDouble() == iso;
+    sum += !isOwn ? 0.0 : column ? pieces->GetValueByName(row, column).ToDouble() : 1.0;
+  }
+  return sum;
+}
+
+/// Returns the meter's table; shows its progress behind the words `progress`.
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
   double time, const std::string& progress)
 {
@@ -191,32 +159,47 @@ vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* p
   Update(meter, sharing, progress);
   return meter->GetOutput();
 }
-
-std::size_t AddGauges(const Job& job)
-{
-  const std::vector<Place> gauges = ListGauges(job);
-  for (const Place& gauge : gauges)
-  {
-    const std::vector<double>& e = gauge.Numbers;
-    job.Gauge->AddGauge(gauge.Name.c_str(), e[0], e[1], e[2], e[3], e[4], e[5]);
-  }
-  return gauges.size();
 }
 
 bool MakeMeterTable(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  const bool isFlux = job.Mode() == FLUX;
-  const std::vector<Place> sections = isFlux ? ListSections(job) : std::vector<Place>();
-  for (const Place& section : sections)
+  const bool isFlux = job.Mode() == FLUX, isImage = job.Has("--gauge-grid");
+  vtkSPHMeter* const meter = isFlux ? static_cast<vtkSPHMeter*>(job.Flux) : job.Gauge.Get();
+  const std::size_t places = AddPlaces(job);
+  double last = 0.0;
+  std::map<std::string, std::vector<double>> rates, sums;
+  const auto addRows = [&](const ParticleTimes::Moment& moment, std::string& text)
   {
-    const char* name = section.Name.c_str();
-    section.File.empty() ? section.Add(job.Flux, name, section.Numbers.data())
-                         : job.Flux->AddSurface(name, ReadDataSet(section.File));
-  }
-  const std::size_t places = isFlux ? sections.size() : AddGauges(job);
-  return MeterTable(sharing).Make(
-    std::to_string(places) + (isFlux ? " section" : " gauge") + (places == 1 ? "" : "s"));
+    vtkTable* table = nullptr;
+    sharing.OnAll(
+      [&]
+      { table = MeasureWith(meter, sharing, moment.Particles, moment.Time, moment.Progress); });
+    for (const std::string name : { "volume", "mass" })
+    {
+      if (isFlux)
+      {
+        AddIntegrals(table, name, moment.Time - last, rates[name], sums[name]);
+      }
+    }
+    last = moment.Time;
+    std::vector<std::string>& told = Messages().Warnings;
+    const auto isDry = [isImage](const std::string& warning) // an image has many dry places
+    { return isImage && warning.find("outside of all fluid") != std::string::npos; };
+    told.erase(std::remove_if(told.begin(), told.end(), isDry), told.end());
+    AppendTable(text, table);
+  };
+  const auto finish = [&]
+  {
+    if (isImage)
+    {
+      WriteGrid(job, meter->GetOutput());
+    }
+    return std::string("; volumes: ") + meter->GetUsedVolume();
+  };
+  return MakeTable(sharing,
+    std::to_string(places) + (isFlux ? " section" : " gauge") + (places == 1 ? "" : "s"), addRows,
+    finish);
 }
 
 // Gives the filter of pieces the same settings of the particles as the surface's filter. Surfaces
@@ -226,17 +209,8 @@ void AddPieces(
 {
   const Job& job = sharing.Options;
   const bool isTable = job.Has("--components");
-  for (const double iso : IsoValuesOf(job, run.Statistics))
-  {
-    run.Levels.push_back({ iso, NoNumber, NoNumber, NoNumber });
-  }
-  const bool areMany = job.Has("--numbers") && run.Levels.size() > 1;
-  const bool hasLines = run.Statistics->HasArray("Lines");
-  if (!isTable && areMany && hasLines)
-  {
-    MeasureLines(run, job.Surface->GetIsoValueArrayName());
-  }
-  if (!isTable && (!areMany || hasLines))
+  const bool areMany = job.Has("--numbers") && IsoValuesOf(job, run.Statistics).size() > 1;
+  if (!isTable && (!areMany || run.Statistics->HasArray("Lines")))
   {
     return;
   }
@@ -255,37 +229,18 @@ void AddPieces(
   split->SetLeastParticles(job.LeastParticles);
   split->Update();
   Messages().Check();
-  vtkTable* pieces = split->GetTable();
-  double area = 0.0, volume = 0.0; // of all remaining pieces
-  for (Level& level : run.Levels)
-  {
-    level.Area = level.Volume = level.Pieces = 0.0;
-  }
-  for (vtkIdType row = 0; row < pieces->GetNumberOfRows(); ++row)
-  {
-    const auto of = [pieces, row](const char* column)
-    { return pieces->GetValueByName(row, column).ToDouble(); };
-    area += of("area");
-    volume += of("volume");
-    for (Level& level : run.Levels)
-    {
-      const bool isOwn = run.Levels.size() == 1 || of("iso") == level.Iso;
-      level.Area += isOwn ? of("area") : 0.0;
-      level.Volume += isOwn ? of("volume") : 0.0;
-      level.Pieces += isOwn ? 1.0 : 0.0;
-    }
-  }
+  vtkTable* pieces = run.Pieces = split->GetTable();
   if (!isTable)
   {
     return;
   }
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumbers(run.Statistics, "Pieces", { static_cast<double>(pieces->GetNumberOfRows()) });
-  for (const auto& [name, number] : { std::pair("Area", area), std::pair("Volume", volume) })
+  for (const auto& [name, column] : { std::pair("Area", "area"), std::pair("Volume", "volume") })
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
     {
-      AddNumbers(run.Statistics, name, { number });
+      AddNumbers(run.Statistics, name, { SumOf(pieces, column, true) });
     }
   }
   vtkNew<vtkTable> table;
@@ -318,41 +273,45 @@ void AddFilmNumbers(
     gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
     Messages().AddWarningsTo(run.Warnings);
   }
-  const bool areMany = run.Levels.size() > 1;
-  if (!areMany)
+  const std::vector<double> levels = IsoValuesOf(job, run.Statistics);
+  const bool areMany = levels.size() > 1, haveLines = areMany && run.Statistics->HasArray("Lines");
+  const char* isoName = job.Surface->GetIsoValueArrayName();
+  const double none = run.Statistics->HasArray("Triangles") ? NoNumber : 0.0; // without fluid they are 0
+  const std::vector<double> areas =
+    haveLines ? AreasOfLines(run.Surface, isoName, levels) : std::vector<double>();
+  const auto measured = [&](const char* statistic, const char* column, std::size_t i)
   {
-    const double none = run.Statistics->HasArray("Triangles") ? NoNumber : 0.0; // without fluid they are 0
-    run.Levels.front().Area = NumberOf(run.Statistics, "Area", none);
-    run.Levels.front().Volume = NumberOf(run.Statistics, "Volume", none);
-  }
-  vtkDataArray* isoValues =
-    areMany ? run.Surface->GetPointData()->GetArray(job.Surface->GetIsoValueArrayName()) : nullptr;
-  std::vector<double> triangles(run.Levels.size());
+    return !areMany ? NumberOf(run.Statistics, statistic, none)
+      : haveLines   ? NoNumber
+      : i < levels.size() ? SumOf(run.Pieces, column, false, levels[i])
+                          : 0.0;
+  };
+  vtkDataArray* isoValues = areMany ? run.Surface->GetPointData()->GetArray(isoName) : nullptr;
+  std::vector<double> triangles(levels.size());
   vtkNew<vtkIdList> corners;
   for (vtkIdType t = 0; isoValues && t < run.Surface->GetNumberOfPolys(); ++t)
   {
     run.Surface->GetPolys()->GetCellAtId(t, corners);
-    triangles[LevelOf(run.Levels, isoValues->GetComponent(corners->GetId(0), 0))] += 1.0;
+    triangles[LevelOf(levels, isoValues->GetComponent(corners->GetId(0), 0))] += 1.0;
   }
-  for (std::size_t i = 0; i < run.Levels.size(); ++i)
+  for (std::size_t i = 0; i < levels.size(); ++i)
   {
-    const Level& level = run.Levels[i];
+    const double volume = measured("Volume", "volume", i);
     vtkNew<vtkTable> table;
     vtkFieldData* row = table->GetRowData();
     AddNumbers(row, "time", { time });
-    AddNumbers(row, "iso", { level.Iso });
+    AddNumbers(row, "iso", { levels[i] });
     AddNumbers(row, "triangles",
       { areMany ? triangles[i] : static_cast<double>(run.Surface->GetNumberOfPolys()) });
-    AddNumbers(row, "area", { level.Area });
-    AddNumbers(row, "volume", { level.Volume });
+    AddNumbers(row, "area", { haveLines ? areas[i] : measured("Area", "area", i) });
+    AddNumbers(row, "volume", { volume });
     if (areMany)
     {
-      AddNumbers(row, "between",
-        { level.Volume - (i + 1 < run.Levels.size() ? run.Levels[i + 1].Volume : 0.0) });
+      AddNumbers(row, "between", { volume - measured("Volume", "volume", i + 1) });
     }
     if (job.Has("--components"))
     {
-      AddNumbers(row, "pieces", { level.Pieces });
+      AddNumbers(row, "pieces", { SumOf(run.Pieces, nullptr, !areMany, levels[i]) });
     }
     for (vtkIdType g = 0; gauges && g < gauges->GetNumberOfRows(); ++g)
     {

@@ -8,6 +8,7 @@
 #include "vtkFieldData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
 
 #include <string>
 #include <vector>
@@ -18,8 +19,6 @@ class vtkDataSet;
 class vtkImageData;
 class vtkPointSet;
 class vtkSPHAlgorithm;
-class vtkSPHMeter;
-class vtkTable;
 struct Job;
 
 /// The runs of the program. All return false if a step failed, after its error was printed, and throw UsageError or
@@ -51,46 +50,41 @@ bool MakeField(Sharing& sharing);
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
-/// Returns the particles with the factors of --widen or --smooth, see vtkMarchingCorrectors::Widen().
-vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles);
-
-/// Calls SetUpParticles() for the filter of the surface, and gives it the particles as input.
-void SetUpSurface(const Job& job, vtkPointSet* input);
-
 /// Runs a filter once, and shows its progress after the words `before`. Returns its seconds. Throws
 /// std::runtime_error with the filter's sentence.
 double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string& before = "");
-
-/// What is measured of the surface of one iso value.
-struct Level
-{
-  double Iso, Area, Volume, Pieces; // NaN: not known
-};
 
 struct Run
 {
   vtkSmartPointer<vtkPolyData> Surface;
   vtkSmartPointer<vtkFieldData> Statistics; // arrays of the surface, and of what the run cost
   std::vector<std::string> Warnings;        // sentences that the user should know
-  std::vector<Level> Levels; // levels of a film with a table of numbers, by ascending iso values
-  double WallSeconds = 0.0;
+  vtkSmartPointer<vtkTable> Pieces;         // table of the surface's pieces; null: not wanted
+  double WallSeconds = 0.0; // of the whole filter, which are more than those of its phases
 };
 
-/// Extracts the surface once. Throws as Update() does.
-Run Extract(const Sharing& sharing, const std::string& before = "");
+/// Extracts the surface of the particles once. Gives it the array ComponentId, drops the pieces that are
+/// to be left out, and adds a row for each piece to the text of their table, if one is wanted. Throws as
+/// Update() does.
+Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
+  const std::string& progress = "");
 
 /// Includes the surface's colours in the scale, and warns of arrays that the surface's file cannot
 /// hold and, with `hasHints`, of a period that is not used.
 void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* particles,
   ColorScale& colors, bool hasHints);
 
-/// Returns the bytes of a .png file of the surface, or of the field's points or image.
-///@{
-std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
-  vtkPointSet* particles, const Picture& picture, ColorScale& colors);
-std::string DrawField(const Job& job, vtkDataSet* field, const std::string& file,
+/// Returns the bytes of a .png file of a surface, of points with the field, or of an image of it, in the
+/// outline of `frame`.
+std::string Draw(const Job& job, const std::string& file, vtkDataSet* data, vtkDataSet* frame,
   const Picture& picture, ColorScale& colors);
-///@}
+
+/// Writes the picture of the job's only output, if it is wanted.
+void WritePicture(const Job& job, vtkDataSet* data, vtkDataSet* frame, ColorScale& colors);
+
+/// Evaluates the field at the points, or projects it if they are null. Returns the filter's seconds.
+double Evaluate(
+  Sharing& sharing, vtkPointSet* particles, vtkDataSet* points, const std::string& progress);
 
 /// Returns the image of the projection, on the first process. Throws if no particle is seen.
 vtkImageData* SeenImage(const Job& job);
@@ -98,23 +92,15 @@ vtkImageData* SeenImage(const Job& job);
 /// Returns a text such as "640 x 480 x 1 pixels".
 std::string DescribeSize(vtkImageData* image);
 
-/// Adds the gauges of the options to the job's filter. Returns how many there are.
-std::size_t AddGauges(const Job& job);
-
-/// Returns the meter's table; shows its progress behind the words `progress`.
-vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
-  double time, const std::string& progress);
-
 /// Returns the numbers of an array of a run; none if the run has no such array. NumberOf() returns the
 /// first one, or `none`.
 std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name);
 double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 
-/// Returns the form with the run's values in place of names in braces, such as {Area} or
-/// {ScalarRange:1}. A value is a text, the array of a quantity if there is one, a whole count, or a
-/// number with six digits. [A|B|C] becomes the first alternative in which all names have values, or
-/// nothing.
-std::string Fill(vtkFieldData* run, const std::string& form);
+/// Returns the first of the forms in which all names in braces, such as {Area} or {ScalarRange:1},
+/// have values, with these values; else the last form, with nothing in place of the missing ones. A value
+/// is a text, the array of a quantity if there is one, a whole count, or a number with six digits.
+std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
 /// Describes a run's field data in three lines, or, at length, in more, for users who know the
 /// method; empty if the run had no particles to use.
@@ -124,11 +110,9 @@ std::string DescribeRun(vtkFieldData* run, bool atLength);
 /// particles to use.
 std::string DescribeSeconds(vtkFieldData* run, bool atLength);
 
-/// Returns the statistics of the last of `runs` as JSON, with the seconds of each run. wallSeconds: for
-/// each run, the time of the whole filter, which is more than its phases.
-std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
-  const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
-  double peakResidentBytes);
+/// Returns the statistics of the last of `runs` as JSON, with the seconds of each run.
+std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,
+  const std::vector<std::string>& warnings, double peakResidentBytes);
 
 /// Reports a step of a film. inputs: its files; result: the surface's file or, if `run` is null, why
 /// there is none.
@@ -141,11 +125,9 @@ std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vt
 /// Returns the most memory that this process has had so far; 0 if the system does not tell.
 double PeakResidentBytes();
 
-/// Gives the run's surface the array ComponentId, and drops the pieces that are to be left out. Adds a
-/// row for each piece to the text of a table, which for films has a column of times. Sets the run's
-/// levels if a film's table needs them. Throws std::runtime_error.
+/// The part of Extract() for pieces. In films, the table has a column of times.
 void AddPieces(
-  std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time = 0.0);
+  std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time);
 
 /// Adds a row for each iso value to the text of a table of a film's numbers: its triangles, area,
 /// volume and pieces, and what gauges read. Does nothing if no table is wanted. Throws

@@ -4,15 +4,15 @@
 
 #include "Job.h"
 #include "ParticleFile.h"
-#include "ParticleTimes.h"
 #include "Text.h"
 
 #if MCOR_HAS_RANKS
-#include "vtkAppendPolyData.h"
 #include "vtkFieldData.h"
 #include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksWait.h"
 #endif
@@ -33,7 +33,6 @@ public:
   explicit RankSession(Job& job)
     : Sharing(job)
     , Periodic(job.Periodic)
-    , DetectPeriod(job.DetectPeriod)
   {
     int count = 0;
     char** none = nullptr;
@@ -76,30 +75,48 @@ public:
     throw std::runtime_error(sentence);
   }
 
-  Particles Read() override
+  /// Processes without particles get the others' arrays, without values, so that a name in the
+  /// options means the same on all processes. Finds the period of all processes' particles.
+  Particles Read(
+    const std::string& file, bool mayBeEmpty, const std::function<Particles()>& read) override
   {
-    return this->Options.Walls.empty() ? this->Part(this->Options.Inputs.front(), false)
-                                       : this->Share([this] { return Sharing::Read(); }, false);
-  }
-
-  /// Reads a stored time as for a single surface; a time between two steps is read by the first
-  /// process.
-  Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings) override
-  {
-    this->Options.Periodic = this->Periodic; // each time may have another period
-    this->Options.DetectPeriod = this->DetectPeriod;
-    const ParticleTimes::Step* step = times.GetStored(time);
-    if (step && step->Files.size() == 1 && step->Walls.empty())
+    Particles particles = vtkSmartPointer<vtkPolyData>::New();
+    if (file.empty())
     {
-      return this->Part(step->Files.front(), true);
+      this->OnFirst([&] { particles = read(); });
     }
-    return this->Share(
-      [&]
-      {
-        return step ? AddWalls(ReadParticles(step->Files, true), ReadWalls(step->Walls))
-                    : times.At(time, warnings);
-      },
-      true);
+    else
+    {
+      ParticleSets sets;
+      this->OnAll([&] { sets = ReadSets({ file }, this->GetRank(), this->GetCount()); });
+      const int own = sets.HaveVertices ? 1 : 0;
+      int any = own;
+      this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
+      sets.HaveVertices = any > 0;
+      this->OnAll([&] { particles = JoinSets(sets); });
+    }
+    const vtkIdType own = particles->GetNumberOfPoints();
+    vtkIdType all = own;
+    this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
+    Require(all > 0 || mayBeEmpty, "the input holds no points");
+    if (all > 0)
+    {
+      vtkSPHMatchEmpty(this->Controller, vtkPolyData::SafeDownCast(particles));
+    }
+    Job& job = this->Options;
+    job.Periodic = this->Periodic; // each time may have another period
+    if (job.DetectPeriod)          // field data tell the period
+    {
+      std::string problem;
+      const vtkSPHPeriod found =
+        vtkSPHFindPeriodDistributed(this->Controller, particles->GetFieldData(), problem);
+      this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
+    }
+    if (job.Periodic.size() == 3) // lengths; the particles tell where the period begins
+    {
+      job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, particles);
+    }
+    return particles;
   }
 
   /// Sorts the parts by GlobalPointIds and GlobalCellIds, and drops these arrays.
@@ -108,90 +125,24 @@ public:
     return vtkSPHMergeSurface(this->Controller, part);
   }
 
-  vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) override
+  Particles Append(vtkPointSet* particles) override
   {
     std::vector<vtkSmartPointer<vtkDataObject>> parts;
-    vtkNew<vtkAppendPolyData> append;
+    vtkNew<vtkMultiBlockDataSet> blocks;
     vtkSPHAwaitRanks(this->Controller);
     this->Controller->Gather(particles, parts, 0);
     for (const auto& part : parts)
     {
-      append->AddInputData(vtkPolyData::SafeDownCast(part));
+      blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
     }
-    if (this->IsFirst())
-    {
-      append->Update(); // sorts the arrays by their names
-      vtkNew<vtkPointData> inOrder;
-      for (int a = 0; a < particles->GetPointData()->GetNumberOfArrays(); ++a)
-      {
-        inOrder->AddArray(append->GetOutput()->GetPointData()->GetAbstractArray(
-          particles->GetPointData()->GetArrayName(a)));
-      }
-      append->GetOutput()->GetPointData()->ShallowCopy(inOrder);
-      append->GetOutput()->GetFieldData()->ShallowCopy(particles->GetFieldData());
-    }
-    return append->GetOutput();
+    const Particles all = vtkSPHJoinBlocks(blocks);
+    all->SetFieldData(particles->GetFieldData());
+    return all;
   }
 
 private:
-  /// Part() returns the particles that this process reads from a file. Share() returns all
-  /// particles that make() gives on the first process, and none on others. mayBeEmpty: whether all
-  /// processes together may have none.
-  Particles Part(const std::string& file, bool mayBeEmpty)
-  {
-    Particles particles;
-    ParticleSets sets;
-    this->OnAll([&] { sets = ReadSets({ file }, this->GetRank(), this->GetCount()); });
-    const int own = sets.HaveVertices ? 1 : 0;
-    int any = own;
-    this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
-    sets.HaveVertices = any > 0;
-    this->OnAll([&] { particles = JoinSets(sets); });
-    return this->Complete(particles, mayBeEmpty);
-  }
-
-  Particles Share(const std::function<Particles()>& make, bool mayBeEmpty)
-  {
-    Particles particles = vtkSmartPointer<vtkPolyData>::New();
-    this->OnFirst([&] { particles = make(); });
-    return this->Complete(particles, mayBeEmpty);
-  }
-
-  /// Processes without particles get the others' arrays, without values, so that a name in the
-  /// options means the same on all processes. Finds the period of all processes' particles.
-  Particles Complete(vtkPointSet* particles, bool mayBeEmpty)
-  {
-    const vtkIdType own = particles->GetNumberOfPoints();
-    vtkIdType all = own;
-    this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
-    Require(all > 0 || mayBeEmpty, "the input holds no points");
-    vtkNew<vtkPolyData> form;
-    if (own > 0)
-    {
-      form->SetPoints(particles->GetPoints());
-      form->GetPointData()->ShallowCopy(particles->GetPointData());
-    }
-    vtkSPHMatchEmpty(this->Controller, form);
-    const Particles complete = own > 0 || all == 0 ? particles : form.Get();
-    Job& job = this->Options;
-    if (job.DetectPeriod) // field data tell the period
-    {
-      std::string problem;
-      const vtkSPHPeriod found =
-        vtkSPHFindPeriodDistributed(this->Controller, complete->GetFieldData(), problem);
-      this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
-      job.DetectPeriod = false;
-    }
-    if (job.Periodic.size() == 3) // lengths; the particles tell where the period begins
-    {
-      job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
-    }
-    return complete;
-  }
-
   vtkNew<vtkMPIController> Controller;
   const std::vector<double> Periodic; ///< the job's own setting
-  const bool DetectPeriod;
 };
 #endif
 
@@ -205,15 +156,11 @@ private:
 
 }
 
-Sharing::Particles Sharing::Read()
+Sharing::Particles Sharing::ReadInput()
 {
-  return AddWalls(ReadParticles(this->Options.Inputs), ReadWalls(this->Options.Walls));
-}
-
-Sharing::Particles Sharing::Read(
-  ParticleTimes& times, double time, std::vector<std::string>& warnings)
-{
-  return times.At(time, warnings);
+  const Job& job = this->Options;
+  return this->Read(job.Walls.empty() ? job.Inputs.front() : "", false,
+    [&job] { return AddWalls(ReadParticles(job.Inputs), ReadWalls(job.Walls)); });
 }
 
 int LaunchedCount()

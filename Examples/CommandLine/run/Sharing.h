@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-class ParticleTimes;
 struct Job;
 
 /// A job, and how processes share its work; this base class is for one process alone. If one
@@ -44,15 +43,23 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// Returns this process's part of the particles and walls: of the only input, or at a time.
-  virtual Particles Read();
-  virtual Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings);
+  /// Returns this process's part of the particles that read() gives. If the name of a file is given,
+  /// it holds all of them, so that each process may read a part of it instead. Throws if there are
+  /// none, unless `mayBeEmpty`.
+  virtual Particles Read(const std::string& /*file*/, bool /*mayBeEmpty*/,
+    const std::function<Particles()>& read)
+  {
+    return read();
+  }
+
+  /// Reads the particles of the only input, and its walls, see Read().
+  Particles ReadInput();
 
   /// Returns the whole surface on the first process, null on others.
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 
   /// Returns the particles of all processes, in their order, on the first process.
-  virtual vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) { return particles; }
+  virtual Particles Append(vtkPointSet* particles) { return particles; }
 
   Job& Options;
 };

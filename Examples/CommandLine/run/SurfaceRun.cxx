@@ -7,6 +7,7 @@
 #include "Extra.h"
 #include "Failures.h"
 #include "Job.h"
+#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Sharing.h"
 #include "Text.h"
@@ -26,7 +27,6 @@
 #include <cstdio>
 #include <future>
 #include <iostream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -75,13 +75,23 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
     filter->SetSmoothingLength(job.CoefH * std::sqrt(dimension) * job.ParticleDistance);
     filter->SetParticleVolume(std::pow(job.ParticleDistance, dimension));
   }
-  const std::vector<double> period = job.DetectPeriod
+  const std::vector<double> period = job.DetectPeriod && job.Periodic.empty()
     ? CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "")
     : job.Periodic;
   if (!period.empty())
   {
     filter->SetPeriodicBounds(vtkSPHBoundsOfPeriod(period, particles->GetBounds()).data());
   }
+}
+
+/// Returns the particles with the factors of --widen or --smooth, see vtkMarchingCorrectors::Widen().
+vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
+{
+  auto widened = vtkSmartPointer<vtkPolyData>::New();
+  Messages() = {};
+  const bool isFound = job.Surface->Widen(particles, widened);
+  Require(isFound, Messages().FirstError());
+  return widened;
 }
 
 /// Gives the particles the smoothing lengths that --widen and --smooth make for the surface, and
@@ -135,16 +145,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
 {
   const std::vector<std::string>& asked = job.AttributeNames;
   const std::vector<std::string> names = NamesOf(particles->GetPointData());
-  std::vector<std::string> excluded;
-  filter->ClearExcludedArrays(); // arrays of the step before
-  if (!job.Walls.empty())
-  {
-    excluded.push_back(WallArrayName); // its value is the same on the whole surface
-  }
-  for (const auto& words : ChosenWords())
-  {
-    excluded.push_back(words.first); // an array that has the numbers of texts
-  }
+  std::vector<std::string> without;
   for (const std::string& name : asked)
   {
     Require(particles->GetNumberOfPoints() == 0 || Contains(names, name),
@@ -156,14 +157,18 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
     const std::string& color = job.Picture.ColorBy;
     job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
       job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !Contains(names, color)));
-    const std::vector<std::string> without = ArraysWithoutPlace(job, particles);
-    excluded.insert(excluded.end(), without.begin(), without.end());
+    without = ArraysWithoutPlace(job, particles);
   }
-  std::copy_if(names.begin(), names.end(), std::back_inserter(excluded),
-    [&asked](const std::string& name) { return !asked.empty() && !Contains(asked, name); });
-  for (const std::string& name : excluded)
+  filter->ClearExcludedArrays(); // arrays of the step before
+  for (const std::string& name : names)
   {
-    filter->AddExcludedArray(name);
+    const bool isWanted = asked.empty() || Contains(asked, name);
+    const bool isMark = name == WallArrayName && !job.Walls.empty(); // it would be the same everywhere
+    const bool isOfTexts = ChosenWords().count(name) > 0;            // it has the texts' numbers
+    if (!isWanted || isMark || isOfTexts || Contains(without, name))
+    {
+      filter->AddExcludedArray(name);
+    }
   }
 }
 
@@ -201,15 +206,15 @@ std::string ReasonForNoSurface(vtkFieldData* run)
   if (NumberOf(run, "TrianglesBeforeTrimming") > 0.0)
   {
     return Fill(run,
-      "all {TrianglesBeforeTrimming} " + what + inBox +
+      { "all {TrianglesBeforeTrimming} " + what + inBox +
         " were trimmed, as they lie where the fluid "
-        "ends: a lower --vertex-threshold keeps more of them");
+        "ends: a lower --vertex-threshold keeps more of them" });
   }
+  const std::string isoValue = values == 1 ? Fill(run, { " {IsoValues}" }) : "";
+  const char* range = "; the particles have values from {ScalarRange:0} to {ScalarRange:1}";
   return values == 0 ? ""
-                     : Fill(run,
-                         "no part of the field" + inBox + " reaches the iso value" +
-                           (values == 1 ? " {IsoValues}" : "") +
-                           "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
+                     : "no part of the field" + inBox + " reaches the iso value" + isoValue +
+      Fill(run, { range, "" });
 }
 
 /// Shows a run's progress line. If no line is shown, says once that the driver compiles, if this
@@ -309,24 +314,6 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   return isWidened && filter != job.Surface ? WidenFor(filter, job, particles) : particles;
 }
 
-vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
-{
-  auto widened = vtkSmartPointer<vtkPolyData>::New();
-  Messages() = {};
-  const bool isFound = job.Surface->Widen(particles, widened);
-  Require(isFound, Messages().FirstError());
-  return widened;
-}
-
-void SetUpSurface(const Job& job, vtkPointSet* input)
-{
-  vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
-  vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
-  bare->SetPoints(particles->GetPoints());
-  bare->GetPointData()->ShallowCopy(particles->GetPointData());
-  job.Surface->SetInputData(bare);
-}
-
 double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string& before)
 {
   const bool isQuiet = sharing.Options.Has("--quiet");
@@ -346,26 +333,37 @@ double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string
   return elapsed.count();
 }
 
-Run Extract(const Sharing& sharing, const std::string& before)
+Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time,
+  const std::string& progress)
 {
-  vtkMarchingCorrectors* filter = sharing.Options.Surface;
+  const Job& job = sharing.Options;
+  vtkMarchingCorrectors* filter = job.Surface;
   Run run;
-  run.WallSeconds = Update(filter, sharing, before);
+  sharing.OnAll(
+    [&]
+    {
+      const vtkSmartPointer<vtkPointSet> used = SetUpParticles(filter, job, particles);
+      vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
+      bare->SetPoints(used->GetPoints());
+      bare->GetPointData()->ShallowCopy(used->GetPointData());
+      filter->SetInputData(bare);
+    });
+  sharing.OnAll([&] { run.WallSeconds = Update(filter, sharing, progress); });
   run.Surface = vtkSmartPointer<vtkPolyData>::New();
   run.Surface->ShallowCopy(filter->GetOutput());
   filter->GetOutput()->Initialize(); // frees one before the next: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
   const std::vector<double> values = NumbersOf(run.Statistics, "IsoValues");
-  if (!sharing.Options.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
+  if (!job.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
     run.Statistics->HasArray("ScalarRange") && !values.empty())
   {
     filter->SetValue(0, values[0]); // it was chosen here, and stays for the next steps
-    if (!sharing.Options.Has("--quiet") && sharing.IsFirst())
+    if (!job.Has("--quiet") && sharing.IsFirst())
     {
       std::cout << Fill(run.Statistics,
-                     "iso value   {IsoValues}, chosen for {Scalar}, whose range is "
-                     "{ScalarRange:0} .. {ScalarRange:1} (--iso gives another one)")
+                     { "iso value   {IsoValues}, chosen for {Scalar}, whose range is "
+                       "{ScalarRange:0} .. {ScalarRange:1} (--iso gives another one)" })
                 << std::endl;
     }
   }
@@ -378,6 +376,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
     run.Warnings.resize(std::max<std::size_t>(run.Warnings.size(), 1));
     run.Warnings.front() = "the surface is empty" + (reason.empty() ? "" : ": " + reason);
   }
+  sharing.OnAll([&] { AddPieces(pieces, sharing, run, particles, time); });
   return run;
 }
 
@@ -393,10 +392,95 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
   }
 }
 
-std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
-  vtkPointSet* particles, const Picture& picture, ColorScale& colors)
+bool MakeSurface(Sharing& sharing)
 {
-  colors.Suggest(surface, sharing.Options.Surface->GetIsoValueArrayName());
-  colors.Include(surface);
-  return picture(file, surface, particles, colors, -1);
+  const Job& job = sharing.Options;
+  const bool isInPieces = EndsWith(job.Output, ".pvtp");
+  std::vector<std::string> outputs;
+  for (int rank = 0; isInPieces && rank < sharing.GetCount(); ++rank)
+  {
+    outputs.push_back(PieceName(job.Output, rank));
+  }
+  if (sharing.IsFirst())
+  {
+    outputs.insert(outputs.end(),
+      { job.Output, job.Text("--stats"), job.Text("--components"), job.Picture.File,
+        job.Text("--widening") });
+  }
+  sharing.OnAll(
+    [&]
+    {
+      OpenSources(job.InputFiles());
+      CheckOutputs(outputs);
+    });
+  const vtkSmartPointer<vtkPointSet> particles = sharing.ReadInput();
+  std::vector<Run> runs; // without their surfaces
+  std::string pieces;
+  Run run;
+  for (int i = 0; i < job.Repeat; ++i)
+  {
+    run.Surface = nullptr; // one run must end before the next begins
+    pieces.clear();
+    run = Extract(sharing, particles, pieces);
+    runs.push_back(run);
+    runs.back().Surface = nullptr;
+    if (!job.Has("--quiet") && sharing.IsFirst())
+    {
+      std::cout << (i == 0 ? DescribeRun(run.Statistics, job.Has("--verbose")) : "")
+                << DescribeSeconds(run.Statistics, job.Has("--verbose")) << std::flush;
+    }
+  }
+  const double peakResidentBytes = PeakResidentBytes();
+  run.Surface = isInPieces ? run.Surface : sharing.Merge(run.Surface);
+  ColorScale colors(job.Picture);
+  OutputFiles files;
+  sharing.OnAll(
+    [&]
+    {
+      if (isInPieces)
+      {
+        const std::string piece = PieceName(job.Output, sharing.GetRank());
+        files.Write(piece, SurfaceBytes(piece, run.Surface, colors));
+      }
+      if (!sharing.IsFirst())
+      {
+        return;
+      }
+      if (!isInPieces)
+      {
+        Inspect(job, job.Output, run, particles, colors, sharing.GetCount() == 1);
+      }
+      for (const std::string& warning : run.Warnings)
+      {
+        Say("warning: " + warning);
+      }
+      files.Write(job.Output,
+        isInPieces ? ListPieces(job.Output, sharing.GetCount(), run.Surface)
+                   : SurfaceBytes(job.Output, run.Surface, colors));
+      if (job.Has("--components"))
+      {
+        files.Write(job.Text("--components"), pieces);
+      }
+    });
+  sharing.OnAll([&] { files.Commit(); }); // only if all processes have written all files
+  if (job.Has("--widening"))
+  {
+    Sharing::Particles widened;
+    const vtkSmartPointer<vtkPointSet> used = vtkPointSet::SafeDownCast(job.Surface->GetInput());
+    sharing.OnAll([&] { widened = Widen(job, used); });
+    widened = sharing.Append(widened);
+    sharing.OnFirst([&] { WriteDataSet(job.Text("--widening"), widened); });
+  }
+  sharing.OnFirst(
+    [&]
+    {
+      if (job.Has("--stats"))
+      {
+        std::cout.flush(); // the file may be /dev/stdout
+        WriteOutput(
+          job.Text("--stats"), StatisticsAsJson(job, runs, run.Warnings, peakResidentBytes));
+      }
+      WritePicture(job, run.Surface, particles, colors);
+    });
+  return true;
 }

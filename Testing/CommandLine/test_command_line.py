@@ -98,11 +98,8 @@ class Usage(CommandLineTest):
             ([*ISO, "--cubes", "uniform", "--max-level", "1"], "for adaptive cubes; leave out --max-level, or --cubes uniform")])
         self.refuse_all(1, [([*ISO, "--component", "0"], "'Radius' has one component; leave out --component")])
 
-    def test_version(self):
-        result = self.run_good("--version")
-        self.assertRegex(result.stdout, r"^marching-correctors \d+\.\d+\.\d+ \(VTK \d+\.\d+\.\d+\)\n$")
-
-    def test_list_devices(self):
+    def test_questions(self):
+        self.assertRegex(self.run_good("--version").stdout, r"^marching-correctors \d+\.\d+\.\d+ \(VTK \d+\.\d+\.\d+\)\n$")
         self.assertRegex(self.run_good("--list-devices").stdout, r"^0: built in: this CPU")
 
     def test_values_of_the_wrong_form(self):
@@ -285,11 +282,8 @@ class Options(CommandLineTest):
         found = self.succeed(*ISO)
         self.assertGreater(found["statistics"]["triangles"], 100)
         self.assertEqual(found["statistics"]["fluid_particles"], len(self.points))
-        self.assertEqual(found["arrays"]["smoothing_length_array"], "SmoothingLength")
-        self.assertEqual(found["arrays"]["mass_array"], "Mass")
+        self.assertLessEqual({"smoothing_length_array": "SmoothingLength", "mass_array": "Mass"}.items(), found["arrays"].items())
         self.assertEqual(found["parameters"]["iso_values"], [0.3])
-        self.assertEqual(found["parameters"]["kernel"], "cubic")
-        self.assertTrue(found["device"])
         seconds = dict(found["seconds"])
         total = seconds.pop("total")
         self.assertLessEqual({"search_grid", "seeds", "extraction", "correction", "trimming",
@@ -437,8 +431,6 @@ class Options(CommandLineTest):
     def test_empty_surface(self):
         self.extract_good("--scalar", "Radius", "--iso", "99", says="^marching-correctors: warning: .*99")
         self.assertTrue(self.output.exists())
-
-    def test_no_fluid(self):
         self.succeed(*ISO, "--fluid", "Kind=7", told="warning: .*Kind = 7")
 
     def test_components(self):

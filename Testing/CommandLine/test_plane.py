@@ -37,10 +37,7 @@ class Plane(CommandLineTest):
         self.assertAlmostEqual(run["length"], 8, delta=0.3)
         self.assertAlmostEqual(run["area"], 4, delta=0.1)
         self.assertEqual(run["lattice_cells"][1], 1)
-
-    def test_line_of_a_scalar(self):
-        result = self.extract_good(*ISO)
-        self.assertRegex(result.stdout, r"lines +\d+ points, 1 lines; length 1\.[89]")
+        self.assertRegex(self.extract_good(*ISO).stdout, r"lines +\d+ points, 1 lines; length 1\.[89]")
 
     def test_dimension(self):
         self.succeed("--free-surface", "--dimension", "2")

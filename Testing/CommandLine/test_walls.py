@@ -122,11 +122,8 @@ class Walls(CommandLineTest):
 
     def test_mistakes(self):
         there = list(self.directory.iterdir())
-        cases = ((2, "--fluid and --walls exclude each other", ["--walls", self.wall, "--fluid", "Kind=0"]),
-                 (1, r"nowhere.vtp cannot be read: No such file", ["--walls", "nowhere.vtp"]),
-                 (2, r"--walls needs", ["--walls"]))
-        for status, sentence, options in cases:
-            self.refuse(self.extract(*HOW, *options, source=self.fluid), status, sentence)
+        self.refuse(self.extract(*HOW, "--walls", "nowhere.vtp", source=self.fluid), 1, "nowhere.vtp cannot be read: No such file")
+        self.refuse(self.extract(*HOW, "--walls", source=self.fluid), 2, "--walls needs")
         self.refuse(self.run_program(self.fluid, self.wall, *HOW, "--walls", self.wall), 2,
                     r"WallBoundary_0.vtp would overwrite the input")
         self.arrays["IsWall"] = self.arrays["Kind"]

@@ -93,7 +93,7 @@ class DamagedFiles(CommandLineTest):
         huge = "more than a file of its size can hold; it may be damaged$"
         for name, good, bad, why in (
                 ("inline.vtp", b'NumberOfPoints="27"', b'NumberOfPoints="-1"', "NumberOfPoints is -1; it may be damaged"),
-                ("appended.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="-1"', "NumberOfPoints is -1; it may be damaged"),
+                ("appended.vtu", b'NumberOfPoints="27"', b'NumberOfPoints = "-1"', "NumberOfPoints is -1; it may be damaged"),
                 ("inline.vtp", b'Components="1"', b'Components="2147483647"', huge),
                 ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"', huge),
                 ("binary.vtk", b"POINT_DATA 27", b"POINT_DATA 2700000", "point_data is 2700000, " + huge),

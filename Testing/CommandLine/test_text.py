@@ -71,19 +71,13 @@ class Text(CommandLineTest):
         self.assertIn(r"'\x1b[31m\xff\x0a'", self.printed(self.run_program(b"\x1b[31m\xff\n", b"\x1b[31m\xff\n",
                                                                       b"\x1b[31m\xff\n", text=False)))
 
-    def write_named(self, encoded):
-        """Writes a legacy file with an array of this name. VTK decodes %1b in it."""
-        path = self.directory / "named.vtk"
-        arrays = {"SmoothingLength": self.arrays["SmoothingLength"], "NAME": self.arrays["Radius"]}
-        files.write_legacy(path, self.points, arrays)
-        path.write_bytes(path.read_bytes().replace(b"NAME", encoded))
-        return path
-
     def test_array_names(self):
         for encoded, shown in ((b"%1b[31mred%07%0a", r"\x1b[31mred\x07\x0a"), (b"T\xe9mp", r"T\xe9mp"),
                                (b"%22%3c%26%3e'", "\"<&>'"), (b"%c2%9b31m", r"\x9b31m")):
             with self.subTest(encoded):
-                source = self.write_named(encoded)
+                source = self.directory / "named.vtk"  # VTK decodes %1b in names of a legacy file.
+                files.write_legacy(source, self.points, {name: self.arrays[name] for name in ("SmoothingLength", "Radius")})
+                source.write_bytes(source.read_bytes().replace(b"Radius", encoded))
                 result = self.extract_bytes(*ISO, source=source)
                 self.assertEqual(result.returncode, 1)
                 self.assertIn(shown, self.printed(result))

@@ -284,24 +284,9 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// Describes an array. VTK's XML name of its type tells the size.
-void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)
-{
-  const int type = array->GetDataType();
-  const auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
-  const bool isSigned = numbers && vtkDataArray::GetDataTypeMin(type) < 0.0;
-  const std::string kind = type == VTK_FLOAT || type == VTK_DOUBLE ? "Float"
-    : isSigned                                                     ? "Int"
-                                                                   : "UInt";
-  text << "      <PDataArray type=\""
-       << (type == VTK_STRING ? "String" : kind + std::to_string(8 * array->GetDataTypeSize()))
-       << "\" Name=\"" << EscapedForXml(name) << "\" NumberOfComponents=\""
-       << array->GetNumberOfComponents() << "\"/>\n";
-}
-
-/// Describes the arrays, and names those with a role, such as the normals, as VTK's writers do in a
-/// file.
-void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* arrays)
+/// Describes arrays, and names those with a role, such as the normals, as VTK's writers do in a
+/// file. VTK's XML name of an array's type tells the size.
+void Describe(std::ostream& text, const std::string& element, vtkDataSetAttributes* arrays)
 {
   text << "    <" << element;
   for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
@@ -316,7 +301,16 @@ void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* 
   text << ">\n";
   for (vtkAbstractArray* array : ArraysOf(arrays))
   {
-    Describe(text, array, array->GetName());
+    const int type = array->GetDataType();
+    const bool isSigned =
+      vtkArrayDownCast<vtkDataArray>(array) && vtkDataArray::GetDataTypeMin(type) < 0.0;
+    const char* kind = type == VTK_FLOAT || type == VTK_DOUBLE ? "Float"
+      : isSigned                                               ? "Int"
+                                                               : "UInt";
+    const std::string size = std::to_string(8 * array->GetDataTypeSize());
+    text << "      <PDataArray type=\"" << (type == VTK_STRING ? "String" : kind + size)
+         << "\" Name=\"" << EscapedForXml(array->GetName()) << "\" NumberOfComponents=\""
+         << array->GetNumberOfComponents() << "\"/>\n";
   }
   text << "    </" << element << ">\n";
 }
@@ -409,14 +403,14 @@ std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
   std::ostringstream text;
   text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\">\n"
        << "  <PPolyData GhostLevel=\"0\">\n";
-  DescribeAll(text, "PPointData", piece->GetPointData());
-  DescribeAll(text, "PCellData", piece->GetCellData());
-  text << "    <PPoints>\n";
+  vtkNew<vtkPointData> places;
   if (piece->GetPoints())
   {
-    Describe(text, piece->GetPoints()->GetData(), "Points");
+    places->AddArray(piece->GetPoints()->GetData());
   }
-  text << "    </PPoints>\n";
+  Describe(text, "PPointData", piece->GetPointData());
+  Describe(text, "PCellData", piece->GetCellData());
+  Describe(text, "PPoints", places);
   for (int rank = 0; rank < count; ++rank)
   {
     text << "    <Piece Source=\""

@@ -81,7 +81,7 @@ void mcor_release_memory(mcor_context* context)
   MCOR_RELEASE_EACH(context, &context->sort);
   mcor_release_grid(context);
   mcor_release_bricks(context);
-  mcor_release_mesh(context);
+  MCOR_RELEASE_BEFORE(context, &context->mesh, march_count);
   mcor_release_attributes(context);
   mcor_release_box(context);
   mcor_release_adaptive(context);

@@ -236,6 +236,10 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
 /* Frees all buffers of a struct that consists of buffers. */
 #define MCOR_RELEASE_EACH(context, s)                                                              \
   mcor_release_each(context, (mcor_buffer*)(s), sizeof *(s) / sizeof(mcor_buffer))
+/* Frees the buffers with which a struct begins, up to a member that is no buffer. */
+#define MCOR_RELEASE_BEFORE(context, s, member)                                                    \
+  mcor_release_each(context, (mcor_buffer*)(s),                                                    \
+    (size_t)((char*)&(s)->member - (char*)(s)) / sizeof(mcor_buffer))
 void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
 
 /* mcor_ranks.c. Turns what a function of options.ranks returns into a status. */
@@ -313,7 +317,6 @@ void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
 void mcor_release_bricks(mcor_context* context);
 void mcor_release_nodes(mcor_context* context);
-void mcor_release_mesh(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
@@ -330,7 +333,6 @@ mcor_status mcor_evaluate_points(
   mcor_context* context, const mcor_field_points* points, int first, int count, int* group_count);
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
-void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);

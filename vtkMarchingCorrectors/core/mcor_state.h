@@ -74,35 +74,33 @@ typedef struct mcor_stage_data
 /* [III-A] The search grid. */
 typedef struct mcor_grid
 {
-  int count; /* particles on the device */
-  int level_count, bucket_shift;
-  mcor_level levels[MCOR_LEVEL_LIMIT];
   mcor_buffer level_buffer, buckets, cell_keys, cell_begins, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: only with solids */
   mcor_buffer value;
-  int view;               /* kernels measure in cubes of this level of adaptive cubes */
-  int most_in_cell;       /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
   mcor_buffer side_flags; /* uchar for each MCOR_SIDE_PARTICLES particles: on which sides of this
                            * iso value they are */
+  int count;              /* particles on the device */
+  int level_count, bucket_shift;
+  mcor_level levels[MCOR_LEVEL_LIMIT];
+  int view;         /* kernels measure in cubes of this level of adaptive cubes */
+  int most_in_cell; /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
   bool has_solids;
 } mcor_grid;
 
 /* The bricks that exist, and what is known of them. */
 typedef struct mcor_brick_data
 {
-  int count;
   mcor_buffer bricks;        /* int4: position in bricks */
   mcor_buffer known;         /* ulong: nodes evaluated, all or none of a brick */
   mcor_buffer value, weight; /* real [64] */
   mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
+  int count;
 } mcor_brick_data;
 
 /* [III-B] Blocks where there may be surface, of all levels, and the bricks that exist in them. */
 typedef struct mcor_bricks
 {
   mcor_buffer rungs; /* mcor_rung: where each level's blocks begin, and the end */
-  /* first_block: where each level's blocks begin; key >> block_shift: a key's bucket */
-  int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2];
   mcor_buffer block_keys, block_buckets;                                /* by level, z, y, x */
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
@@ -110,8 +108,6 @@ typedef struct mcor_bricks
   mcor_buffer leaves, split, beside;  /* uint [block_count][16]; only with several levels, see
                                        * mcor_leaf_compare */
   mcor_buffer seed_bits, seeds;       /* seed bricks, as in `bits`; ulong, seed cells by slot */
-  mcor_brick_data now;
-  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* where each level's slots begin */
   mcor_buffer cells;          /* ulong: cells that may be used, all or none of a brick */
   mcor_buffer plain, leaf_of; /* ulong; int, of adaptive cubes: see mcor_leaf_cells */
   mcor_buffer neighbours;     /* see mcor_brick_neighbours */
@@ -120,6 +116,10 @@ typedef struct mcor_bricks
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
   mcor_buffer regions;                               /* int: the regions to examine */
   mcor_buffer found; /* int: what a kernel found in any brick, or how many regions of each level */
+  mcor_brick_data now;
+  /* first_block: where each level's blocks begin; key >> block_shift: a key's bucket */
+  int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2];
+  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* where each level's slots begin */
 } mcor_bricks;
 
 /* [III-D] The surface of one iso value while it is made. */
@@ -127,14 +127,6 @@ typedef struct mcor_mesh
 {
   mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
-  int march_count; /* vertices on lattice edges; these are sorted by level, and so are those on the
-                    * trim boundary */
-  int
-    vertex_count; /* first vertices on lattice edges, then vertices on the trim boundary, then, from
-                   * cap_first on, vertices of caps */
-  int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
-  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
-  int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer curvature; /* real [vertex_count][2] */
   mcor_buffer means;     /* real [vertex_count][attributes.count]: means of attributes */
@@ -143,6 +135,14 @@ typedef struct mcor_mesh
   mcor_buffer triangles;
   mcor_buffer scanned;                           /* numbers of vertices in the output, see
                                                   * mcor_is_output */
+  int march_count; /* vertices on lattice edges; these are sorted by level, and so are those on the
+                    * trim boundary */
+  int
+    vertex_count; /* first vertices on lattice edges, then vertices on the trim boundary, then, from
+                   * cap_first on, vertices of caps */
+  int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
+  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
+  int triangle_count;
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first vertex of each level; first trim vertex of
                                                   * each level */
 } mcor_mesh;
@@ -173,7 +173,6 @@ typedef struct mcor_tree
 /* Leaves that are marched, and what their slots need; see mcor_leaf.c. */
 typedef struct mcor_adaptive
 {
-  int count;                   /* number of leaves that may have surface */
   mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many listed leaves
                                 * come before */
   mcor_buffer cells, finer; /* int4, uint: the listed leaves, in order; which bricks around each are
@@ -183,6 +182,7 @@ typedef struct mcor_adaptive
   mcor_buffer proofs;       /* uchar: state of each slot */
   mcor_buffer quadrants;    /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;         /* int: loops that lie in one face between leaves */
+  int count;                /* number of leaves that may have surface */
 } mcor_adaptive;
 
 /* Which cells pairs reach; see mcor_pair.c. */

@@ -128,8 +128,6 @@ mcor_status mcor_complete_leaves(mcor_context* context)
 
 void mcor_release_adaptive(mcor_context* context)
 {
-  mcor_adaptive* g = &context->adaptive;
-  MCOR_RELEASE(context, &g->chosen, &g->scanned, &g->cells, &g->finer, &g->tables, &g->mixed,
-    &g->proofs, &g->quadrants, &g->flat);
+  MCOR_RELEASE_BEFORE(context, &context->adaptive, count);
   mcor_release_tree(&context->tree);
 }

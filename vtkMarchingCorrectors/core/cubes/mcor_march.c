@@ -163,11 +163,3 @@ mcor_status mcor_march(mcor_context* context)
   MCOR_TRY(mcor_count_edges(context));
   return mesh->triangle_count == 0 ? MCOR_OK : mcor_emit(context);
 }
-
-void mcor_release_mesh(mcor_context* context)
-{
-  mcor_mesh* m = &context->mesh;
-  MCOR_RELEASE(context, &m->used, &m->plain_used, &m->edges, &m->vertex_base, &m->triangle_base,
-    &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
-    &m->flag, &m->evaluations, &m->means, &m->curvature, &m->cut_edges, &m->triangles, &m->scanned);
-}

@@ -7,18 +7,14 @@
 
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 {
-  MCOR_RELEASE(
-    context, &data->bricks, &data->known, &data->value, &data->weight, &data->above, &data->valid);
+  MCOR_RELEASE_BEFORE(context, data, count);
   data->count = 0;
 }
 
 void mcor_release_bricks(mcor_context* context)
 {
   mcor_bricks* b = &context->bricks;
-  MCOR_RELEASE(context, &b->rungs, &b->block_keys, &b->block_buckets, &b->block_states,
-    &b->inactive, &b->states, &b->bits, &b->base, &b->leaves, &b->split, &b->beside, &b->seed_bits,
-    &b->seeds, &b->cells, &b->plain, &b->leaf_of, &b->neighbours, &b->need, &b->bit_counts,
-    &b->child_counts, &b->child_keys, &b->child_index, &b->regions, &b->found);
+  MCOR_RELEASE_BEFORE(context, b, now);
   mcor_release_brick_data(context, &b->now);
 }
 

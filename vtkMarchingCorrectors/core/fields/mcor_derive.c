@@ -218,7 +218,7 @@ static mcor_status mcor_run_derive(
   MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
-  mcor_release_batch(context, &run.batch);
+  MCOR_RELEASE_BEFORE(context, &run.batch, first);
   MCOR_RELEASE(context, &run.arrays, &run.moments, &run.slopes);
   free(run.particles);
   MCOR_TRY(status);

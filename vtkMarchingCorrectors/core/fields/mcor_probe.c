@@ -150,7 +150,7 @@ mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch,
 
 void mcor_release_probe(mcor_probe_run* run)
 {
-  mcor_release_batch(run->context, &run->batch);
+  MCOR_RELEASE_BEFORE(run->context, &run->batch, first);
   MCOR_RELEASE(run->context, &run->weight, &run->weight_with_solids, &run->sums,
     &run->weight_gradient, &run->gradients);
 }

@@ -61,7 +61,7 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
 {
   MCOR_RELEASE(
     context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list, &run->outside);
-  mcor_release_batch(context, &run->batch);
+  MCOR_RELEASE_BEFORE(context, &run->batch, first);
   free(run->originals);
   run->originals = NULL;
 }

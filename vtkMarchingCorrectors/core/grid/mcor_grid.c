@@ -384,9 +384,6 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 
 void mcor_release_grid(mcor_context* context)
 {
-  mcor_grid* g = &context->grid;
-  MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->cell_begins, &g->order,
-    &g->px, &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value,
-    &g->side_flags);
+  MCOR_RELEASE_BEFORE(context, &context->grid, count);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
 }

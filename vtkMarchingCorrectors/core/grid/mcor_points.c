@@ -65,9 +65,3 @@ mcor_status mcor_group_batch(
     MCOR_BUFFER(&batch->node), MCOR_BUFFER(&batch->offset)));
   return mcor_make_groups(context, &batch->node, 0, inside, group_count);
 }
-
-void mcor_release_batch(mcor_context* context, mcor_point_batch* batch)
-{
-  MCOR_RELEASE(context, &batch->keys, &batch->order, &batch->in_node, &batch->in_offset,
-    &batch->node, &batch->offset);
-}

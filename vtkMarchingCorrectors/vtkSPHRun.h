@@ -36,17 +36,14 @@ public:
 
   /**
    * Makes a context for this device, or keeps the present one if it fits. This process is number
-   * `place` of `count` on this machine. Returns an empty string, or why the device is not
-   * usable.
+   * `place` of `count` on this machine. Returns why the device is not usable, or an empty string.
    */
   std::string Prepare(const std::string& device, int place, int count);
 
   /** Forgets the data on the device after a failure, and the device itself after a device error. */
   void Forget(mcor_status status);
 
-  /**
-   * Gives memory back. Between BeginRun() and EndRun() the memory is in use, so EndRun() does it.
-   */
+  /** Gives memory back. Between BeginRun() and EndRun() it is in use, so EndRun() does it. */
   void Release();
   void BeginRun()
   {
@@ -133,21 +130,14 @@ public:
 
   /** Takes this process's particles, which may be null. */
   virtual bool Begin(vtkPointSet* particles);
-  /**
-   * Returns the filter's description of the particles, with the fluid that is detected; and names in
-   * `first` the array to contour, if none was named.
-   */
+  /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
-   * Collects the particles, if there are any, and notes which arrays were found. Warns if there is
-   * no fluid, or if an array or setting has no effect. Returns false, after an error, if an array
-   * is not usable.
+   * Collects the particles, and notes which arrays were found. Warns if there is no fluid, or if
+   * something has no effect. Returns false, after an error, if an array is not usable.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
-  /**
-   * Finds the period and, for many processes, everything global. forSamples: for mcor_probe and
-   * mcor_derive; else for a surface.
-   */
+  /** Finds the period and, for many processes, the globals: of mcor_probe if forSamples is set. */
   virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
   /** Finds the period alone, and, from all particles, the smoothing length if it is estimated. */
   virtual bool MeasureLengths(vtkSPHParticles& particles) { return this->Measure(particles, true); }
@@ -156,18 +146,15 @@ public:
   /** Takes the points at which to evaluate, which may be null. */
   virtual void PlacePoints(vtkDataSet* points) { this->Points = points; }
   /**
-   * Sends particles, and points, to the processes that need them. Returns `mine`, or the particles
-   * that came, already collected; null if these are not usable.
+   * Sends particles, and points, to the processes that need them. Returns the particles that came,
+   * already collected (alone: `mine`); null if these are not usable.
    */
   virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }
   /** Marks the particles of Share() that this process owns; null: it owns all. */
   virtual const std::uint8_t* MarkOwned() { return nullptr; }
   /** Calls the core: `call` gets a context for the device, and returns the core's status. */
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
-  /**
-   * Calls a function of the core that needs no context; `call` returns false if the function
-   * failed.
-   */
+  /** Calls a function of the core that needs no context; `call` returns false if it failed. */
   virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
   /** Does the same with a function that cannot fail, and returns its result. */
   template <typename CallT>
@@ -183,9 +170,8 @@ public:
     return answer;
   }
   /**
-   * Sends results, a tuple for each point, or for each particle if there are no points, back to the
-   * process that the points or particles came from. home: where the results belong on this process;
-   * may be null.
+   * Sends results, a tuple for each point, or else for each particle, back to the process that it
+   * came from. home: where the results belong on this process; may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
   /** Lists the first particle of all processes at which each interpolated array is not finite. */

@@ -40,10 +40,7 @@ std::string vtkSPHRealName(const std::string& name);
 /** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
-/**
- * Adds an object's state to a signature: VTK's modification times are unique in a process, so
- * object and time identify it.
- */
+/** Adds an object's state to a signature: its address and its time, which VTK gives only once. */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
@@ -189,10 +186,7 @@ enum vtkSPHHow
 /** Adds the costs of a call of the core to the costs of earlier calls. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/**
- * Finds the point array with the most usual name for this quantity and this number of
- * components; nullptr: there is none.
- */
+/** Finds the point array with the most usual name for this quantity; nullptr: there is none. */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
 /** Arrays as the core lists them. Holds the arrays; copies them if their values do not lie in one piece. */

@@ -23,20 +23,18 @@ class vtkPointSet;
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
 
 /**
- * Returns the particles of a data set, or of each of its blocks. If a block has other cells than
- * vertices, and any block or process has vertices (haveVertices), points without a vertex are nodes
- * of a mesh, and are left out. Cell arrays become arrays of the vertices' points, unless the points
- * have an array of that name. They do so even if there are only vertices, one for each point. The
- * data set keeps its class, and all cells of the result are vertices. Returns the data set itself
- * if nothing changes.
+ * Returns the particles of a data set, or of each of its blocks, in data of the same class. If a
+ * block has other cells than vertices, and any block or process has vertices (haveVertices), points
+ * without a vertex are nodes of a mesh, and are left out. Arrays of vertices become arrays of their
+ * points, unless the points have an array of that name. Returns the data set itself if nothing
+ * changes.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);
 
 /**
- * Lists "Block 'NAME', index N" for each block that is there, in the order of iteration. NAME is
- * the name of the block, or of the block that it is a partition of; N is the flat index that
- * ParaView shows.
+ * Lists "Block 'NAME', index N" for each block that is there, in the order of iteration: its name,
+ * or that of the block that it is a partition of, and the flat index that ParaView shows.
  */
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
 
@@ -53,10 +51,7 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
-/**
- * Lists "Block: NAME" for each name of a block, if there are several. Each entry can be chosen as
- * fluid array.
- */
+/** Lists "Block: NAME" for each name of a block, if there are several, to choose as fluid array. */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
@@ -69,10 +64,7 @@ void vtkSPHSplitBlocks(
 /** Returns the latest modification time of the data set and its blocks. */
 vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree);
 
-/**
- * Returns a warning for blocks that are contoured one by one, if some of their names, but not all,
- * tell of walls; else an empty text.
- */
+/** Returns a warning if some of these blocks' names, but not all, tell of walls; else no text. */
 std::string vtkSPHFindWalls(const std::vector<std::string>& names);
 VTK_ABI_NAMESPACE_END
 

@@ -20,9 +20,7 @@ class vtkPointSet;
 /** Names of arrays; empty: not found. */
 struct vtkSPHFound
 {
-  std::string SmoothingLength, Volume, Mass, Density, Velocity;
-  std::string
-    Fluid; ///< clearly tells which particles are fluid, see vtkSPHAlgorithm::SetDetectFluid()
+  std::string SmoothingLength, Volume, Mass, Density, Velocity, Fluid;
   double FluidValue = 0.0;
 };
 
@@ -52,9 +50,8 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * Finds the period if many processes hold the particles: the first process whose field data tell a
- * period decides. `problem` becomes a sentence if another process tells a different period.
- * Collective.
+ * Finds the period that the first of many processes tells. `problem` becomes a sentence if another
+ * process tells a different period. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);

@@ -21,10 +21,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/**
- * A point array requested by SetInputArrayToProcess: the array, null if there is none, and the
- * requested name, empty if there is none.
- */
+/** What SetInputArrayToProcess requested: the array, or null; and the name, which may be empty. */
 struct vtkSPHRequest
 {
   vtkSmartPointer<vtkAbstractArray> Array;
@@ -63,8 +60,7 @@ void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequ
 
 /**
  * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or
- * densities of the first `count` particles. Returns why that failed on this rank, else an empty
- * text.
+ * densities of the first `count` particles. Returns why that failed, else an empty text.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
   std::int64_t count, double* values);
@@ -93,18 +89,12 @@ public:
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /**
-   * NameMade() returns the name under which values computed from neighbours travel to other
-   * processes; no file's array has such a name. IsMade() says whether a name is one.
-   */
+  /** The name of values from neighbours that go to other processes. IsMade() knows such names. */
   static std::string NameMade(const std::string& name);
   static bool IsMade(const char* name);
   ///@}
 
-  /**
-   * Returns a sentence for each array that the core left out. notFinite[i]: the particle at which
-   * interpolated array i is not finite; below 0: none. `place`: what the arrays are left out of.
-   */
+  /** Returns a sentence for each array that the core left out of `place`, see mcor_samples. */
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 

@@ -49,14 +49,9 @@ public:
    */
   using Merge = std::function<void(double* ranges, int count)>;
   void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);
-  /**
-   * Returns the largest coordinate, in magnitude, of the mesh's points if they are floats; else
-   * 0.
-   */
+  /** Returns the largest magnitude of the mesh's coordinates if they are floats; else 0. */
   double FindLargestFloat(int precision) const;
-  /**
-   * Adds statistics and parameters. All but the costs depend on the input and the options alone.
-   */
+  /** Adds statistics and parameters. All but costs depend on the input and the options alone. */
   void AddRun(vtkFieldData* run) const;
 
 private:

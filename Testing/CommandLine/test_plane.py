@@ -54,9 +54,6 @@ class Plane(CommandLineTest):
         self.run_good(self.input, stl, "--free-surface", "--filled", "--no-attributes")
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
-    def test_filled_alone(self):
-        self.refuse(self.extract("--free-surface", "--filled", "--capping", "--box=-1,1,0,1,-1,1"), 1, says("CAPPING_WITH_FILLED", "--capping", "--filled"))
-
     def test_columns_of_a_table(self):
         """Tables keep arrays whose names other columns have or which look like formulas, and integers too large for a double."""
         big = 2 ** 60 + 1
@@ -106,26 +103,21 @@ class Plane(CommandLineTest):
         files.write_vtp(self.input, *files.lattice())
         self.refuse(self.run_program(self.input, table, *ISO), 1, "holds the points of lines")
 
-    def test_too_many_squares_to_fill(self):
-        """A warning comes before lines are made: a few particles with a small smoothing length make all squares small."""
-        self.arrays["SmoothingLength"] = self.arrays["SmoothingLength"][:]
-        self.arrays["SmoothingLength"][0] *= 5e-4
-        files.write_vtp(self.input, self.points, self.arrays)
-        self.refuse(self.extract("--free-surface", "--filled"), 1, "too many to be filled")
-
     def point_values(self, name):
         kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
 
-    def write_walls_elsewhere(self):
-        self.arrays["Kind"] = [int(z < -0.8) for _, _, z in self.points]
-        self.points = [(x, 0.5 if z < -0.8 else y, z) for x, y, z in self.points]
-        files.write_vtp(self.input, self.points, self.arrays)
-
-    def test_what_has_no_lines(self):
+    def test_what_is_refused(self):
+        """The last sentence comes before lines are made: a few particles with a small smoothing length make all squares small."""
         stl = self.directory / "surface.stl"
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
-        self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
+        self.arrays["SmoothingLength"][0] *= 5e-4
+        files.write_vtp(self.directory / "small.vtp", self.points, self.arrays)
+        free = ["--free-surface", "--filled"]
+        for options, source, sentence in (([*ISO, "--components", "surface.csv"], self.input, "give lines"),
+                                          ([*free, "--capping", "--box=-1,1,0,1,-1,1"], self.input, says("CAPPING_WITH_FILLED", "--capping", "--filled")),
+                                          (free, "small.vtp", "too many to be filled")):
+            self.refuse(self.extract(*options, source=source), 1, sentence)
 
     def test_obj(self):
         """The lines of an .obj file lead through the points of the .csv table, in the table's order."""
@@ -148,7 +140,9 @@ class Plane(CommandLineTest):
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]
         self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)
-        self.write_walls_elsewhere()
+        self.arrays["Kind"] = [int(z < -0.8) for _, _, z in self.points]  # These walls lie in another plane.
+        self.points = [(x, 0.5 if z < -0.8 else y, z) for x, y, z in self.points]
+        files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1", "--fluid", "Kind=0", "--solids",
                                "ignore")["statistics"]["smoothing_length_range"]
         self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)

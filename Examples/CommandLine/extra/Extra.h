@@ -22,31 +22,30 @@ struct PictureOptions;
 using Picture = std::function<std::string(const std::string& file, vtkDataSet* data,
   vtkDataSet* frame, const ColorScale& colors, int sliceAxis)>;
 
-/// Names functions that need large libraries: VTK's rendering, and HDF5. Loading these libraries
-/// takes longer than a small run, so the functions are in a library of their own.
+// Functions that need large libraries: VTK's rendering, and HDF5. Loading these libraries takes longer than
+// a small run, so the functions are in a library of their own. All throw std::runtime_error with one
+// sentence.
+
+/// Makes the function that draws. Fails if this VTK renders through an X server and finds none: VTK itself
+/// would abort.
+Picture NewPicture(const PictureOptions& options);
+
+/// Reads the points of one step of a .vtkhdf file, or lists the times of its steps, if it has any. Reads poly
+/// data and steps by itself, because older versions of VTK's reader know neither. Refuses a file if some
+/// of its values lie in other files.
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
+std::vector<double> ListHdfTimes(const std::string& file);
+
+/// The functions, and one that reads a .stl, .ply or .obj file, as the library offers them.
 struct Extra
 {
-  /// Makes the function that draws. Throws std::runtime_error with one sentence if this VTK renders through an X server
-  /// and finds none: VTK itself would abort.
-  Picture (*NewPicture)(const PictureOptions& options);
-
-  /// Reads the points of one step of a .vtkhdf file, or lists the times of its steps. Throws
-  /// std::runtime_error.
-  vtkSmartPointer<vtkDataObject> (*ReadHdf)(const std::string& file, std::size_t step);
-  std::vector<double> (*ListHdfTimes)(const std::string& file);
-
-  /// Reads a .stl, .ply or .obj file.
+  decltype(&::NewPicture) NewPicture;
+  decltype(&::ReadHdf) ReadHdf;
+  decltype(&::ListHdfTimes) ListHdfTimes;
   vtkSmartPointer<vtkDataObject> (*ReadSurface)(const std::string& file);
 };
 
 extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectorsExtra;
-
-// That library's functions for .vtkhdf files. ReadHdf() itself reads poly data and steps, because
-// older versions of VTK's reader know neither. A file is refused if some of its values lie in other
-// files. A file without steps has no times.
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
-std::vector<double> ListHdfTimes(const std::string& file);
-Picture NewPicture(const PictureOptions& options);
 
 /// Loads the library. Throws std::runtime_error if that fails.
 const Extra& LoadExtra();

@@ -203,8 +203,7 @@ public:
     vtkNew<vtkOutlineSource> outline;
     outline->SetBounds(bounds);
     outline->Update();
-    const double origin[3] = { 0.0, 0.0, 0.0 };
-    this->ShowLines(outline->GetOutput(), 0.45, 1.0, origin);
+    this->ShowLines(outline->GetOutput(), 0.45, 1.0, Vector(0.0));
     this->Seen.AddBounds(frame->GetBounds());
     if (data->GetNumberOfPoints() > 0)
     {
@@ -262,13 +261,13 @@ private:
   }
 
   /// Draws lines in one shade, independent of light.
-  void ShowLines(vtkPolyData* lines, double shade, double width, const double position[3])
+  void ShowLines(vtkPolyData* lines, double shade, double width, Vector position)
   {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(lines);
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
-    actor->SetPosition(position[0], position[1], position[2]);
+    actor->SetPosition(position.GetData());
     actor->GetProperty()->SetColor(shade, shade, shade);
     actor->GetProperty()->SetLineWidth(static_cast<float>(width));
     actor->GetProperty()->LightingOff();
@@ -285,9 +284,9 @@ private:
     const double off = 1e-3 * filled->GetLength();
     for (const double side : { -off, off })
     {
-      const double position[3] = { bounds[0] == bounds[1] ? side : 0.0,
-        bounds[2] == bounds[3] ? side : 0.0, bounds[4] == bounds[5] ? side : 0.0 };
-      this->ShowLines(lines, 0.1, 2.0, position);
+      this->ShowLines(lines, 0.1, 2.0,
+        { bounds[0] == bounds[1] ? side : 0.0, bounds[2] == bounds[3] ? side : 0.0,
+          bounds[4] == bounds[5] ? side : 0.0 });
     }
   }
 

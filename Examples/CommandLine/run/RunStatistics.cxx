@@ -243,30 +243,26 @@ std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms)
   return text;
 }
 
-std::string DescribeSeconds(vtkFieldData* run, bool atLength)
+std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds)
 {
-  vtkDataArray* seconds = run->GetArray("Seconds");
-  if (!seconds)
+  vtkDataArray* times = run->GetArray("Seconds");
+  if (!times)
   {
     return "";
   }
-  std::ostringstream line;
-  line << "seconds     " << std::fixed << std::setprecision(3);
-  const int last = seconds->GetNumberOfComponents() - 1; // the total
+  std::ostringstream seconds;
+  seconds << "seconds     " << std::fixed << std::setprecision(3);
+  const int last = times->GetNumberOfComponents() - 1; // the total
   for (int i = atLength ? 0 : last; i <= last; ++i)
   {
-    line << (atLength && i > 0 ? ", " : "")
-         << (atLength ? seconds->GetComponentName(i) + std::string(" ") : "")
-         << seconds->GetComponent(0, i);
+    seconds << (atLength && i > 0 ? ", " : "")
+            << (atLength ? times->GetComponentName(i) + std::string(" ") : "")
+            << times->GetComponent(0, i);
   }
-  return line.str() + "\n";
-}
-
-std::string DescribeRun(vtkFieldData* run, bool atLength)
-{
-  if (!run->GetArray("Seconds"))
+  seconds << "\n";
+  if (onlySeconds)
   {
-    return "";
+    return seconds.str();
   }
   const std::vector<double> lengths = NumbersOf(run, "SmoothingLengthRange");
   const bool areMany = lengths.size() == 2 && lengths[0] < lengths[1];
@@ -323,7 +319,7 @@ std::string DescribeRun(vtkFieldData* run, bool atLength)
         "surface     {Points} points, {Triangles} triangles", "" }) +
     (atLength ? trimming : "") + Fill(run, { "; length {Length}", "" }) +
     Fill(run, { "; {Pieces} " + pieces + " of area {Area}", "; area {Area}", "" }) +
-    Fill(run, { ", volume {Volume}", "" }) + "\n";
+    Fill(run, { ", volume {Volume}", "" }) + "\n" + seconds.str();
 }
 
 std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,

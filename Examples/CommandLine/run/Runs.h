@@ -102,13 +102,9 @@ double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 /// is a text, the array of a quantity if there is one, a whole count, or a number with six digits.
 std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
-/// Describes a run's field data in three lines, or, at length, in more, for users who know the
-/// method; empty if the run had no particles to use.
-std::string DescribeRun(vtkFieldData* run, bool atLength);
-
-/// Returns "seconds     0.500\n"; at length "seconds     input 0.010, ..., total 0.500\n"; "" if the run had no
-/// particles to use.
-std::string DescribeSeconds(vtkFieldData* run, bool atLength);
+/// Describes a run's field data in four lines, or, at length, in more, for users who know the method; or
+/// only its seconds. Returns "" if the run had no particles to use.
+std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds);
 
 /// Returns the statistics of the last of `runs` as JSON, with the seconds of each run.
 std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,

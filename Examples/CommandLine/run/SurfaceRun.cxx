@@ -27,7 +27,6 @@
 #include <cstdio>
 #include <future>
 #include <iostream>
-#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -35,17 +34,18 @@
 namespace
 {
 
-/// Returns true, and sets the value, if the text is a constant, not the name of an array of the input.
-bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
-{
-  return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
-}
-
 /// Makes the settings that depend on the input: whether a text is a number or the name of an array,
 /// and where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
-  double value = 0.0;
+  const auto set = [&](const std::string& text, void (vtkSPHAlgorithm::*setNumber)(double),
+                     void (vtkSPHAlgorithm::*setName)(const char*))
+  {
+    double value = 0.0;
+    !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value)
+      ? (filter->*setNumber)(value)
+      : (filter->*setName)(text.c_str());
+  };
   const bool isArray = particles->GetPointData()->HasArray(job.SmoothingLength.c_str());
   if (!isArray && (job.NeighborRatio > 0.0 || job.SmoothingLength == "estimate"))
   {
@@ -56,14 +56,11 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
   else
   {
-    IsConstant(job.SmoothingLength, particles, value)
-      ? filter->SetSmoothingLength(value)
-      : filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
+    set(job.SmoothingLength, &vtkSPHAlgorithm::SetSmoothingLength,
+      &vtkSPHAlgorithm::SetSmoothingLengthArrayName);
   }
-  IsConstant(job.Mass, particles, value) ? filter->SetMass(value)
-                                         : filter->SetMassArrayName(job.Mass.c_str());
-  IsConstant(job.Density, particles, value) ? filter->SetDensity(value)
-                                            : filter->SetDensityArrayName(job.Density.c_str());
+  set(job.Mass, &vtkSPHAlgorithm::SetMass, &vtkSPHAlgorithm::SetMassArrayName);
+  set(job.Density, &vtkSPHAlgorithm::SetDensity, &vtkSPHAlgorithm::SetDensityArrayName);
   if (!job.Walls.empty())
   {
     filter->SetFluidArrayName(WallArrayName);
@@ -247,32 +244,27 @@ public:
       return;
     }
     this->IsBuilding = phase.rfind(MCOR_BUILDING, 0) == 0;
-    if (this->IsQuiet || !this->IsBuilding || std::exchange(this->HasBegun, true))
+    if (!this->IsQuiet && this->IsBuilding && !std::exchange(this->HasBegun, true))
     {
-      return;
-    }
-    const auto wait = [this](const std::future<void>& end)
-    {
-      while (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
-      {
-        if (this->IsBuilding) // the driver still compiles
-        {
-          Say("the OpenCL driver compiles its programs for the first time, which may take a "
-              "minute");
-          return;
-        }
-      }
-    };
-    try
-    {
-      this->Waiting = std::async(std::launch::async, wait, this->End.get_future());
-    }
-    catch (const std::system_error&) // no more threads: nothing is said
-    {
+      // If no thread can be started, nothing is said.
+      FailureOf([this] { this->Waiting = std::async(std::launch::async, &Progress::Wait, this); });
     }
   }
 
 private:
+  void Wait()
+  {
+    const std::future<void> end = this->End.get_future();
+    while (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
+    {
+      if (this->IsBuilding) // the driver still compiles
+      {
+        Say("the OpenCL driver compiles its programs for the first time, which may take a minute");
+        return;
+      }
+    }
+  }
+
   const std::string& Before; ///< the words in front of the line
   const bool IsShown, IsQuiet;
   std::atomic<bool> IsBuilding{ false };
@@ -426,8 +418,7 @@ bool MakeSurface(Sharing& sharing)
     runs.back().Surface = nullptr;
     if (!job.Has("--quiet") && sharing.IsFirst())
     {
-      std::cout << (i == 0 ? DescribeRun(run.Statistics, job.Has("--verbose")) : "")
-                << DescribeSeconds(run.Statistics, job.Has("--verbose")) << std::flush;
+      std::cout << DescribeRun(run.Statistics, job.Has("--verbose"), i > 0) << std::flush;
     }
   }
   const double peakResidentBytes = PeakResidentBytes();

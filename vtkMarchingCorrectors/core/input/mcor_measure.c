@@ -95,9 +95,10 @@ static void mcor_watch_positions(
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   const double(*x)[MCOR_CHUNK] = chunk->x;
   double* beyond = watch->beyond[slice];
+  const int count = chunk->count;
   uint32_t any = UINT32_MAX, reached[MCOR_CHUNK]; /* bits: the samples that may reach the chunk,
                                                    * each particle */
-  for (int i = 0; i < chunk->count && mcor_has_normal(watch); ++i)
+  for (int i = 0; i < count && mcor_has_normal(watch); ++i)
   {
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
     beyond[0] = d > beyond[0] ? d : beyond[0];
@@ -113,15 +114,15 @@ static void mcor_watch_positions(
     }
     any &= along;
   }
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3 && any; ++a)
   {
-    for (int i = 0; i < chunk->count && any; ++i)
+    for (int i = 0; i < count; ++i)
     {
       const uint32_t along = watch->reached[a][mcor_watch_cell(watch, a, x[a][i])];
       reached[i] = a > 0 ? reached[i] & along : along;
     }
   }
-  for (int i = 0; i < chunk->count && any; ++i)
+  for (int i = 0; i < (any ? count : 0); ++i)
   {
     uint32_t bits = reached[i];
     for (int s = 0; bits; ++s, bits >>= 1)

@@ -18,6 +18,7 @@ static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
   mcor_bricks* bricks = &context->bricks;
+  const mcor_box* box = &context->box;
   const int count = bricks->block_count;
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count,
     context->lattice.rungs[level + 1].base, &bricks->block_buckets, &bricks->block_shift));
@@ -26,7 +27,12 @@ static mcor_status mcor_test_cubes(
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, parts, MCOR_GRID_ARGS(context),
     MCOR_INT(parts), MCOR_BUFFER(index), MCOR_BUFFER(&context->bricks.rungs),
     MCOR_BUFFER(&bricks->block_keys), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->block_states)));
-  MCOR_TRY(mcor_void_cubes(context));
+  if (box->is_part)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, count, MCOR_INT(count),
+      MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
+      MCOR_CELL_ARGS(box->first, box->last, box->ring), MCOR_BUFFER(&bricks->block_states)));
+  }
   return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }

@@ -63,6 +63,7 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
+  const mcor_box* box = &context->box;
   const int levels = context->lattice.levels;
   const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
   /* Listed regions of level l: first[l] to end[l] - 1. */
@@ -84,7 +85,13 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   {
     end[l] += first[l];
   }
-  MCOR_TRY(mcor_void_bricks(context));
+  if (box->is_part && levels == 1) /* leaves of several levels are chosen within the box */
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT, blocks * MCOR_BLOCK_BRICKS,
+      MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
+      MCOR_CELL_ARGS(box->first, box->last, box->ring), MCOR_BUFFER(&bricks->states),
+      MCOR_BUFFER(&bricks->seed_bits)));
+  }
   MCOR_TRY(mcor_copy(
     context, &bricks->seed_bits, &bricks->bits, 0, blocks * MCOR_BLOCK_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));

@@ -144,7 +144,7 @@ mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch,
   return MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, count, MCOR_INT(first),
     MCOR_INT(count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
     MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(has_box),
-    MCOR_CELL_ARGS(cells, end, 0, 0), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->in_offset),
+    MCOR_CELL_ARGS(cells, end, 0), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->in_offset),
     MCOR_BUFFER(&context->points.flags));
 }
 

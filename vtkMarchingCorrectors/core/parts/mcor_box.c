@@ -74,8 +74,6 @@ void mcor_move_period(mcor_options* options)
 /* Greatest distance between the particles of a pair, in smoothing lengths, rounded up. */
 #define MCOR_PAIR_REACH 1.001
 
-#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, (r)->ring, (r)->ring)
-
 int mcor_ring_of(const mcor_options* options)
 {
   return options->compact ? MCOR_COMPACT_RING : MCOR_BOX_RING;
@@ -170,30 +168,6 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
-}
-
-mcor_status mcor_void_cubes(mcor_context* context)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  return !context->box.is_part
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, bricks->block_count,
-        MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_NEAR_ARGS(&context->box),
-        MCOR_BUFFER(&bricks->block_states));
-}
-
-mcor_status mcor_void_bricks(mcor_context* context)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  /* adaptive leaves are chosen within the box */
-  return !context->box.is_part || mcor_is_adaptive(&context->lattice)
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
-        (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
-        MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&bricks->block_keys),
-        MCOR_NEAR_ARGS(&context->box), MCOR_BUFFER(&bricks->states),
-        MCOR_BUFFER(&bricks->seed_bits));
 }
 
 /* Keeps the marched bricks' cells that are in the box or in `ring` cells around it. With adaptive

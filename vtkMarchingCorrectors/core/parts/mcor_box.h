@@ -61,11 +61,10 @@ int mcor_list_images(
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
 
-/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and `lower` cells more on each
- * lower side, `upper` cells more on each upper side. */
-#define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
-  MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
-    MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
+/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and `ring` cells around them. */
+#define MCOR_CELL_ARGS(first, last, ring)                                                          \
+  MCOR_INT((first)[0] - (ring)), MCOR_INT((first)[1] - (ring)), MCOR_INT((first)[2] - (ring)),     \
+    MCOR_INT((last)[0] + (ring)), MCOR_INT((last)[1] + (ring)), MCOR_INT((last)[2] + (ring))
 
 /* The usual box.ring: the number of cells around the owned cells that are examined, too. */
 #define MCOR_BOX_RING 1
@@ -79,10 +78,6 @@ static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
-
-/* Seeds: make cubes of one size, or bricks, void if they are outside the box. */
-mcor_status mcor_void_cubes(mcor_context* context);
-mcor_status mcor_void_bricks(mcor_context* context);
 
 /* Extraction. Keeps the marched bricks' cells that are in the box or its ring; beyond the ring, the
  * device lacks particles or has images of them. */

@@ -84,9 +84,23 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two positions, in nodes, to `clusters`: masks of bricks, by the first
- * brick of each cluster. */
-static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
+/* Adds one brick of a cluster. */
+static mcor_status mcor_add_cap_brick(
+  mcor_context* context, mcor_cap_nodes* nodes, const int cluster[3], int bit)
+{
+  mcor_cap_brick brick = { .at = { cluster[0] + (bit & 3), cluster[1] + (bit >> 2 & 3),
+                             cluster[2] + (bit >> 4) } };
+  const bool on_side = brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
+  nodes->side_count += on_side;
+  brick.key = (uint64_t)!on_side << 63 | (uint64_t)brick.at[nodes->across[1]] << 32 |
+    (uint64_t)brick.at[nodes->across[0]];
+  MCOR_APPEND(context, &nodes->bricks, brick);
+  return MCOR_OK;
+}
+
+/* Adds the bricks between two positions, in nodes, that are not in `clusters`: masks of bricks, by
+ * the first brick of each cluster. */
+static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters)
 {
   int from[3], to[3], c[3];
@@ -103,7 +117,15 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
       {
         uint64_t* bricks = mcor_table_add(clusters, mcor_cap_key(c));
         MCOR_TRY(mcor_allocated(context, bricks));
-        *bricks |= mcor_bricks_between(from, to, c);
+        const uint64_t added = mcor_bricks_between(from, to, c) & ~*bricks;
+        *bricks |= added;
+        for (int bit = 0; bit < 64 && added >> bit; ++bit)
+        {
+          if (added >> bit & 1)
+          {
+            MCOR_TRY(mcor_add_cap_brick(context, nodes, c, bit));
+          }
+        }
         MCOR_TRY(mcor_limit_side(context, nodes, clusters->count));
       }
     }
@@ -115,7 +137,7 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
  * extended by one node, because a square is found by its lowest node, and by another node for
  * rounding. Tests the side's axis first, because most particles are far from the side. */
 static mcor_status mcor_add_reached(
-  mcor_context* context, const mcor_cap_nodes* nodes, mcor_table* clusters)
+  mcor_context* context, mcor_cap_nodes* nodes, mcor_table* clusters)
 {
   const mcor_grid* g = &context->grid;
   const mcor_lattice* lattice = &context->lattice;
@@ -153,36 +175,6 @@ static mcor_status mcor_add_reached(
     }
   }
   return mcor_unmap_all(context, mappings, 4, status);
-}
-
-/* Lists the bricks of clusters. */
-static mcor_status mcor_list_cap_bricks(
-  mcor_context* context, const mcor_table* clusters, mcor_cap_nodes* nodes)
-{
-  MCOR_APPEND(context, &nodes->bricks, (mcor_cap_brick){ .key = 0 });
-  for (size_t i = 0; i < clusters->capacity; ++i)
-  {
-    const mcor_entry cluster = clusters->entries[i];
-    uint64_t rest = cluster.value;
-    for (int bit = 0; rest; ++bit, rest >>= 1)
-    {
-      mcor_cap_brick brick = { .key = 0 };
-      for (int a = 0; a < 3; ++a)
-      {
-        brick.at[a] = (cl_int)(cluster.key >> 21 * a & 0x1fffff) + (bit >> 2 * a & 3);
-      }
-      if (!(rest & 1))
-      {
-        continue;
-      }
-      const bool on_side = brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
-      nodes->side_count += on_side;
-      brick.key = (uint64_t)!on_side << 63 | (uint64_t)brick.at[nodes->across[1]] << 32 |
-        (uint64_t)brick.at[nodes->across[0]];
-      MCOR_APPEND(context, &nodes->bricks, brick);
-    }
-  }
-  return MCOR_OK;
 }
 
 /* Returns the number of a brick, or 0 if no particle reaches it. */
@@ -229,9 +221,9 @@ mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_c
   const double low[3] = { -INFINITY, -INFINITY, -INFINITY },
                high[3] = { INFINITY, INFINITY, INFINITY };
   mcor_table clusters = { 0 };
+  MCOR_APPEND(context, &nodes->bricks, (mcor_cap_brick){ .key = 0 });
   mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters)
                                       : mcor_add_reached(context, nodes, &clusters);
-  MCOR_THEN(status, mcor_list_cap_bricks(context, &clusters, nodes));
   MCOR_THEN(status, mcor_number_cap_bricks(context, nodes));
   mcor_table_free(&clusters);
   return status;

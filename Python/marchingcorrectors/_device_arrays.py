@@ -109,7 +109,8 @@ class Driver:
             with self.current(primary):
                 memory, room = self.take(size)
             block = (ctypes.c_char * size).from_address(memory)
-            weakref.finalize(block, self.give, memory, room).atexit = False
+            # A list's append needs no lock, which the thread may hold already.
+            weakref.finalize(block, self.idle.append, (memory, room)).atexit = False
             with self.current(own):
                 if stream is not None:
                     self.call("cuStreamSynchronize", ctypes.c_void_p(stream))
@@ -128,9 +129,6 @@ class Driver:
         memory, room = ctypes.c_void_p(), size + size // 8
         self.call("cuMemHostAlloc", ctypes.byref(memory), ctypes.c_size_t(room), PORTABLE)
         return memory.value, room
-
-    def give(self, memory, room):
-        self.idle.append((memory, room))  # A list's append needs no lock, which the thread may hold already.
 
 
 @functools.lru_cache(maxsize=None)

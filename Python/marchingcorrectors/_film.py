@@ -19,7 +19,7 @@ from ._options import PROBE
 from ._surface import CELLS, Surface
 from ._usd import Film, Spray, find_velocity, is_usd
 from .io._particles import TIMES, Particles, usual
-from .io.convert import convert as convert_particles
+from .io.convert import convert
 from .io.vtk_files import XmlFile, list_pieces, list_times
 
 # Options of films: name, name of the value, type, and meaning.
@@ -319,15 +319,10 @@ def run_convert(arguments):
     parser.add_argument("output", metavar="OUT", help=".vtp or .pvd of particles; for a film of surfaces .usdc, .usda or .usd")
     add_options(parser)
     given = parser.parse_args(arguments)
-    if is_usd(given.output):
-        print(f"{given.output}: {convert(given)}")
-    else:
+    if not is_usd(given.output):
         refuse_options(given)
-        convert_particles(given.input, given.output)
-
-
-def convert(given):
-    """Adds the surfaces in .vtp files, or in lists of them."""
+        convert(given.input, given.output)
+        return
     paths = [Path(path) for path in in_order(given.input)]
     stored = [(time, files) for path in paths for time, files in (
         list_times(path) if path.suffix.lower() == ".pvd" else {None: [path]}).items()]
@@ -344,7 +339,7 @@ def convert(given):
 
     unit = 1.0 if given.time_step is None else given.time_step
     steps = [(files[0].name, partial(load, time, files, i * unit)) for i, (time, files) in enumerate(stored)]
-    return run(given, [*paths, *(path for _, files in stored for path in files)], steps, add)
+    print(f"{given.output}: {run(given, [*paths, *(path for _, files in stored for path in files)], steps, add)}")
 
 
 def read_surface(paths):

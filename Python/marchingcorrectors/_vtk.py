@@ -324,12 +324,10 @@ class Particles(Arguments):
     @property
     def used(self):
         """Returns {quantity: array}."""
-        found = {name: self.array_for(name) for name in QUANTITIES}
-        if "SmoothingLength" in self._summed:
-            found["smoothing_length"] = self._summed["SmoothingLength"]
-        if "Density" in self._summed and self.input.density.data == self.input.scalar.data:
-            found["density"] = self._summed["Density"]
-        return found
+        summed = dict(self._summed)
+        if self.input.density.data != self.input.scalar.data:
+            summed.pop("Density", None)  # It is the scalar alone.
+        return {name: summed[camel(name)] if camel(name) in summed else self.array_for(name) for name in QUANTITIES}
 
     def describe_fluid(self):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"

@@ -153,16 +153,6 @@ class Particles:
             value = value * self.h_factor
         return value
 
-    def find_period(self, word):
-        """Returns the period that "auto" means."""
-        if word != "auto":
-            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", {BOUNDS}, or three lengths.")
-        if self.cell is not None:
-            raise InvalidArgument(f"{say('CELL_TILTED')} Leave periodic out.")
-        if self.period is None:
-            raise InvalidArgument(say("NO_PERIOD"))
-        return self.period
-
     def words(self, given):
         """Returns keywords of the functions for NumPy arrays, with arrays in place of names; given arguments take precedence. The core chooses among
         volume, mass and density. Adds `source`: these particles, whose arrays `fluid` and `only` may name."""
@@ -182,7 +172,13 @@ class Particles:
         if words.get("solid") is None and words.get("fluid") is None and self.solid is not None:
             words["solid"] = self.solid
         if isinstance(words.get("periodic"), str):
-            words["periodic"] = self.find_period(words["periodic"])
+            if words["periodic"] != "auto":
+                raise InvalidArgument(f"periodic is '{words['periodic']}'; it must be \"auto\", {BOUNDS}, or three lengths.")
+            if self.cell is not None:
+                raise InvalidArgument(f"{say('CELL_TILTED')} Leave periodic out.")
+            if self.period is None:
+                raise InvalidArgument(say("NO_PERIOD"))
+            words["periodic"] = self.period
         if self.period is not None:
             words.setdefault("periodic", self.period)
         if self.cell is not None and words.get("periodic") is None:

@@ -7,7 +7,6 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 import warnings
 from pathlib import Path
@@ -17,9 +16,8 @@ import pyvista
 from filter_report import COSTS, report_mesh
 
 import marchingcorrectors  # noqa: F401  It makes the accessor .sph.
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from says import TEXTS, says  # noqa: E402
+from test_files import Case, says
+from says import TEXTS  # after test_files, by which it is found
 
 DATA = Path(os.environ["MCOR_TEST_DATA"])
 REPORT = Path(__file__).with_name("filter_report.py")
@@ -137,12 +135,7 @@ def make_found(folder):
             "blocks": [str(folder / "blocks.vtm"), None]}
 
 
-class Test(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class Test(Case):
     def report(self, cases):
         """Returns what the wheel's filter makes of the cases; where there is a C++ filter, it must make the same."""
         file, reports = self.folder / "cases.json", []

@@ -6,11 +6,9 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import xml.etree.ElementTree as xml
-from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -19,6 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from marchingcorrectors import InputWarning
 from marchingcorrectors.io import FileError, Particles
 from marchingcorrectors.io.convert import to_vtk, vtp_bytes
+from test_files import Case
 
 NAME = 'a<b>&"c\' d'
 
@@ -28,17 +27,12 @@ def particles(count=3, name="made", **arrays):
     return Particles(name, "made", lambda: positions, {key: lambda v=values: v for key, values in arrays.items()})
 
 
-class Convert(unittest.TestCase):
+class Convert(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        super().setUp()
         for i in range(2):
             self.at(f"run_{i:04d}.vtp").write_bytes(vtp_bytes(particles(100 + i, Noise=np.random.default_rng(i).random((100 + i, 20)))))
         self.before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
-
-    def at(self, name):
-        return self.folder / name
 
     def run_program(self, *names, command="convert", **more):
         return subprocess.run([sys.executable, "-m", "marchingcorrectors", command, *names], cwd=self.folder,

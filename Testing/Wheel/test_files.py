@@ -119,11 +119,12 @@ def write_pysph(path):
 
 class Case(unittest.TestCase):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
 
     def at(self, name):
-        return Path(self.folder.name) / name
+        return self.folder / name
 
     def assert_refused(self, words, path, **more):
         with self.assertRaises(io.FileError) as caught:

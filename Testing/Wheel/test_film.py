@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from marchingcorrectors import io
 from marchingcorrectors._film import between
 from marchingcorrectors._usd import Film, Spray
 from solver_files import write_bgeo
+from test_files import Case
 
 PROGRAM = os.environ.get("MCOR_TEST_PROGRAM")
 DX, SPIN, WORDS = 0.05, 2.0, ["--smoothing-length", "0.065", "--mass", "0.125", "--density", "1000"]
@@ -39,11 +39,10 @@ def errors(stage):
     return [error.GetMessage() for error in UsdValidation.ValidationContext(validators).Validate(stage)]
 
 
-class Films(unittest.TestCase):
+class Films(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder, self.stages = Path(folder.name), []
+        super().setUp()
+        self.stages = []
 
     def at(self, name):
         return str(self.folder / name)

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests gauge(), flux() and project(): for a block of particles by hand, for other particles against probe() and counts; PyVista's methods and
 files; and refusals."""
-import os
-import tempfile
 import unittest
 
 import numpy as np
 import pyvista
 
 import marchingcorrectors as mc
+from test_files import Case
 from test_numpy import H, V, says
 
 X = np.stack(np.meshgrid(*[np.arange(12)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1
@@ -88,17 +87,14 @@ class Project(unittest.TestCase):
         self.assertEqual(repr(image), "<Projection: 16 x 16 pixels>")
 
 
-class OtherParticles(unittest.TestCase):
+class OtherParticles(Case):
     def particles(self, x, columns):
         """Returns the particles as PyVista's, and read from a file, and their places."""
         data = pyvista.PolyData(x)
         for name, values in columns.items():
             data[name] = values
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        path = os.path.join(folder.name, "particles.vtp")
-        data.save(path)
-        return data.sph, mc.io.read(path), np.asarray(data.points)
+        data.save(self.at("particles.vtp"))
+        return data.sph, mc.io.read(self.at("particles.vtp")), np.asarray(data.points)
 
     def test_gauge_and_flux(self):
         """Densities are made of the files' masses and volumes."""

@@ -7,6 +7,7 @@ import sys
 import threading
 import unittest
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -450,12 +451,9 @@ class Runs(unittest.TestCase):
         self.assertGreater(during, 5)
 
     def test_threads(self):
-        expected, found = sphere().points.tobytes(), []
-        threads = [threading.Thread(target=lambda: found.append(sphere().points.tobytes())) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        expected = sphere().points.tobytes()
+        with ThreadPoolExecutor(4) as pool:
+            found = list(pool.map(lambda _: sphere().points.tobytes(), range(4)))
         self.assertEqual(found, [expected] * 4)
 
     def test_forked_child_is_told(self):

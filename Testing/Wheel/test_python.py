@@ -388,7 +388,7 @@ class Files(Case):
             self.assertEqual(arrays["attributes/id"].tolist(), self.surface.attributes["id"].tolist())
 
     def test_meshes(self):
-        for name in ("a.ply", "a.vtp", "a.vtk", "a.vtu", "a.xdmf"):
+        for name in ("a.vtp", "a.vtk", "a.vtu", "a.xdmf"):
             path, sentences = self.save(name)
             mesh = meshio.read(path) if name == "a.xdmf" else pyvista.read(path)
             points = mesh.points
@@ -397,9 +397,8 @@ class Files(Case):
                 mesh.cells_dict[5] if name == "a.vtu" else mesh.faces.reshape(-1, 4)[:, 1:]
             self.assertEqual(corners.tolist(), self.surface.triangles.tolist(), name)
             data = mesh.point_data
-            if name != "a.ply":  # PyVista reads only triangles, normals and colours of a .ply file.
-                np.testing.assert_allclose(data["speed"], self.surface.attributes["speed"], err_msg=name)
-                np.testing.assert_allclose(data["where"], self.surface.attributes["where"], err_msg=name)
+            np.testing.assert_allclose(data["speed"], self.surface.attributes["speed"], err_msg=name)
+            np.testing.assert_allclose(data["where"], self.surface.attributes["where"], err_msg=name)
             self.assertEqual(sentences, [])
 
     def test_ply_holds_all(self):

@@ -103,13 +103,6 @@ static mcor_input fluid_input(const fluid* made)
   return input;
 }
 
-static mcor_options flux_options(mcor_type precision)
-{
-  mcor_options options = core_options(NULL);
-  options.precision = precision;
-  return options;
-}
-
 typedef struct shape
 {
   mcor_section_shape kind;
@@ -168,7 +161,7 @@ static void test_uniform(void** state)
   };
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.2), move_uniform);
   mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT32);
+  const mcor_options options = core_options(NULL);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const mcor_flux_reading r = flux_of(*state, &input, &options, &cases[i].section);
@@ -207,7 +200,7 @@ static void test_uniform_in_a_plane(void** state)
       made.velocity[3 * i + to[2]] = 99;
     }
     mcor_input input = fluid_input(&made);
-    const mcor_options options = flux_options(MCOR_FLOAT32);
+    const mcor_options options = core_options(NULL);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
     {
       shape turned = cases[i].section;
@@ -262,7 +255,8 @@ static void test_half_out_of_the_water(void** state)
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { x, y0, low, x, y1, low, x, y0, 14 }, 0 };
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT64);
+  mcor_options options = core_options(NULL);
+  options.precision = MCOR_FLOAT64;
   CORE_FREED mcor_gauge_line* lines = calloc(COLUMNS, sizeof *lines);
   CORE_FREED double* points = malloc(3 * COLUMNS * ROWS * sizeof(double));
   CORE_FREED double* share = malloc(COLUMNS * ROWS * sizeof(double));
@@ -304,7 +298,8 @@ static void test_far_beyond_the_water(void** state)
 {
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT64);
+  mcor_options options = core_options(NULL);
+  options.precision = MCOR_FLOAT64;
   mcor_flux_reading r[2];
   for (int far = 0; far < 2; ++far)
   {
@@ -338,7 +333,8 @@ static void test_disc_at_the_surface(void** state)
   }
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT64);
+  mcor_options options = core_options(NULL);
+  options.precision = MCOR_FLOAT64;
   const mcor_flux_reading r = flux_of(*state, &input, &options, &disc);
   CORE_FLUXES found;
   CORE_OK(*state, mcor_flux(*state, &input, &options, &fan, 1, &found));
@@ -356,7 +352,7 @@ static void test_corner_on_the_level(void** state)
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0), move_anyhow);
   const mcor_input input = fluid_input(&made);
-  mcor_options options = flux_options(MCOR_FLOAT32);
+  mcor_options options = core_options(NULL);
   mcor_samples samples;
   const mcor_array corner = core_array(wall.points, 3);
   CORE_OK(*state, mcor_probe(*state, &input, &options, &corner, 1, &samples));
@@ -378,7 +374,7 @@ static void test_same_bits(void** state)
     { MCOR_SECTION_BOX, 2, { -3, 3, 3, 9.3, 5, 17.1 }, 0 } };
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT32);
+  const mcor_options options = core_options(NULL);
   const mcor_section sections[3] = { section_of(&shapes[0]), section_of(&shapes[1]),
     section_of(&shapes[2]) };
   CORE_FLUXES all;
@@ -398,7 +394,7 @@ static void test_period(void** state)
   shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
-  mcor_options options = flux_options(MCOR_FLOAT32);
+  mcor_options options = core_options(NULL);
   options.periodic[1] = 24;
   const mcor_flux_reading here = flux_of(*state, &input, &options, &wall);
   for (int p = 0; p < 9; p += 3)
@@ -441,7 +437,7 @@ static void test_walls(void** state)
     made.velocity[3 * n] = set.solid[n] ? NAN : 1;
   }
   mcor_input input = fluid_input(&made);
-  mcor_options options = flux_options(MCOR_FLOAT32);
+  mcor_options options = core_options(NULL);
   options.wall_share = MCOR_WALL_SHARE_AUTO;
   for (int alone = 0; alone < 2; ++alone)
   {
@@ -461,10 +457,11 @@ static void test_walls(void** state)
 
 /* Fails with a message that core_told finds. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
-  const mcor_section* section, const char* words)
+  const shape* of, const char* words)
 {
   mcor_fluxes fluxes;
-  CORE_CHECK(mcor_flux(context, input, options, section, 1, &fluxes) != MCOR_OK, words);
+  const mcor_section section = section_of(of);
+  CORE_CHECK(mcor_flux(context, input, options, &section, 1, &fluxes) != MCOR_OK, words);
   CORE_CHECK(core_told(context, words), mcor_last_error(context));
   assert_true(fluxes.count == 0 && !fluxes.readings);
 }
@@ -492,34 +489,32 @@ static void test_weird(void** state)
     { { MCOR_SECTION_LINES, 2, { 1, 2, 3, 4, 5, 6 }, 0 }, "SECTION_IS_LINE" },
     { { (mcor_section_shape)9, 2, { 0 }, 0 }, "SECTION_POINTS" },
   };
-  fluid made = make_fluid(make_pool(0), move_uniform);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0), move_uniform);
   mcor_input input = fluid_input(&made);
-  mcor_options options = flux_options(MCOR_FLOAT32);
+  mcor_options options = core_options(NULL);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    const mcor_section section = section_of(&cases[i].section);
-    refuse(*state, &input, &options, &section, cases[i].words);
+    refuse(*state, &input, &options, &cases[i].section, cases[i].words);
   }
   const shape good = { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 9, 3, 5, 3, 8 }, 0 };
   const shape far = { MCOR_SECTION_RECTANGLE, 3, { 105, 3, 3, 105, 9, 3, 105, 3, 8 }, 0 };
-  const mcor_section section = section_of(&good);
   const double zero = 0;
   options.iso_values = &zero;
   options.iso_count = 1;
-  refuse(*state, &input, &options, &section, "FLUID_LEVEL|Fluxes");
+  refuse(*state, &input, &options, &good, "FLUID_LEVEL|Fluxes");
   options.iso_count = 0;
   made.density[7] = NAN;
-  refuse(*state, &input, &options, &section, "FLUX_NOT_FINITE|density|particle 7.");
+  refuse(*state, &input, &options, &good, "FLUX_NOT_FINITE|density|particle 7.");
   made.density[7] = 1000;
   /* This is told before any cell is measured, which would take minutes. */
   made.set.smoothing_length[7] = 1e-3;
-  refuse(*state, &input, &options, &section, "SECTION_CELLS|number 0");
+  refuse(*state, &input, &options, &good, "SECTION_CELLS|number 0");
   made.set.smoothing_length[7] = 1.3;
   made.attributes[0].components = 1;
-  refuse(*state, &input, &options, &section, "VELOCITY_COMPONENTS|1 ");
+  refuse(*state, &input, &options, &good, "VELOCITY_COMPONENTS|1 ");
   made.attributes[0].components = 3;
   input.attribute_count = 0;
-  refuse(*state, &input, &options, &section, "FLUX_ATTRIBUTES");
+  refuse(*state, &input, &options, &good, "FLUX_ATTRIBUTES");
   input.attribute_count = 2;
   mcor_flux_reading r = flux_of(*state, &input, &options, &far);
   assert_true(
@@ -538,9 +533,7 @@ static void test_weird(void** state)
     { MCOR_SECTION_DISC, 2, { 5, 3, 3, 0, 1, 1 }, 2 } };
   for (int i = 0; i < 3; ++i)
   {
-    const mcor_section section_off = section_of(&off[i]);
-    refuse(
-      *state, &input, &options, &section_off, "is not a line in the plane y = 8 of the particles");
+    refuse(*state, &input, &options, &off[i], "is not a line in the plane y = 8 of the particles");
   }
 }
 

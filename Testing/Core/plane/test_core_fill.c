@@ -483,53 +483,45 @@ static void test_attributes(void** state)
   }
 }
 
-static void expect_error(
-  mcor_context* context, const particle_set* set, const mcor_options* options, const char* words)
+/* Extracts a surface that must have no triangles. */
+static void expect_nothing(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  mcor_surface surface;
-  const mcor_input input = core_input(set);
-  CORE_FAILS(
-    context, MCOR_INVALID_ARGUMENT, mcor_extract(context, &input, options, &surface), words);
-  assert_true(surface.triangle_count == 0 && surface.points == NULL);
+  CORE_SURFACE surface = core_extract(context, input, options);
+  assert_true(surface.triangle_count == 0 && surface.point_count == 0);
 }
 
 static void test_what_is_not_filled(void** state)
 {
   const double iso = -1;
   CORE_SET set = plane_make(8, 0.2, 1, 2, 0, 1);
+  const mcor_input input = core_input(&set);
   mcor_options options = fill_options(&iso, 1);
+  CORE_SURFACE surface;
   options.field = MCOR_SUM;
   options.node_threshold = 0;
-  expect_error(*state, &set, &options, "REGION_WITHOUT_END");
+  CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_extract(*state, &input, &options, &surface),
+    "REGION_WITHOUT_END");
+  assert_true(surface.triangle_count == 0 && !surface.points);
   options.node_threshold = 0.1;
-  CORE_SURFACE surface;
-  extract(*state, &set, &options, 2, &surface);
-  mcor_free_surface(&surface);
   options.dimension = 3;
-  expect_error(*state, &set, &options, "FILLED_IN_SPACE");
+  CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_extract(*state, &input, &options, &surface),
+    "FILLED_IN_SPACE");
   options.dimension = 0;
-  mcor_input nothing = core_input(&set);
+  extract(*state, &set, &options, 2, &surface);
+  mcor_input nothing = input;
   nothing.count = 0;
-  surface = core_extract(*state, &nothing, &options);
-  assert_int_equal(surface.triangle_count, 0);
-  mcor_free_surface(&surface);
-  options.box[0] = 100; /* the box lies beside all particles */
-  options.box[1] = 101;
-  options.box[2] = options.box[4] = -1;
-  options.box[3] = options.box[5] = 1;
-  mcor_input input = core_input(&set);
-  surface = core_extract(*state, &input, &options);
-  assert_int_equal(surface.triangle_count, 0);
-  mcor_free_surface(&surface);
+  expect_nothing(*state, &nothing, &options);
+  const double beside[6] = { 100, 101, -1, 1, -1, 1 }; /* the box lies beside all particles */
+  memcpy(options.box, beside, sizeof beside);
+  expect_nothing(*state, &input, &options);
   memset(options.box, 0, sizeof options.box);
   options.iso_count = 0;
-  surface = core_extract(*state, &input, &options);
-  assert_true(surface.triangle_count == 0 && surface.point_count == 0);
-  mcor_free_surface(&surface);
+  expect_nothing(*state, &input, &options);
   options.iso_count = 1;
   options.filled = 0;
-  surface = core_extract(*state, &input, &options);
-  assert_true(surface.band_value == NULL && surface.triangles == NULL && surface.iso_value == NULL);
+  CORE_SURFACE lines = core_extract(*state, &input, &options);
+  assert_true(!lines.band_value && !lines.triangles && !lines.iso_value);
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_free_surface, test_bands, test_trimming, test_random,

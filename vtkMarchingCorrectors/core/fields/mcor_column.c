@@ -4,6 +4,7 @@
 /* Columns of an SPH kernel: a table of their integrals over rectangles, made by quadrature. It
  * uses only operations that all processors round alike. */
 
+#include "mcor_plane.h"
 #include "mcor_project.h"
 
 #include <stdlib.h>
@@ -214,27 +215,25 @@ static void mcor_fill_nodes(const mcor_column_job* job)
   column->highest = mcor_density_at(job, 0, 0) * scale;
 }
 
-mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool is_plane,
-  const double axes[3][3], double least_pixel, mcor_column* column)
+mcor_status mcor_make_column(
+  const mcor_project_job* project, double least_pixel, mcor_column* column)
 {
+  mcor_context* context = project->context;
+  const mcor_sph_kernel kernel = context->run.options->sph_kernel;
   mcor_column_job job = { .kernel = kernel,
-    .is_plane = is_plane,
+    .is_plane = mcor_is_plane(context),
     .is_tensor = mcor_kernel_of(kernel)->is_tensor,
-    .is_aligned = true,
-    .axes = axes,
+    .is_aligned = project->is_aligned,
+    .axes = project->axes,
     .support = mcor_support_factor(kernel),
     .column = column };
-  for (int a = 0; a < 3; ++a)
-  {
-    job.is_aligned = job.is_aligned && fabs(axes[a][0]) + fabs(axes[a][1]) + fabs(axes[a][2]) == 1;
-  }
   const int cells = least_pixel < MCOR_SMALL_PIXEL ? MCOR_COLUMN_FINE_CELLS : MCOR_COLUMN_CELLS;
   *column = (mcor_column){ .is_radial = !job.is_tensor,
-    .is_odd = !job.is_tensor || is_plane || job.is_aligned };
+    .is_odd = !job.is_tensor || job.is_plane || job.is_aligned };
   column->cells = column->is_odd ? cells : 2 * cells;
   for (int a = 0; a < 2; ++a)
   {
-    column->reach[a] = mcor_column_reach(kernel, axes[a]);
+    column->reach[a] = mcor_column_reach(kernel, project->axes[a]);
   }
   const int places = column->cells + 1 + MCOR_CELL_POINTS * column->cells;
   const size_t width = (size_t)column->cells + 1;
@@ -242,7 +241,7 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
   job.values = malloc((size_t)places * width * sizeof(double));
   column->nodes = malloc(4 * width * width * sizeof(double));
   mcor_status status = mcor_allocated(context, job.sums && job.values && column->nodes);
-  if (status == MCOR_OK && !job.is_tensor && !is_plane)
+  if (status == MCOR_OK && !job.is_tensor && !job.is_plane)
   {
     status = mcor_parallel_run(context, MCOR_PROFILE, 64, mcor_profile_slice, &job, NULL);
     job.profile[0] = job.profile[2];

@@ -70,40 +70,6 @@ mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
   return MCOR_OK;
 }
 
-/* Makes the arrays of the run, and calls `work`. */
-static mcor_status mcor_run_points(
-  mcor_level_job* job, const mcor_input* input, mcor_status (*work)(mcor_level_job*))
-{
-  mcor_context* context = job->context;
-  const mcor_lattice* lattice = &context->lattice;
-  const bool ends_at_solids = mcor_ends_at_solids(context);
-  double* places = malloc(3 * (size_t)MCOR_LEVEL_BATCH * sizeof *places);
-  mcor_samples samples = { .valid = malloc(MCOR_LEVEL_BATCH) };
-  const mcor_array points = { .data = places, .type = MCOR_FLOAT64, .components = 3 };
-  mcor_probe_run run = {
-    .context = context, .input = input, .points = &points, .samples = &samples
-  };
-  job->run = &run;
-  job->with_solids = ends_at_solids ? malloc(MCOR_LEVEL_BATCH * sizeof *places) : NULL;
-  for (int a = 0; a < 3 && job->has_box; ++a)
-  {
-    const bool periodic = lattice->period[a] > 0;
-    double* cells = job->owned[a];
-    cells[0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    cells[1] = periodic ? cells[0] + lattice->period[a] : (double)lattice->last[a];
-    mcor_place_sides(lattice, a, job->box, cells);
-  }
-  mcor_status status =
-    mcor_allocated(context, places && samples.valid && (job->with_solids || !ends_at_solids));
-  MCOR_THEN(status, mcor_load_attributes(context, input, 0));
-  MCOR_THEN(status, work(job));
-  mcor_release_probe(&run);
-  free(places);
-  free(samples.valid);
-  free(job->with_solids);
-  return status;
-}
-
 mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, mcor_status (*work)(mcor_level_job*))
 {
@@ -124,11 +90,37 @@ mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   /* Other calls may reuse the search grid, unless it is cut to these points. */
   context->box.of_points = has_box || input->particles_version == 0 || context->run.far;
   MCOR_TRY(mcor_prepare(context, input, options));
-  if (context->grid.count > 0)
+  if (context->grid.count == 0)
   {
-    MCOR_TRY(mcor_run_points(job, input, work));
+    return mcor_finish_field(context);
   }
-  return mcor_finish_field(context);
+  const mcor_lattice* lattice = &context->lattice;
+  for (int a = 0; a < 3 && has_box; ++a)
+  {
+    const bool periodic = lattice->period[a] > 0;
+    double* cells = job->owned[a];
+    cells[0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
+    cells[1] = periodic ? cells[0] + lattice->period[a] : (double)lattice->last[a];
+    mcor_place_sides(lattice, a, job->box, cells);
+  }
+  const bool ends_at_solids = mcor_ends_at_solids(context);
+  double* places = malloc(3 * (size_t)MCOR_LEVEL_BATCH * sizeof *places);
+  mcor_samples samples = { .valid = malloc(MCOR_LEVEL_BATCH) };
+  const mcor_array points = { .data = places, .type = MCOR_FLOAT64, .components = 3 };
+  mcor_probe_run run = {
+    .context = context, .input = input, .points = &points, .samples = &samples
+  };
+  job->run = &run;
+  job->with_solids = ends_at_solids ? malloc(MCOR_LEVEL_BATCH * sizeof *places) : NULL;
+  mcor_status status =
+    mcor_allocated(context, places && samples.valid && (job->with_solids || !ends_at_solids));
+  MCOR_THEN(status, mcor_load_attributes(context, input, 0));
+  MCOR_THEN(status, work(job));
+  mcor_release_probe(&run);
+  free(places);
+  free(samples.valid);
+  free(job->with_solids);
+  return status != MCOR_OK ? status : mcor_finish_field(context);
 }
 
 mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,

@@ -211,9 +211,7 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
     return MCOR_OK;
   }
   MCOR_TRY(mcor_prepare(context, input, options));
-  job->volumes = computes ? malloc((size_t)input->count * sizeof(double) + 1) : NULL;
-  MCOR_TRY(mcor_allocated(context, job->volumes || !computes));
-  return computes ? mcor_read_volumes(context, input, job->volumes) : MCOR_OK;
+  return computes ? mcor_read_volumes(context, input, &job->volumes) : MCOR_OK;
 }
 
 static mcor_status mcor_run_project(

@@ -37,12 +37,6 @@ typedef struct mcor_column_side
 /* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
-/* axes: unit vectors along x and y of the image and the line of sight. is_plane: takes the kernel
- * of two dimensions itself, not an integral along the line of sight. least_pixel: the shorter side
- * of a pixel / the greatest h. The caller frees the nodes, even after a failure. */
-mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool is_plane,
-  const double axes[3][3], double least_pixel, mcor_column* column);
-
 /* Finds a side at `at` along x (axis 0) or y. */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
 /* Finds E at the corners where `count` sides along x meet one side along y. */
@@ -100,6 +94,12 @@ static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
   return !(job->input->solid && job->input->solid[i]) &&
     (!job->view->counted || job->view->counted[i]);
 }
+
+/* mcor_column.c. In two dimensions, takes the kernel itself, not an integral along the line of sight.
+ * least_pixel: the shorter side of a pixel / the greatest h. The caller frees the nodes, even after a
+ * failure. */
+mcor_status mcor_make_column(
+  const mcor_project_job* project, double least_pixel, mcor_column* column);
 
 /* mcor_project_spread.c. Spreads all particles over the image, whose sides are known, in steps of a
  * call. */

@@ -6,7 +6,6 @@
  * multiple of a second one. Sums are therefore exact: they have the same bits in any order, for any
  * number of threads and ranks. Threads share the image; each locks a band of rows at a time. */
 
-#include "mcor_plane.h"
 #include "mcor_project.h"
 
 #include <float.h>
@@ -287,8 +286,7 @@ mcor_status mcor_spread_particles(mcor_project_job* job)
   out->values = malloc(pixels * sizeof(double));
   job->sums = calloc(pixels, 2 * (size_t)job->channels * sizeof(double));
   MCOR_TRY(mcor_allocated(job->context, out->values && job->sums));
-  MCOR_TRY(mcor_make_column(job->context, job->context->run.options->sph_kernel,
-    mcor_is_plane(job->context), job->axes, least_pixel, &job->column));
+  MCOR_TRY(mcor_make_column(job, least_pixel, &job->column));
   MCOR_TRY(mcor_count_splats(job));
   MCOR_TRY(mcor_make_brushes(job));
   for (int64_t end; job->first < particles; job->first = end)

@@ -172,14 +172,23 @@ static mcor_status mcor_deliver_factors(
   return mcor_unmap_all(context, views, count, status);
 }
 
-mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume)
+/* Returns as many ones; NULL: memory ran out. */
+static double* mcor_make_ones(int64_t count)
 {
-  mcor_widening out = { .volume = volume };
-  mcor_widen_run run = { .out = &out };
-  for (int64_t i = 0; i < input->count; ++i)
+  double* ones = malloc((size_t)(count > 0 ? count : 0) * sizeof *ones + 1);
+  for (int64_t i = 0; i < count && ones; ++i)
   {
-    volume[i] = 1;
+    ones[i] = 1;
   }
+  return ones;
+}
+
+mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume)
+{
+  *volume = mcor_make_ones(input->count);
+  mcor_widening out = { .volume = *volume };
+  mcor_widen_run run = { .out = &out };
+  MCOR_TRY(mcor_allocated(context, *volume));
   const mcor_status status =
     context->grid.count > 0 ? mcor_deliver_factors(context, input, &run) : MCOR_OK;
   mcor_release_run(context, &run);
@@ -211,19 +220,10 @@ static mcor_status mcor_run_widen(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_widen_run* run = data;
-  mcor_widening* out = run->out;
   mcor_options own = *options;
   if (!options->globals)
   {
     memset(own.box, 0, sizeof own.box);
-  }
-  for (int64_t i = 0; i < input->count; ++i)
-  {
-    out->factor[i] = 1;
-    if (out->volume)
-    {
-      out->volume[i] = 1; /* a value for particles that are not on the device; nobody reads it */
-    }
   }
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
@@ -260,14 +260,14 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
   MCOR_TRY(mcor_check_spelled_out(context, options));
   MCOR_FAIL_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(WIDENING_ILLEGAL), options->widen);
-  const size_t n = (size_t)(input->count > 0 ? input->count : 0);
   mcor_widen_run run = {
     .out = widening, .widest = options->widen, .iso = mcor_widen_iso(options)
   };
   widening->count = input->count;
-  widening->factor = malloc(n * sizeof(double) + 1);
-  widening->outside = calloc(n + 1, 1);
-  widening->volume = mcor_needs_density(input) ? malloc(n * sizeof(double) + 1) : NULL;
+  widening->factor = mcor_make_ones(input->count);
+  widening->outside = calloc((size_t)(input->count > 0 ? input->count : 0) + 1, 1);
+  /* Nobody reads the 1 of a particle that is not on the device. */
+  widening->volume = mcor_needs_density(input) ? mcor_make_ones(input->count) : NULL;
   mcor_status status = mcor_allocated(context,
     widening->factor && widening->outside && (widening->volume || !mcor_needs_density(input)));
   /* Factors depend on these particles and options alone. */

@@ -12,9 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -31,7 +32,11 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   , Shifts(this->Points.size(), Shift{ { 0, 0, 0 } })
   , Endless(this->Points.size(), 0)
 {
-  std::copy_n(period, 6, this->Period);
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Low[a] = period[2 * a];
+    this->Length[a] = std::max(0.0, period[2 * a + 1] - period[2 * a]);
+  }
   std::iota(this->Root.begin(), this->Root.end(), vtkIdType(0));
   for (size_t i = 0; i < this->Points.size(); ++i)
   {
@@ -52,7 +57,9 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   std::iota(twins.begin(), twins.end(), vtkIdType(0));
   if (!caps || caps->GetComponent(0, 0) == 0.0)
   {
-    this->JoinSides(twins);
+    double bounds[6];
+    mesh->GetCellsBounds(bounds);
+    this->JoinSides(bounds, twins);
   }
   for (size_t i = 0; i < this->Points.size(); ++i)
   {
@@ -60,7 +67,7 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   }
   this->NumberPieces();
   // A piece is closed if its triangles pass each edge equally often in both directions.
-  for (const auto& edge : this->ListOpenEdges(twins))
+  for (const Edge& edge : this->ListOpenEdges(twins))
   {
     this->Pieces[this->PieceOfTriangle[edge[0]]].Closed = false;
   }
@@ -84,23 +91,24 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
 // Finds the point that stands for the whole piece, and makes it the point's own root.
 vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 {
-  vtkIdType root = point;
-  Shift shift = { { 0, 0, 0 } };
-  for (; this->Root[root] != root; root = this->Root[root])
+  const auto passOver = [this](vtkIdType one) // makes the way shorter by the next point
   {
-    std::transform(
-      shift.begin(), shift.end(), this->Shifts[root].begin(), shift.begin(), std::plus<int>());
-  }
-  while (this->Root[point] != root)
+    const vtkIdType next = this->Root[one];
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Shifts[one][a] += this->Shifts[next][a];
+    }
+    this->Root[one] = this->Root[next];
+  };
+  for (vtkIdType one = point; this->Root[one] != one; one = this->Root[one])
   {
-    const vtkIdType next = this->Root[point];
-    const Shift rest = this->Shifts[point];
-    this->Root[point] = root;
-    this->Shifts[point] = shift;
-    std::transform(shift.begin(), shift.end(), rest.begin(), shift.begin(), std::minus<int>());
-    point = next;
+    passOver(one); // later ways through these points are then shorter, too
   }
-  return root;
+  while (this->Root[this->Root[point]] != this->Root[point])
+  {
+    passOver(point);
+  }
+  return this->Root[point];
 }
 
 // Joins the pieces of two points. The piece of `one` moves up by a period along this axis; it does
@@ -126,10 +134,9 @@ void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
   }
 }
 
-// Lists the edges that triangles do not pass equally often in both directions: for each, a triangle
-// and the corner of it where the edge begins. Points with the same number in `of` are one.
-std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
-  const std::vector<vtkIdType>& of) const
+// Lists the edges that triangles do not pass equally often in both directions. Points with the same
+// number in `of` are one.
+std::vector<vtkSPHPieces::Edge> vtkSPHPieces::ListOpenEdges(const std::vector<vtkIdType>& of) const
 {
   std::vector<std::array<vtkIdType, 5>> edges; // lower and higher point, way, triangle, corner
   edges.reserve(3 * this->Triangles.size());
@@ -143,7 +150,7 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
     }
   }
   std::sort(edges.begin(), edges.end());
-  std::vector<std::array<vtkIdType, 2>> open;
+  std::vector<Edge> open;
   for (size_t i = 0, next; i < edges.size(); i = next)
   {
     vtkIdType balance = 0;
@@ -154,7 +161,8 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
     }
     if (balance != 0)
     {
-      open.push_back({ { edges[i][3], edges[i][4] } });
+      const auto& corners = this->Triangles[edges[i][3]];
+      open.push_back({ { edges[i][3], corners[edges[i][4]], corners[(edges[i][4] + 1) % 3] } });
     }
   }
   return open;
@@ -162,63 +170,57 @@ std::vector<std::array<vtkIdType, 2>> vtkSPHPieces::ListOpenEdges(
 
 // At open edges in a side, the surface goes on beyond the side, unless a cap was trimmed there.
 // Points of such edges on opposite sides are matched by their other two coordinates. Both get the
-// same number in `twins`.
-void vtkSPHPieces::JoinSides(std::vector<vtkIdType>& twins)
+// same number in `twins`. bounds: of the points that triangles use.
+void vtkSPHPieces::JoinSides(const double bounds[6], std::vector<vtkIdType>& twins)
 {
-  std::vector<std::array<vtkIdType, 2>> open;
+  std::vector<Edge> open;
   for (int a = 0; a < 3; ++a)
   {
-    const double period = this->Period[2 * a + 1] - this->Period[2 * a];
-    const double tolerance = SideTolerance * period;
-    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // range of the points that triangles use
-    for (const auto& triangle : this->Triangles)
-    {
-      for (const vtkIdType point : triangle)
-      {
-        low = std::min(low, this->Points[point][a]);
-        high = std::max(high, this->Points[point][a]);
-      }
-    }
-    if (!(period > 0.0) || !(std::abs(high - low - period) <= tolerance))
+    const double tolerance = SideTolerance * this->Length[a];
+    const double low = bounds[2 * a], high = bounds[2 * a + 1];
+    if (this->Length[a] == 0.0 || !(std::abs(high - low - this->Length[a]) <= tolerance))
     {
       continue;
     }
     open = open.empty() ? this->ListOpenEdges(twins) : open; // no points are twins yet
-    using Key = std::pair<double, double>;
     const auto listEnds = [&](double side)
     {
-      std::map<vtkIdType, Key> ends;
-      for (const auto& edge : open)
+      const auto isThere = [&](vtkIdType point)
+      { return std::abs(this->Points[point][a] - side) <= tolerance; };
+      std::set<vtkIdType> ends;
+      for (const Edge& edge : open)
       {
-        const auto& corners = this->Triangles[edge[0]];
-        const vtkIdType points[2] = { corners[edge[1]], corners[(edge[1] + 1) % 3] };
-        if (std::all_of(points, points + 2,
-              [&](vtkIdType point)
-              { return std::abs(this->Points[point][a] - side) <= tolerance; }))
+        if (isThere(edge[1]) && isThere(edge[2]))
         {
-          for (const vtkIdType i : points)
-          {
-            ends[i] = { this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3] };
-          }
+          ends.insert({ edge[1], edge[2] });
         }
       }
       return ends;
     };
-    std::map<Key, vtkIdType> lower;
-    for (const auto& end : listEnds(low))
+    const auto keyOf = [&](vtkIdType point)
+    { return std::make_pair(this->Points[point][(a + 1) % 3], this->Points[point][(a + 2) % 3]); };
+    std::map<std::pair<double, double>, vtkIdType> lower;
+    for (const vtkIdType point : listEnds(low))
     {
-      lower.emplace(end.second, end.first);
+      lower.emplace(keyOf(point), point);
     }
-    for (const auto& end : listEnds(high))
+    for (const vtkIdType point : listEnds(high))
     {
-      const auto found = lower.find(end.second);
+      const auto found = lower.find(keyOf(point));
       if (found != lower.end())
       {
-        twins[end.first] = twins[found->second];
-        this->Join(found->second, end.first, a);
+        twins[point] = twins[found->second];
+        this->Join(found->second, point, a);
       }
     }
   }
+}
+
+// Returns in which period a coordinate lies, counted from the given one; 0 if there is no period.
+double vtkSPHPieces::PeriodOf(double at, int axis, double tolerance) const
+{
+  const double length = this->Length[axis];
+  return length > 0.0 ? std::floor((at - this->Low[axis]) / length + tolerance) : 0.0;
 }
 
 // Returns a triangle's corners at the place where its piece is not cut by the period's sides.
@@ -230,8 +232,7 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
   {
     for (int a = 0; a < 3; ++a)
     {
-      corners[i][a] =
-        this->Points[points[i]][a] + shift[a] * (this->Period[2 * a + 1] - this->Period[2 * a]);
+      corners[i][a] = this->Points[points[i]][a] + shift[a] * this->Length[a];
     }
   }
 }
@@ -239,14 +240,18 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 // Sorts by area; among equal areas the piece with the first triangle comes first.
 void vtkSPHPieces::NumberPieces()
 {
-  std::map<vtkIdType, vtkSPHPiece> found; // by root
+  std::map<vtkIdType, vtkIdType> numbers; // by root
   for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
     const vtkIdType root = this->Root[this->Triangles[t][0]];
-    const auto at = found.emplace(root, vtkSPHPiece());
-    vtkSPHPiece& piece = at.first->second;
-    piece.FirstTriangle = at.second ? static_cast<vtkIdType>(t) : piece.FirstTriangle;
-    piece.Endless = this->Endless[root] != 0;
+    const auto at = numbers.emplace(root, static_cast<vtkIdType>(this->Pieces.size()));
+    if (at.second)
+    {
+      this->Pieces.emplace_back();
+      this->Pieces.back().FirstTriangle = static_cast<vtkIdType>(t);
+      this->Pieces.back().Endless = this->Endless[root] != 0;
+    }
+    vtkSPHPiece& piece = this->Pieces[at.first->second];
     double c[3][3], u[3], v[3], n[3];
     this->CornersOf(static_cast<vtkIdType>(t), c);
     for (int i = 0; i < 9; ++i)
@@ -259,14 +264,9 @@ void vtkSPHPieces::NumberPieces()
     vtkMath::Cross(u, v, n);
     piece.Area += 0.5 * vtkMath::Norm(n);
   }
-  for (const auto& each : found)
-  {
-    this->Pieces.push_back(each.second);
-  }
   std::sort(this->Pieces.begin(), this->Pieces.end(),
     [](const vtkSPHPiece& p, const vtkSPHPiece& q)
     { return p.Area > q.Area || (p.Area == q.Area && p.FirstTriangle < q.FirstTriangle); });
-  std::map<vtkIdType, vtkIdType> numbers; // by root
   for (size_t i = 0; i < this->Pieces.size(); ++i)
   {
     const vtkIdType point = this->Triangles[this->Pieces[i].FirstTriangle][0];
@@ -334,13 +334,11 @@ void vtkSPHPieces::MoveHome()
     vtkSPHPiece& piece = this->Pieces[i];
     for (int a = 0; a < 3; ++a)
     {
-      const double low = this->Period[2 * a], period = this->Period[2 * a + 1] - low;
-      const double away =
-        period > 0.0 ? std::floor((piece.Centre[a] - low) / period + SideTolerance) : 0.0;
+      const double away = this->PeriodOf(piece.Centre[a], a, SideTolerance);
       moves[i][a] = static_cast<int>(-away);
-      piece.Centre[a] -= away * period;
-      piece.Bounds[2 * a] -= away * period;
-      piece.Bounds[2 * a + 1] -= away * period;
+      piece.Centre[a] -= away * this->Length[a];
+      piece.Bounds[2 * a] -= away * this->Length[a];
+      piece.Bounds[2 * a + 1] -= away * this->Length[a];
     }
   }
   for (size_t i = 0; i < this->Points.size(); ++i)

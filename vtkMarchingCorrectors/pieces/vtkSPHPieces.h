@@ -66,21 +66,25 @@ public:
 
 private:
   using Shift = std::array<int, 3>; // in periods
-  std::vector<std::array<vtkIdType, 2>> ListOpenEdges(const std::vector<vtkIdType>& of) const;
+  using Edge = std::array<vtkIdType, 3>; // a triangle, and the points of one of its edges
+  double PeriodOf(double at, int axis, double tolerance = 0.0) const;
+  std::vector<Edge> ListOpenEdges(const std::vector<vtkIdType>& of) const;
   vtkIdType FindRoot(vtkIdType point);
   void Join(vtkIdType one, vtkIdType other, int axis);
-  void JoinSides(std::vector<vtkIdType>& twins);
+  void JoinSides(const double bounds[6], std::vector<vtkIdType>& twins);
   void NumberPieces();
   void Measure();
   void MoveHome();
   void FindParents(double isoValue);
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
+  std::vector<std::array<double, 3>> ListImages(
+    const std::array<double, 3>& point, const std::vector<std::array<double, 3>>& shifts) const;
   std::vector<Face> ListFaces(bool hasVolume, double isoValue) const;
   std::vector<vtkIdType> FindAround(
     const std::vector<std::array<double, 3>>& points, double isoValue) const;
   void CornersOf(vtkIdType triangle, double corners[3][3]) const;
 
-  double Period[6];
+  double Low[3], Length[3]; // where the period begins, and its lengths; 0: no period
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
   std::vector<vtkIdType> Root; // the next point on the way to the one that stands for the piece

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -72,39 +73,30 @@ class Columns
 public:
   explicit Columns(std::vector<Face> faces)
     : Faces(std::move(faces))
+    , Count(std::max(
+        1, std::min(2048, static_cast<int>(std::sqrt(static_cast<double>(this->Faces.size()))))))
+    , Lists(this->Place(0, this->Count))
   {
-    double high[2] = { 0.0, 0.0 };
-    for (int a = 0; a < 2 && !this->Faces.empty(); ++a)
-    {
-      this->Low[a] = high[a] = this->Faces[0].Corner[0][a + 1];
-      for (const Face& face : this->Faces)
-      {
-        for (const auto& corner : face.Corner)
-        {
-          this->Low[a] = std::min(this->Low[a], corner[a + 1]);
-          high[a] = std::max(high[a], corner[a + 1]);
-        }
-      }
-    }
-    const double side = std::sqrt(static_cast<double>(this->Faces.size()));
+    const auto rangeOf = [](const Face& face, int a)
+    { return std::minmax({ face.Corner[0][a + 1], face.Corner[1][a + 1], face.Corner[2][a + 1] }); };
     for (int a = 0; a < 2; ++a)
     {
-      this->Counts[a] = std::max(1, std::min(2048, static_cast<int>(side)));
-      this->Size[a] = high[a] > this->Low[a] ? (high[a] - this->Low[a]) / this->Counts[a] : 1.0;
+      double high = -VTK_DOUBLE_MAX;
+      this->Low[a] = VTK_DOUBLE_MAX;
+      for (const Face& face : this->Faces)
+      {
+        this->Low[a] = std::min(this->Low[a], rangeOf(face, a).first);
+        high = std::max(high, rangeOf(face, a).second);
+      }
+      this->Size[a] = high > this->Low[a] ? (high - this->Low[a]) / this->Count : 1.0;
     }
-    this->Lists.resize(this->Place(0, this->Counts[1]));
     for (size_t f = 0; f < this->Faces.size(); ++f)
     {
-      int first[2], last[2];
-      for (int a = 0; a < 2; ++a)
+      const auto y = rangeOf(this->Faces[f], 0), z = rangeOf(this->Faces[f], 1);
+      const int last[2] = { this->IndexOf(0, y.second), this->IndexOf(1, z.second) };
+      for (int j = this->IndexOf(1, z.first); j <= last[1]; ++j)
       {
-        const auto& c = this->Faces[f].Corner;
-        first[a] = this->IndexOf(a, std::min({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
-        last[a] = this->IndexOf(a, std::max({ c[0][a + 1], c[1][a + 1], c[2][a + 1] }));
-      }
-      for (int j = first[1]; j <= last[1]; ++j)
-      {
-        for (int i = first[0]; i <= last[0]; ++i)
+        for (int i = this->IndexOf(0, y.first); i <= last[0]; ++i)
         {
           this->Lists[this->Place(i, j)].push_back(f);
         }
@@ -115,7 +107,7 @@ public:
   const std::vector<size_t>& At(double y, double z) const
   {
     const int i = this->IndexOf(0, y), j = this->IndexOf(1, z);
-    const bool isIn = i >= 0 && i < this->Counts[0] && j >= 0 && j < this->Counts[1];
+    const bool isIn = i >= 0 && i < this->Count && j >= 0 && j < this->Count;
     return isIn ? this->Lists[this->Place(i, j)] : this->None;
   }
 
@@ -125,17 +117,17 @@ private:
   int IndexOf(int a, double x) const
   {
     const double i = std::floor((x - this->Low[a]) / this->Size[a]);
-    return i == this->Counts[a] ? this->Counts[a] - 1
-                                : static_cast<int>(std::max(-1.0, std::min(i, 1e9)));
+    return i == this->Count ? this->Count - 1
+                            : static_cast<int>(std::max(-1.0, std::min(i, 1e9)));
   }
 
   size_t Place(int i, int j) const
   {
-    return static_cast<size_t>(j) * static_cast<size_t>(this->Counts[0]) + static_cast<size_t>(i);
+    return static_cast<size_t>(j) * static_cast<size_t>(this->Count) + static_cast<size_t>(i);
   }
 
-  double Low[2] = { 0.0, 0.0 }, Size[2];
-  int Counts[2];
+  const int Count; // columns along y, and along z
+  double Low[2], Size[2];
   std::vector<std::vector<size_t>> Lists;
   const std::vector<size_t> None;
 };
@@ -148,7 +140,7 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
   vtkIdType without, vtkIdType& innermost)
 {
   // For each piece: how often the ray leaves it, minus how often the ray enters it.
-  std::vector<std::pair<vtkIdType, int>> turns;
+  std::map<vtkIdType, int> turns;
   for (const size_t f : columns.At(point[1], point[2]))
   {
     const Face& face = columns.Faces[f];
@@ -156,10 +148,7 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
     const int crossing = face.Piece == without ? 0 : Crossing(face, point, &at);
     if (crossing != 0)
     {
-      auto turn = std::find_if(turns.begin(), turns.end(),
-        [&face](const std::pair<vtkIdType, int>& one) { return one.first == face.Piece; });
-      turn = turn == turns.end() ? turns.insert(turn, { face.Piece, 0 }) : turn;
-      turn->second += crossing;
+      turns[face.Piece] += crossing;
     }
   }
   const auto sizeOf = [&pieces](vtkIdType piece) { return std::abs(pieces[piece].Volume); };
@@ -173,18 +162,6 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
     }
   }
 }
-
-/** Returns the image of a point that lies in the period. */
-Triple WithinPeriod(const double period[6], const Triple& point)
-{
-  Triple at = point;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double low = period[2 * a], length = period[2 * a + 1] - low;
-    at[a] -= length > 0.0 ? std::floor((at[a] - low) / length) * length : 0.0;
-  }
-  return at;
-}
 }
 
 // Lists the shifts that move a point within the period to each of its images where pieces may be.
@@ -193,15 +170,13 @@ std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
   for (int a = 0; a < 3; ++a)
   {
-    const double low = this->Period[2 * a], period = this->Period[2 * a + 1] - low;
     int first = 0, last = 0;
     for (const vtkSPHPiece& piece : this->Pieces)
     {
-      if (period > 0.0 && piece.HasVolume() == hasVolume)
+      if (piece.HasVolume() == hasVolume)
       {
-        first = std::min(first, static_cast<int>(std::floor((piece.Bounds[2 * a] - low) / period)));
-        last =
-          std::max(last, static_cast<int>(std::floor((piece.Bounds[2 * a + 1] - low) / period)));
+        first = std::min(first, static_cast<int>(this->PeriodOf(piece.Bounds[2 * a], a)));
+        last = std::max(last, static_cast<int>(this->PeriodOf(piece.Bounds[2 * a + 1], a)));
       }
     }
     const std::vector<Triple> before = std::move(shifts);
@@ -210,7 +185,7 @@ std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
     {
       for (Triple shift : before)
       {
-        shift[a] = k * period;
+        shift[a] = k * this->Length[a];
         shifts.push_back(shift);
       }
     }
@@ -235,6 +210,21 @@ std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume, double i
   return faces;
 }
 
+// Moves a point into the period, then by each shift.
+std::vector<Triple> vtkSPHPieces::ListImages(
+  const Triple& point, const std::vector<Triple>& shifts) const
+{
+  std::vector<Triple> images = shifts;
+  for (Triple& image : images)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      image[a] += point[a] - this->PeriodOf(point[a], a) * this->Length[a];
+    }
+  }
+  return images;
+}
+
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   const std::vector<Triple>& points, double isoValue, const std::vector<vtkIdType>& without) const
 {
@@ -242,16 +232,14 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   const std::vector<Triple> shifts = this->ListShifts(true);
   std::vector<vtkIdType> found(points.size(), -1);
   vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
-    [this, &points, &without, &columns, &shifts, &found](vtkIdType begin, vtkIdType end)
+    [&](vtkIdType begin, vtkIdType end)
     {
       for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
       {
-        const Triple home = WithinPeriod(this->Period, points[i]);
         vtkIdType innermost = -1;
-        for (const Triple& shift : shifts)
+        for (const Triple& image : this->ListImages(points[i], shifts))
         {
-          const Triple at = { { home[0] + shift[0], home[1] + shift[1], home[2] + shift[2] } };
-          Enclose(columns, this->Pieces, at, without.empty() ? -1 : without[i], innermost);
+          Enclose(columns, this->Pieces, image, without.empty() ? -1 : without[i], innermost);
         }
         const bool isFluid = innermost >= 0 && this->Pieces[innermost].Volume > 0.0;
         found[i] = isFluid ? innermost : -1;
@@ -269,7 +257,6 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);
-  const std::vector<Face> all = this->ListFaces(false, isoValue);
   for (int ray = 0; ray < 6; ++ray)
   {
     const int axis = ray / 2;
@@ -277,7 +264,7 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(
     const auto turn = [axis, way](const double* x) {
       return Triple{ { way * x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3] } };
     };
-    std::vector<Face> faces = all;
+    std::vector<Face> faces = this->ListFaces(false, isoValue);
     for (Face& face : faces)
     {
       for (double(&corner)[3] : face.Corner)
@@ -289,14 +276,12 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(
     const Columns columns(std::move(faces));
     for (size_t i = 0; i < points.size(); ++i)
     {
-      const Triple home = WithinPeriod(this->Period, points[i]);
       double first = VTK_DOUBLE_MAX, at;
       int side = 0;
       vtkIdType piece = -1;
-      for (const Triple& shift : shifts)
+      for (const Triple& image : this->ListImages(points[i], shifts))
       {
-        const Triple moved = { { home[0] + shift[0], home[1] + shift[1], home[2] + shift[2] } };
-        const Triple point = turn(moved.data());
+        const Triple point = turn(image.data());
         for (const size_t f : columns.At(point[1], point[2]))
         {
           const int crossing = Crossing(columns.Faces[f], point, &at);

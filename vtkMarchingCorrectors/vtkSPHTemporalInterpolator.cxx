@@ -54,7 +54,7 @@ public:
   }
 
   double Time = 0.0;                                     // requested time
-  std::vector<double> Times;                             // its step's, or the two around it
+  std::vector<double> Times = { 0.0 };                   // its step's, or the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
   std::map<size_t, vtkSPHTemporalPair> Pairs;            // by block
   std::set<long> Ratios;                                 // motion / velocities, of past warnings
@@ -179,7 +179,8 @@ int vtkSPHTemporalInterpolator::RequestUpdateExtent(
                                                          : stored.front();
   if (stored.empty())
   {
-    steps.Times.clear();
+    steps.Kept.clear(); // particles without a time are taken as they are now
+    steps.Times = { steps.Time };
     return 1;
   }
   steps.Times = StepsAround(stored, steps.Time);
@@ -249,15 +250,10 @@ int vtkSPHTemporalInterpolator::RequestData(
   {
     return 1;
   }
-  const bool isTimed = !steps.Times.empty();
-  vtkDataObject* given = vtkDataObject::GetData(input);
-  const vtkSmartPointer<vtkDataObject> taken =
-    isTimed ? nullptr : vtkSPHTakeVertices(given, vtkSPHHaveVertices(given));
-  vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : taken.Get();
-  vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
+  vtkDataObject* first = steps.Find(steps.Times.front());
+  vtkDataObject* second = steps.Find(steps.Times.back());
   vtkDataObject* to = vtkDataObject::GetData(outputVector);
-  auto* blocks = vtkDataObjectTree::SafeDownCast(to);
-  if (blocks)
+  if (auto* blocks = vtkDataObjectTree::SafeDownCast(to))
   {
     this->FillBlocks(
       vtkDataObjectTree::SafeDownCast(first), vtkDataObjectTree::SafeDownCast(second), blocks);
@@ -266,7 +262,7 @@ int vtkSPHTemporalInterpolator::RequestData(
   {
     this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
   }
-  if (isTimed)
+  if (input->Has(Pipeline::TIME_STEPS()))
   {
     to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
   }

@@ -221,11 +221,7 @@ bool vtkSPHTemporalPair::FindIds()
     this->Error = vtkSPHSay(MCOR_SAY(NO_IDS), vtkSPHListNames(this->Steps[0].Particles).c_str());
     return false;
   }
-  for (int k = 0; k < 2; ++k)
-  {
-    this->Steps[k].Ids = this->Find("particles' numbers", this->IdName, 1, k);
-  }
-  return this->Error.empty();
+  return this->Find("particles' numbers", this->IdName, 1, &Step::Ids);
 }
 
 bool vtkSPHTemporalPair::FindVelocities()
@@ -246,33 +242,34 @@ bool vtkSPHTemporalPair::FindVelocities()
       return true;
     }
   }
-  for (int k = 0; k < 2; ++k)
-  {
-    this->Steps[k].Velocities = this->Find("velocity", this->VelocityName, 3, k);
-  }
-  return this->Error.empty();
+  return this->Find("velocity", this->VelocityName, 3, &Step::Velocities);
 }
 
-vtkDataArray* vtkSPHTemporalPair::Find(
-  const std::string& role, const std::string& name, int components, int step)
+bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, int components,
+  vtkSmartPointer<vtkDataArray> Step::*member)
 {
-  vtkPointSet* particles = this->Steps[step].Particles;
-  vtkDataArray* array = particles->GetPointData()->GetArray(name.c_str());
-  if (!array)
+  for (int k = 0; k < 2; ++k)
   {
-    this->Error = "There is no point array '" + name + "' for the " + role + " in " +
-      this->NameOfStep(step) + ". " + vtkSPHListNames(particles);
+    vtkPointSet* particles = this->Steps[k].Particles;
+    vtkDataArray* array = particles->GetPointData()->GetArray(name.c_str());
+    this->Steps[k].*member = array;
+    if (!array)
+    {
+      this->Error = vtkSPHSay(MCOR_SAY(NO_SUCH_ARRAY), name.c_str(),
+        (role + " in " + this->NameOfStep(k)).c_str(), "", vtkSPHListNames(particles).c_str());
+    }
+    else if (array->GetNumberOfComponents() != components ||
+      array->GetNumberOfTuples() != particles->GetNumberOfPoints())
+    {
+      std::ostringstream error;
+      error << "The array '" << name << "' for the " << role << " has "
+            << array->GetNumberOfTuples() << " entries of " << array->GetNumberOfComponents()
+            << " components in " << this->NameOfStep(k) << "; it must have " << components
+            << " for each of the " << particles->GetNumberOfPoints() << " particles.";
+      this->Error = error.str();
+    }
   }
-  else if (array->GetNumberOfComponents() != components ||
-    array->GetNumberOfTuples() != particles->GetNumberOfPoints())
-  {
-    this->Error = "The array '" + name + "' for the " + role + " has " +
-      std::to_string(array->GetNumberOfTuples()) + " entries of " +
-      std::to_string(array->GetNumberOfComponents()) + " components in " + this->NameOfStep(step) +
-      "; it must have " + std::to_string(components) + " for each of the " +
-      std::to_string(particles->GetNumberOfPoints()) + " particles.";
-  }
-  return this->Error.empty() ? array : nullptr;
+  return this->Error.empty();
 }
 
 bool vtkSPHTemporalPair::AreVelocitiesFinite()

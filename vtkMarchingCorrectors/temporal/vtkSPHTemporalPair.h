@@ -56,7 +56,8 @@ private:
   bool MatchNumbers();
   bool FindIds();
   bool FindVelocities();
-  vtkDataArray* Find(const std::string& role, const std::string& name, int components, int step);
+  bool Find(const std::string& role, const std::string& name, int components,
+    vtkSmartPointer<vtkDataArray> Step::*member);
   bool AreVelocitiesFinite();
   void CheckVelocities();
   void WarnOfLostArrays();

@@ -4,8 +4,8 @@
 import os
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLPPolyDataReader
 
@@ -27,25 +27,22 @@ def arrays_of(surface):
     return [values.GetArray(i) for i in range(values.GetNumberOfArrays())]
 
 
+def add(data, **arrays):
+    """Adds point arrays: {name: values}."""
+    for name, values in arrays.items():
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    return data
+
+
 def take(whole, indices):
     """Returns these points with their arrays and the time of the whole, but without cells."""
     part = vtkPolyData()
     part.SetFieldData(whole.GetFieldData())
-    ids = vtkIdList()
-    for i in indices:
-        ids.InsertNextId(int(i))
-    points = whole.GetPoints().NewInstance()
-    points.SetDataType(whole.GetPoints().GetDataType())
-    whole.GetPoints().GetPoints(ids, points)
-    part.SetPoints(points)
-    for array in arrays_of(whole):
-        own = array.NewInstance()
-        own.SetName(array.GetName())
-        own.SetNumberOfComponents(array.GetNumberOfComponents())
-        own.SetNumberOfTuples(ids.GetNumberOfIds())
-        array.GetTuples(ids, own)
-        part.GetPointData().AddArray(own)
-    return part
+    part.SetPoints(vtkPoints())
+    part.GetPoints().SetData(numpy_to_vtk(vtk_to_numpy(whole.GetPoints().GetData())[indices], deep=True))
+    return add(part, **{array.GetName(): vtk_to_numpy(array)[indices] for array in arrays_of(whole)})
 
 
 def write(part, file):

@@ -21,9 +21,8 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from particle_pieces import corners, difference, read, take, write, write_pieces
+from particle_pieces import add, corners, difference, read, take, write, write_pieces
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
@@ -43,12 +42,17 @@ class Program(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder.name, name)
 
+    def text(self, name):
+        return Path(self.path(name)).read_text(encoding="utf-8")
+
     def run_alone(self, *arguments):
         return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=BOUND, check=False)
 
-    def run_ranks(self, *arguments):
-        return subprocess.run([MPIRUN, "-n", RANKS, PROGRAM, *arguments], capture_output=True, text=True,
-                              timeout=BOUND, check=False)
+    def run_ranks(self, *arguments, first="", **environment):
+        """Runs the program under mpirun. first: a shell's command that each process runs first; $rank is the process's number."""
+        script = 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}; ' + first + ' exec "$@"'
+        return subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", script, "-", PROGRAM, *arguments], env={**os.environ, **environment},
+                              capture_output=True, text=True, timeout=BOUND, check=False)
 
     def good(self, done):
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -86,8 +90,7 @@ class Program(unittest.TestCase):
     def test_one_file(self):
         how = ["--scalar", "Speed", "--iso", "2", "--stats", self.path("s.json")]
         _, done = self.check_surfaces(PARTICLES, PARTICLES, *how)
-        with open(self.path("s.json"), encoding="utf-8") as stream:
-            self.assertIn("rank_particles", stream.read())
+        self.assertIn("rank_particles", self.text("s.json"))
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
     def write_plane(self):
@@ -96,13 +99,8 @@ class Program(unittest.TestCase):
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = 0.5
         low, high = at[:, 0].min(), at[:, 0].max()
-        for name, power in ("PlaneLength", 1), ("PlaneArea", 2):
-            array = vtkDoubleArray()
-            array.SetName(name)
-            for x in at[:, 0]:
-                array.InsertNextValue((0.04 * 4 ** ((x - low) / (high - low))) ** power)
-            plane.GetPointData().AddArray(array)
-        write(plane, self.path("plane.vtp"))
+        length = 0.04 * 4 ** ((at[:, 0].astype(float) - low) / (high - low))
+        write(add(plane, PlaneLength=length, PlaneArea=length ** 2), self.path("plane.vtp"))
         return self.path("plane.vtp")
 
     def check_same(self, name, particles, pieces, *how):
@@ -154,7 +152,7 @@ class Program(unittest.TestCase):
             if name == "gauges.csv":
                 self.assertEqual(done.stdout, alone.stdout)
         for name, time in ("gauges.csv", "0,"), ("walls.csv", "0.9"):  # The pieces have the time of their file.
-            rows = Path(self.path(name)).read_text(encoding="utf-8").splitlines()[1:]
+            rows = self.text(name).splitlines()[1:]
             self.assertTrue(all(row.startswith(time) for row in rows) and any(",wet," in row for row in rows), rows)
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.csv"), "--gauge", "a=0,0,0:0,0,1", "--smoothing-length", "Nope"), "Nope")
         self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "no/o.csv")
@@ -162,10 +160,8 @@ class Program(unittest.TestCase):
     def test_types_of_pieces(self):
         """An array that is int8 in one piece and float64 in the others has the same values, whichever process reads the int8 piece."""
         whole = read(PARTICLES)
-        steps = numpy_to_vtk(np.floor(vtk_to_numpy(whole.GetPointData().GetArray("Speed"))), deep=True)
-        steps.SetName("Steps")
-        whole.GetPointData().AddArray(steps)
-        write(whole, self.path("whole.vtp"))
+        steps = np.floor(vtk_to_numpy(whole.GetPointData().GetArray("Speed")))
+        write(add(whole, Steps=steps), self.path("whole.vtp"))
         how = ["--scalar", "Steps", "--iso", "1.5", "--quiet"]
         self.good(self.run_alone(self.path("whole.vtp"), self.path("alone.vtp"), *how))
         alone = read(self.path("alone.vtp"))
@@ -173,10 +169,8 @@ class Program(unittest.TestCase):
         for odd in range(3):
             pieces = write_pieces(self.path("whole.vtp"), self.folder.name, 3)
             part = read(self.path(f"piece_{odd}.vtp"))
-            small = numpy_to_vtk(vtk_to_numpy(part.GetPointData().GetArray("Steps")).astype(np.int8), deep=True)
-            small.SetName("Steps")
-            part.GetPointData().AddArray(small)
-            write(part, self.path(f"piece_{odd}.vtp"))
+            small = vtk_to_numpy(part.GetPointData().GetArray("Steps")).astype(np.int8)
+            write(add(part, Steps=small), self.path(f"piece_{odd}.vtp"))
             for run in self.run_alone, self.run_ranks:
                 self.good(run(pieces, self.path("ranks.vtp"), *how))
                 found = read(self.path("ranks.vtp"))
@@ -208,17 +202,11 @@ class Program(unittest.TestCase):
         at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)
         write(plane, self.path("two.vtp"))
         pieces = write_pieces(self.path("two.vtp"), self.folder.name, 2)
-        wall = vtkDoubleArray()
-        wall.SetName("Wall")
-        for z in at[:, 2]:
-            wall.InsertNextValue(float(z > 0.55))
-        plane.GetPointData().AddArray(wall)
-        write(plane, self.path("wall.vtp"))
+        write(add(plane, Wall=(at[:, 2] > 0.55).astype(float)), self.path("wall.vtp"))
         for file, how, dimension in ((pieces, [], 3),
                                      (self.path("wall.vtp"), ["--fluid", "Wall=0", "--solids", "ignore"], 2)):
             self.good(self.run_ranks(file, self.path("s.vtp"), "--free-surface", "--dp", "0.03", "--stats", self.path("s.json"), *how))
-            with open(self.path("s.json"), encoding="utf-8") as stream:
-                length = json.load(stream)["statistics"]["smoothing_length_range"]
+            length = json.loads(self.text("s.json"))["statistics"]["smoothing_length_range"]
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_period_of_data(self):
@@ -236,10 +224,8 @@ class Program(unittest.TestCase):
 
     def set_box_size(self, piece, *size):
         part = read(self.path(piece))
-        array = vtkDoubleArray()
+        array = numpy_to_vtk(np.array(size, float), deep=True)
         array.SetName("BoxSize")
-        for length in size:
-            array.InsertNextValue(length)
         part.GetFieldData().AddArray(array)
         write(part, self.path(piece))
 
@@ -320,11 +306,8 @@ class Program(unittest.TestCase):
     def test_names_of_factors(self):
         """Arrays of the particles may have the names of arrays that widening makes; they are contoured and interpolated as usual."""
         particles = read(PARTICLES)
-        for name in "Widening", "WideningVolume":
-            array = numpy_to_vtk(vtk_to_numpy(particles.GetPoints().GetData())[:, 0], deep=True)
-            array.SetName(name)
-            particles.GetPointData().AddArray(array)
-        write(particles, self.path("in.vtp"))
+        x = vtk_to_numpy(particles.GetPoints().GetData())[:, 0]
+        write(add(particles, Widening=x, WideningVolume=x), self.path("in.vtp"))
         self.check_surfaces(self.path("in.vtp"), write_pieces(self.path("in.vtp"), self.folder.name, 3),
                             "--scalar", "Widening", "--iso", str(particles.GetCenter()[0]), "--widen", "2")
         alone, ranks = read(self.path("alone.vtp")).GetPointData(), read(self.path("ranks.vtp")).GetPointData()
@@ -336,22 +319,18 @@ class Program(unittest.TestCase):
         """Writes three steps with ids and velocities: the first in pieces, the second in one file, the third damaged."""
         particles = read(PARTICLES)
         count = particles.GetNumberOfPoints()
-        ids = numpy_to_vtk(np.arange(count, dtype=np.int32), deep=True)
-        ids.SetName("ParticleId")
-        particles.GetPointData().AddArray(ids)
-        write(particles, self.path("first.vtp"))
+        write(add(particles, ParticleId=np.arange(count, dtype=np.int32)), self.path("first.vtp"))
         write_pieces(self.path("first.vtp"), self.folder.name, 5)
         velocity = vtk_to_numpy(particles.GetPointData().GetArray("Velocity"))
         moved = take(particles, np.random.default_rng(3).permutation(count))
         places = vtk_to_numpy(moved.GetPoints().GetData())
         places += 0.02 * velocity[vtk_to_numpy(moved.GetPointData().GetArray("ParticleId"))]
         write(moved, self.path("second.vtp"))
-        with open(self.path("third.vtp"), "w", encoding="ascii") as stream:
-            stream.write('<?xml version="1.0"?><VTKFile type="PolyData">')
+        Path(self.path("third.vtp")).write_text('<?xml version="1.0"?><VTKFile type="PolyData">', encoding="ascii")
         files = enumerate(("pieces.pvtp", "second.vtp", "third.vtp"))
         steps = "".join(f'<DataSet timestep="{0.02 * i}" file="{name}"/>' for i, name in files)
-        with open(self.path("steps.pvd"), "w", encoding="ascii") as stream:
-            stream.write(f'<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>{steps}</Collection></VTKFile>')
+        Path(self.path("steps.pvd")).write_text(
+            f'<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>{steps}</Collection></VTKFile>', encoding="ascii")
         return self.path("steps.pvd")
 
     def check_same_files(self, names):
@@ -365,8 +344,7 @@ class Program(unittest.TestCase):
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")
-        with open(points, "w", encoding="ascii") as stream:
-            stream.write("x,y,z\n0,0.1,0\n-0.5,0.1,0.2\n9,9,9\n")
+        Path(points).write_text("x,y,z\n0,0.1,0\n-0.5,0.1,0.2\n9,9,9\n", encoding="ascii")
         for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
             os.mkdir(self.path(name))
             how = ["--free-surface", "--iso", "0.5,0.3", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
@@ -382,8 +360,7 @@ class Program(unittest.TestCase):
                                "levels.csv", "values.csv"])
         alone, ranks = (read(self.path(name + "/list_0001.vtp")) for name in ("alone", "ranks"))
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
-        with open(self.path("ranks/numbers.csv"), encoding="utf-8") as stream:
-            self.assertEqual(len(set(stream)), 7)
+        self.assertEqual(len(set(self.text("ranks/numbers.csv").splitlines())), 7)
         picture = self.run_ranks(steps, self.path("o.pvd"), "--free-surface", "--screenshot", self.path("o_%04d.png"))
         self.check_fails(picture, "--screenshot")
 
@@ -424,16 +401,8 @@ class Program(unittest.TestCase):
         self.check_fails(done, "piece_1.vtp", "end is missing")
         self.assertFalse(os.path.exists(self.path("out.pvtp")))
 
-    def run_failing(self, *arguments):
-        """Runs the program so that the second process cannot write, as on a full disk."""
-        script = ('test "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" != 1 || export LD_PRELOAD="$0" MCOR_FAILING_CALL=fsync; '
-                  'exec "$@"')
-        return subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", script, PRELOAD, PROGRAM, *arguments],
-                              env={**os.environ, "MCOR_FAILING_FOLDER": self.folder.name},
-                              capture_output=True, text=True, timeout=BOUND, check=False)
-
     def test_full_disk(self):
-        """If one process cannot write its piece, all files stay as they were, and nothing is left behind."""
+        """If one process cannot write its piece, as on a full disk, all files stay as they were, and nothing is left behind."""
         how = [PARTICLES, self.path("out.pvtp"), "--free-surface", "--stats", self.path("s.json")]
         names = ["out.pvtp", "s.json", *(f"out_{i}.vtp" for i in range(int(RANKS)))]
         self.good(self.run_ranks(*how))
@@ -442,14 +411,13 @@ class Program(unittest.TestCase):
             for name in names:
                 os.remove(self.path(name))
             for name in names if old else []:
-                with open(self.path(name), "w", encoding="utf-8") as stream:
-                    stream.write("old")
-            done = self.run_failing(*how)
+                Path(self.path(name)).write_text("old", encoding="ascii")
+            done = self.run_ranks(*how, first=f'test $rank != 1 || export LD_PRELOAD="{PRELOAD}" MCOR_FAILING_CALL=fsync;',
+                                  MCOR_FAILING_FOLDER=self.folder.name)
             self.check_fails(done, "out_1.vtp could not be written")
             self.assertEqual(sorted(os.listdir(self.folder.name)), sorted(names) if old else [])
             for name in names if old else []:
-                with open(self.path(name), encoding="utf-8") as stream:
-                    self.assertEqual(stream.read(), "old", name)
+                self.assertEqual(self.text(name), "old", name)
 
     def test_files_of_others(self):
         """No process overwrites a piece of the particles, nor a piece of the surface."""
@@ -472,9 +440,7 @@ class Program(unittest.TestCase):
 
     def test_usage(self):
         """A mistake on the command line is told once, even if the first process is the last to see it."""
-        late = "if [ ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 0 ]; then sleep 1; fi; exec \"$@\""
-        done = subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", late, "-", PROGRAM, PARTICLES, self.path("o.vtp"), "--nope"],
-                              capture_output=True, text=True, timeout=BOUND, check=False)
+        done = self.run_ranks(PARTICLES, self.path("o.vtp"), "--nope", first="test $rank != 0 || sleep 1;")
         self.check_fails(done, "--nope")
 
     def test_slice(self):
@@ -485,10 +451,7 @@ class Program(unittest.TestCase):
     def test_first_without_particles(self):
         """Sentences about the particles, and the choice of the active array, do not depend on which process has the particles."""
         particles = read(PARTICLES)
-        kinds = numpy_to_vtk((np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32), deep=1)
-        kinds.SetName("Type")
-        particles.GetPointData().AddArray(kinds)
-        write(particles, self.path("in.vtp"))
+        write(add(particles, Type=(np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32)), self.path("in.vtp"))
         pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
         write(take(particles, []), self.path("piece_0.vtp"))
         for name, *how in (("s.vti", "--slice", "z=0", "--resolution", "64"), ("s.vtp", "--free-surface")):

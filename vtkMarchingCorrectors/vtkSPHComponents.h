@@ -7,19 +7,9 @@
  * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that
  * share points are one piece, also across the sides of a period. Its first output is the surface
  * with the point and cell array "ComponentId", 0 for the piece of the largest area, and the cell
- * array "ComponentVolume". The second output is a vtkTable with a row for each piece:
- *
- *     component            its number
- *     iso                  the iso value that it is a surface of; NaN where the surface does not tell
- *     parent               of a cavity, the piece around it; else -1
- *     closed               1 or 0: each edge has triangles on either side
- *     area, volume         volume only of closed pieces; negative for a cavity
- *     x, y, z              centre, of the volume; of open pieces, of the area
- *     xmin, xmax, ...      bounds; a piece that crosses the side of a period is joined first
- *     diameter             of the sphere of this volume
- *     particles            fluid particles inside it, without those in pieces of the same iso value inside it
- *     mass                 their mass
- *     vx, vy, vz           their mean velocity, weighted by the mass
+ * array "ComponentVolume". The second output is a vtkTable with a row for each piece.
+ * Documentation/Guide/pieces.md explains its columns: component, iso, parent, closed, area, volume,
+ * x, y, z, xmin, xmax, ymin, ymax, zmin, zmax, diameter, particles, mass, vx, vy, vz.
  *
  * A value that does not apply is NaN. The last five need the particles, the second input; a row is
  * then filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles

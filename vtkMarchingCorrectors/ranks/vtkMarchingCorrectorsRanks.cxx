@@ -93,46 +93,41 @@ using Numbers = std::vector<std::int64_t>;
 /**
  * How many samples decide on each rank's range of keys. The ranges then differ by about an eighth.
  */
-constexpr std::int64_t Samples = 64;
+constexpr std::size_t SamplesPerRank = 64;
 
 /** Finds where the range of keys of each rank ends; the same on all ranks. */
 Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 {
   const auto count = static_cast<std::size_t>(ranks.GetCount());
-  const auto own = static_cast<std::int64_t>(keys.size());
-  std::int64_t all = own;
+  auto all = static_cast<std::int64_t>(keys.size());
   ranks.Reduce(vtkSPHRanks::SUM, &all, 1);
-  const auto wanted =
-    static_cast<std::size_t>(std::ceil(static_cast<double>(Samples * ranks.GetCount()) *
-      static_cast<double>(own) / static_cast<double>(std::max<std::int64_t>(all, 1))));
+  const std::size_t step = static_cast<std::size_t>(all) / (SamplesPerRank * count) + 1;
   Keys samples;
-  for (std::size_t i = 0; i < wanted; ++i)
+  for (std::size_t i = step / 2; i < keys.size(); i += step)
   {
-    samples.push_back(keys[i * keys.size() / wanted]);
+    samples.push_back(keys[i]);
   }
-  Keys sampled = ranks.Join(samples);
-  std::sort(sampled.begin(), sampled.end());
+  samples = ranks.Join(samples);
+  std::sort(samples.begin(), samples.end());
   Keys ends;
-  for (std::size_t rank = 1; rank < count && !sampled.empty(); ++rank)
+  for (std::size_t rank = 1; rank < count && !samples.empty(); ++rank)
   {
-    ends.push_back(sampled[rank * sampled.size() / count]);
+    ends.push_back(samples[rank * samples.size() / count]);
   }
   return ends;
 }
 
 /**
- * Returns how many successive numbers a key takes: 1 for a point, for a cell the number of its
- * triangles.
- */
-using Weight = std::int64_t (*)(const Key& key);
-
-/**
  * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys,
- * which must ascend. total: how many numbers there are. Each rank sorts a range of the keys.
+ * which must ascend. areCells: each key takes as many successive numbers as its last part says, one
+ * for each triangle of the cell. total: how many numbers there are. Each rank sorts a range of the
+ * keys.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
-  vtkSPHRanks& ranks, const Keys& keys, Weight weight, const char* name, vtkIdType& total)
+  vtkSPHRanks& ranks, const Keys& keys, bool areCells, const char* name, vtkIdType& total)
 {
+  const auto numbersOf = [areCells](const Key& key)
+  { return areCells ? static_cast<std::int64_t>(key.back()) : 1; };
   const Keys ends = FindEnds(ranks, keys);
   std::vector<Keys> sent(static_cast<std::size_t>(ranks.GetCount()));
   auto from = keys.begin();
@@ -154,7 +149,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   Numbers first(1, 0); // the last entry follows all numbers
   for (const Key& key : distinct)
   {
-    first.push_back(first.back() + weight(key));
+    first.push_back(first.back() + numbersOf(key));
   }
   const Numbers all = ranks.Gather(first.back()); // how many numbers each rank has given
   const std::int64_t before =
@@ -178,10 +173,10 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   {
     for (const std::int64_t number : found)
     {
-      const std::int64_t count = weight(*key++);
-      for (std::int64_t i = 0; i < count; ++i)
+      const std::int64_t end = number + numbersOf(*key++);
+      for (std::int64_t i = number; i < end; ++i)
       {
-        numbers->InsertNextValue(static_cast<vtkIdType>(number + i));
+        numbers->InsertNextValue(static_cast<vtkIdType>(i));
       }
     }
   }
@@ -216,11 +211,8 @@ NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
     ++cells.back()[2];
   }
   NumbersInWhole numbers;
-  numbers.OfPoints = NumberKeys(
-    ranks, points, [](const Key&) { return std::int64_t(1); }, "GlobalPointIds", numbers.Points);
-  numbers.OfTriangles = NumberKeys(
-    ranks, cells, [](const Key& cell) { return static_cast<std::int64_t>(cell[2]); },
-    "GlobalCellIds", numbers.Triangles);
+  numbers.OfPoints = NumberKeys(ranks, points, false, "GlobalPointIds", numbers.Points);
+  numbers.OfTriangles = NumberKeys(ranks, cells, true, "GlobalCellIds", numbers.Triangles);
   return numbers;
 }
 
@@ -294,7 +286,7 @@ void vtkMarchingCorrectors::ContourDistributed(
   run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
   // Lines go on from rank to rank, so the first rank makes all of them.
   const bool hasLines = run.Globals.measured.plane.axis > 0;
-  vtkSPHParticles* input = run.Send(mine, run.Own, hasLines ? 1 : run.Ranks.GetCount());
+  vtkSPHParticles* input = run.Send(mine, hasLines ? 1 : run.Ranks.GetCount());
   if (!input)
   {
     return;
@@ -321,10 +313,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   vtkSPHRanks& ranks = run.Ranks;
   const bool hasLines = run.Globals.measured.plane.axis > 0;
   const NumbersInWhole numbers = NumberSurface(ranks, surface);
-  vtkSharedRun::Shares shares = run.ListShares();
-  shares.insert(shares.end(),
-    { { "RankWork", run.Space.Work }, { "RankNodesEvaluated", surface.statistics.nodes_evaluated },
-      { "RankTriangles", surface.triangle_count } });
+  const std::int64_t nodes = surface.statistics.nodes_evaluated;
   const double seconds =
     std::accumulate(surface.statistics.seconds, surface.statistics.seconds + MCOR_PHASE_COUNT, 0.0);
   surface.statistics = MergeStatistics(ranks.Gather(surface.statistics));
@@ -359,7 +348,11 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   {
     vtkSPHAdd(this->RunStatistics, "Lines", lines);
   }
-  run.AddShares(shares, seconds);
+  run.AddExchange();
+  run.AddShare("RankWork", run.Space.Work);
+  run.AddShare("RankNodesEvaluated", nodes);
+  run.AddShare("RankTriangles", surface.triangle_count);
+  run.AddShare("RankSeconds", seconds);
   builder.BuildMesh(output, this->OutputPointsPrecision,
     [&run](double* ranges, int count) { run.MergeRanges(ranges, count); });
   vtkIdTypeArray* const cells = numbers.OfTriangles;
@@ -370,6 +363,6 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   }
   output->GetPointData()->SetGlobalIds(numbers.OfPoints);
   output->GetCellData()->SetGlobalIds(cells);
-  vtkSPHMatchEmpty(ranks, output);
+  vtkSPHMatchEmpty(this->Controller, output);
 }
 VTK_ABI_NAMESPACE_END

@@ -19,7 +19,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksWait.h"
 #include "vtkTable.h"
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -31,8 +30,9 @@ using Ids = std::vector<vtkIdType>;
  * Joins the parts on the first rank, with all arrays but GlobalPointIds and GlobalCellIds, which
  * give the order; returns null on other ranks. Collective.
  */
-vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part)
+vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller, vtkPolyData* part)
 {
+  vtkSPHRanks ranks(controller);
   vtkNew<vtkPolyData> own;
   own->ShallowCopy(part);
   const auto takeNumbers = [](vtkDataSetAttributes* data)
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
       corners->InsertNextValue(points->GetValue(corner));
     }
   }
-  vtkSPHMatchEmpty(ranks, own);
+  vtkSPHMatchEmpty(controller, own);
   vtkSmartPointer<vtkPolyData> whole =
     vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(own), points), own);
   vtkSPHRanksArrays arrays = vtkSPHListArrays(own->GetCellData());
@@ -80,11 +80,10 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkSPHRanks& ranks, vtkPolyData* part
 /**
  * Returns the piece of each element of this rank; below 0, the element is dropped. pieces: of all
  * elements, on the first rank. Each rank asks the first one for its own elements, so that only one
- * rank must hold all of them. Adds to `numbers`, for each element of this rank that stays, its
- * number among all that stay. Collective.
+ * rank must hold all of them. The global ids in `data` become numbers among all elements that stay.
+ * Collective.
  */
-Ids Return(
-  vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces, vtkIdTypeArray* numbers)
+Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
 {
   vtkDataArray* given = data->GetGlobalIds();
   vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // first rank only
@@ -92,28 +91,22 @@ Ids Return(
   {
     wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));
   }
-  vtkNew<vtkIdTypeArray> whole;
-  whole->SetNumberOfComponents(2);
+  vtkNew<vtkIdTypeArray> all, numbers;
   vtkIdType next = 0;
   for (const vtkIdType piece : pieces)
   {
-    whole->InsertNextValue(piece);
-    whole->InsertNextValue(piece >= 0 ? next++ : -1);
+    all->InsertNextValue(piece);
+    numbers->InsertNextValue(piece >= 0 ? next++ : -1);
   }
-  const vtkSPHRanksArrays came =
-    vtkSPHSendTuples(ranks, { whole.Get() }, ranks.Exchange(std::move(wanted)));
-  auto* answers = vtkIdTypeArray::SafeDownCast(came[0]);
-  numbers->SetName(given ? given->GetName() : "");
-  Ids own;
-  for (vtkIdType i = 0; i < answers->GetNumberOfTuples(); ++i)
+  const vtkSPHRanksArrays came = vtkSPHSendTuples(
+    ranks, { all.Get(), numbers.Get() }, ranks.Exchange(std::move(wanted)));
+  if (given)
   {
-    own.push_back(answers->GetValue(2 * i));
-    if (own.back() >= 0)
-    {
-      numbers->InsertNextValue(answers->GetValue(2 * i + 1));
-    }
+    came[1]->SetName(given->GetName());
+    data->SetGlobalIds(vtkDataArray::SafeDownCast(came[1]));
   }
-  return own;
+  auto* own = vtkIdTypeArray::SafeDownCast(came[0]);
+  return Ids(own->Begin(), own->End());
 }
 }
 
@@ -125,7 +118,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   ranks.Reduce(vtkSPHRanks::SUM, &others, 1);
   if (others > 0)
   {
-    return GatherSurface(ranks, part);
+    return GatherSurface(controller, part);
   }
   auto whole = vtkSmartPointer<vtkPolyData>::New(); // for lines, the first rank has everything
   whole->ShallowCopy(part);
@@ -188,23 +181,15 @@ std::string vtkSPHComponents::SplitDistributed(
   {
     bare->GetPointData()->AddArray(isoValues);
   }
-  vtkSmartPointer<vtkPolyData> whole = GatherSurface(ranks, bare);
+  vtkSmartPointer<vtkPolyData> whole = GatherSurface(this->Controller, bare);
   whole = whole ? whole : vtkSmartPointer<vtkPolyData>::New();
   const Numbers found = this->Split(whole, all, table);
-  vtkNew<vtkIdTypeArray> points, triangles;
-  const Numbers own = { Return(ranks, mesh->GetPointData(), found.OfPoint, points),
-    Return(ranks, mesh->GetCellData(), found.OfTriangle, triangles),
-    ranks.Gather(found.Volumes).front() };
-  Keep(mesh, own, output);
-  const auto renumber = [](vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
-  {
-    if (data->GetGlobalIds())
-    {
-      data->SetGlobalIds(numbers);
-    }
-  };
-  renumber(output->GetPointData(), points);
-  renumber(output->GetCellData(), triangles);
+  vtkNew<vtkPolyData> part;
+  part->ShallowCopy(mesh);
+  const Numbers own = { Return(ranks, part->GetPointData(), found.OfPoint),
+    Return(ranks, part->GetCellData(), found.OfTriangle),
+    ranks.Join(found.Volumes) }; // only the first rank has found any
+  Keep(part, own, output);
   return "";
 }
 VTK_ABI_NAMESPACE_END

@@ -7,9 +7,9 @@
 // spheres.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
-#include "vtkMath.h"
+#include "vtkIncrementalOctreePointLocator.h"
 #include "vtkNew.h"
-#include "vtkSPHArrays.h"
+#include "vtkPoints.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHSharedRun.h"
@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -46,107 +47,52 @@ mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const
 /** A sphere around a particle: its centre and its radius. */
 using Sphere = std::array<double, 4>;
 
-/** A point, and its number. */
-using Point = std::pair<std::array<double, 3>, vtkIdType>;
-
 /**
- * Finds points within spheres. Points are sorted as a tree: the middle point of a range divides the
- * others along one axis, and both halves are divided along the next axis. Points far away do not
- * slow the tree down, but would slow down a locator with buckets of one size. VTK's trees keep
- * places in single precision, so they would miss neighbours far from the origin.
+ * Lists, for each rank, the points that lie in one of its spheres, or in an image of one. Points
+ * far away do not slow an octree down, but would slow down a locator with buckets of one size.
+ * VTK's other trees keep places in single precision, so they would miss neighbours far from the
+ * origin.
  */
-class PointTree
+vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
+  const std::vector<std::vector<Sphere>>& spheresOfRanks, vtkPoints* points)
 {
-public:
-  explicit PointTree(std::vector<Point> points)
-    : Points(std::move(points))
+  vtkNew<vtkPolyData> set;
+  set->SetPoints(points);
+  vtkNew<vtkIncrementalOctreePointLocator> tree;
+  tree->SetDataSet(set);
+  if (points->GetNumberOfPoints() > 0)
   {
-    Sort(this->Points.begin(), this->Points.end(), 0);
+    tree->BuildLocator();
   }
-
-  /** Sets within[number] for each point that lies in the sphere. */
-  void Mark(const double at[3], double radius, std::vector<bool>& within) const
+  int last[3]; // number of images on each side
+  for (int a = 0; a < 3; ++a)
   {
-    Mark(this->Points.begin(), this->Points.end(), 0, at, radius, within);
+    last[a] = space.IsPeriodic(a) ? 1 : 0;
   }
-
-private:
-  using Place = std::vector<Point>::iterator;
-  using ConstPlace = std::vector<Point>::const_iterator;
-
-  static void Sort(Place first, Place last, std::size_t axis)
+  vtkSPHRanksLists lists;
+  vtkNew<vtkIdList> within;
+  for (const std::vector<Sphere>& spheres : spheresOfRanks)
   {
-    if (last - first > 1)
+    std::set<vtkIdType> all;
+    for (const Sphere& sphere : spheres)
     {
-      const Place middle = first + (last - first) / 2;
-      std::nth_element(first, middle, last,
-        [axis](const Point& p, const Point& q) { return p.first[axis] < q.first[axis]; });
-      Sort(first, middle, (axis + 1) % 3);
-      Sort(middle + 1, last, (axis + 1) % 3);
-    }
-  }
-
-  static void Mark(ConstPlace first, ConstPlace last, std::size_t axis, const double at[3],
-    double radius, std::vector<bool>& within)
-  {
-    if (first == last)
-    {
-      return;
-    }
-    const ConstPlace middle = first + (last - first) / 2;
-    const double way = at[axis] - middle->first[axis];
-    if (vtkMath::Distance2BetweenPoints(at, middle->first.data()) <= radius * radius)
-    {
-      within[static_cast<std::size_t>(middle->second)] = true;
-    }
-    if (way <= radius)
-    {
-      Mark(first, middle, (axis + 1) % 3, at, radius, within);
-    }
-    if (-way <= radius)
-    {
-      Mark(middle + 1, last, (axis + 1) % 3, at, radius, within);
-    }
-  }
-
-  std::vector<Point> Points;
-};
-
-/**
- * Lists the numbers, below `count`, of the tree's points that lie in a sphere, or in an image of
- * one.
- */
-std::vector<vtkIdType> ListWithin(const vtkSPHRanksSpace& space, const std::vector<Sphere>& spheres,
-  const PointTree& tree, vtkIdType count)
-{
-  std::vector<bool> areWithin(static_cast<std::size_t>(count));
-  for (const Sphere& sphere : spheres)
-  {
-    for (int image = 0; image < 27; ++image)
-    {
-      const int way[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
-      double at[3];
-      bool isThere = true;
-      for (int a = 0; a < 3; ++a)
+      for (int x = -last[0]; x <= last[0]; ++x)
       {
-        at[a] = sphere[a] + way[a] * space.Length[a];
-        isThere = isThere && (way[a] == 0 || space.IsPeriodic(a));
-      }
-      if (isThere)
-      {
-        tree.Mark(at, sphere[3], areWithin);
+        for (int y = -last[1]; y <= last[1]; ++y)
+        {
+          for (int z = -last[2]; z <= last[2]; ++z)
+          {
+            const double at[3] = { sphere[0] + x * space.Length[0], sphere[1] + y * space.Length[1],
+              sphere[2] + z * space.Length[2] };
+            tree->FindPointsWithinRadius(sphere[3], at, within);
+            all.insert(within->begin(), within->end());
+          }
+        }
       }
     }
+    lists.emplace_back(all.begin(), all.end());
   }
-  std::vector<vtkIdType> within;
-  for (std::size_t i = 0; i < areWithin.size(); ++i)
-  {
-    if (areWithin[i])
-    {
-      within.push_back(static_cast<vtkIdType>(i));
-    }
-  }
-  return within;
+  return lists;
 }
 
 /**
@@ -157,49 +103,42 @@ std::vector<vtkIdType> ListWithin(const vtkSPHRanksSpace& space, const std::vect
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)
 {
-  auto* positions = vtkDataArray::SafeDownCast(arrays[0]);
-  const vtkIdType own = positions->GetNumberOfTuples();
+  const vtkIdType own = arrays[0]->GetNumberOfTuples();
   std::vector<std::vector<Sphere>> asked(static_cast<std::size_t>(ranks.GetCount()));
-  std::vector<Point> places;
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
   std::vector<int> reached;
-  std::vector<vtkIdType> asking, others;
+  std::vector<vtkIdType> others;
   for (vtkIdType i = 0; i < own; ++i)
   {
     double at[3];
-    positions->GetTuple(i, at);
+    vtkDataArray::SafeDownCast(arrays[0])->GetTuple(i, at);
     space.Enter(at);
-    if (std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]))
-    {
-      places.push_back({ { at[0], at[1], at[2] }, i });
-    }
+    places->InsertNextPoint(at);
     const double radius = Rounding * radii[static_cast<std::size_t>(i)];
     reached.clear();
     if (radius > 0.0 && std::isfinite(radius)) // the core reports any other radius
     {
       space.FindReached(at, radius, reached);
     }
-    bool asks = false;
+    reached.erase(std::remove(reached.begin(), reached.end(), ranks.GetRank()), reached.end());
     for (const int rank : reached)
     {
-      if (rank != ranks.GetRank())
-      {
-        asked[static_cast<std::size_t>(rank)].push_back({ at[0], at[1], at[2], radius });
-        asks = true;
-      }
+      asked[static_cast<std::size_t>(rank)].push_back({ at[0], at[1], at[2], radius });
     }
-    (asks ? asking : others).push_back(i);
+    if (reached.empty())
+    {
+      others.push_back(i);
+    }
+    else
+    {
+      order->InsertNextId(i);
+    }
   }
-  for (const std::vector<vtkIdType>& list : { asking, others })
-  {
-    std::for_each(list.begin(), list.end(), [order](vtkIdType i) { order->InsertNextId(i); });
-  }
-  const PointTree tree(std::move(places));
-  vtkSPHRanksLists to;
-  for (const std::vector<Sphere>& spheres : ranks.Exchange(std::move(asked)))
-  {
-    to.push_back(ListWithin(space, spheres, tree, own));
-  }
-  const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, arrays, to);
+  const vtkIdType asking = order->GetNumberOfIds();
+  std::for_each(others.begin(), others.end(), [order](vtkIdType i) { order->InsertNextId(i); });
+  const vtkSPHRanksArrays came =
+    vtkSPHSendTuples(ranks, arrays, ListWithin(space, ranks.Exchange(std::move(asked)), places));
   const vtkIdType count = own + came[0]->GetNumberOfTuples();
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
@@ -208,7 +147,7 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
     all->InsertTuples(own, count - own, 0, came[a]);
     arrays[a] = all;
   }
-  return static_cast<vtkIdType>(asking.size());
+  return asking;
 }
 }
 
@@ -319,8 +258,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     }
     vtkNew<vtkIdList> order;
     const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
-    vtkSPHAdd(this->Filter->RunStatistics, "RankNeighbors",
-      ranks.Gather(static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own)));
+    this->AddShare(
+      "RankNeighbors", static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own));
     const vtkIdType count = ratio > 0.0 ? asking : own;
     isGood = sum(count, sums.data());
     for (vtkIdType k = 0; k < count; ++k)

@@ -239,43 +239,17 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
 
 namespace
 {
-/** An array's name, type and components. */
-struct Form
+/** The form of an array, to be sent: its name, its type, the names of its components, its role. */
+using Form = std::tuple<std::string, int, std::vector<std::string>, int>;
+enum FormMember
 {
-  std::string Name;
-  int Type;
-  std::vector<std::string> Labels; // names of its components; empty: they have none
-  int Attribute;                   // attribute type of vtkDataSetAttributes, or -1
-
-  bool IsLike(const Form& other) const
-  {
-    return this->Name == other.Name && this->Labels.size() == other.Labels.size() &&
-      (this->Type == VTK_STRING) == (other.Type == VTK_STRING);
-  }
+  NAME,
+  TYPE,
+  LABELS, ///< empty texts for components without names
+  ROLE    ///< attribute type of vtkDataSetAttributes, or -1
 };
 
-/** The forms of the positions and of all point arrays. */
-using Layout = std::vector<Form>;
-}
-
-template <>
-struct diy::Serialization<Form>
-{
-  static void save(BinaryBuffer& to, const Form& form)
-  {
-    diy::save(to, std::tie(form.Name, form.Type, form.Labels, form.Attribute));
-  }
-
-  static void load(BinaryBuffer& from, Form& form)
-  {
-    auto members = std::tie(form.Name, form.Type, form.Labels, form.Attribute);
-    diy::load(from, members);
-  }
-};
-
-namespace
-{
-std::vector<std::string> LabelsOf(vtkAbstractArray* array)
+Form FormOf(vtkAbstractArray* array, const char* name, int role)
 {
   std::vector<std::string> labels;
   for (int c = 0; c < array->GetNumberOfComponents(); ++c)
@@ -283,61 +257,71 @@ std::vector<std::string> LabelsOf(vtkAbstractArray* array)
     const char* label = array->GetComponentName(c);
     labels.emplace_back(label ? label : "");
   }
-  return labels;
+  return Form(name, array->GetDataType(), labels, role);
 }
 
 /**
- * Lists the positions, then the point arrays with a name and a value for each point, except
- * vtkGhostType.
+ * Lists the forms of the positions, then of the point arrays with a name and a value for each
+ * point, except vtkGhostType.
  */
-Layout Describe(vtkPolyData* particles)
+std::vector<Form> Describe(vtkPolyData* particles)
 {
   vtkDataArray* positions = particles->GetPoints()->GetData();
-  Layout layout = { { "Points", positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE,
-    LabelsOf(positions), -1 } };
+  std::vector<Form> forms = { FormOf(positions, "Points", -1) };
+  std::get<TYPE>(forms[0]) = positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
   vtkPointData* arrays = particles->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    const std::string name = array->GetName() ? array->GetName() : "";
+    const std::string name = vtkSPHNameOf(array);
     const bool isKnown =
       vtkArrayDownCast<vtkDataArray>(array) || array->GetDataType() == VTK_STRING;
     if (isKnown && !name.empty() && name != vtkDataSetAttributes::GhostArrayName() &&
       array->GetNumberOfTuples() == particles->GetNumberOfPoints())
     {
-      layout.push_back(
-        { name, array->GetDataType(), LabelsOf(array), arrays->IsArrayAnAttribute(i) });
+      forms.push_back(FormOf(array, name.c_str(), arrays->IsArrayAnAttribute(i)));
     }
   }
-  return layout;
+  return forms;
 }
 
 /**
- * Lists the arrays that all ranks with points have, in the order of the first such rank. If there
- * are no points at all, lists the arrays of the rank that has most arrays. Collective.
+ * Lists the forms of the arrays that all ranks with points have, in the order of the first such
+ * rank. If there are no points at all, lists the arrays of the rank that has most arrays.
+ * Collective.
  */
-Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
+std::vector<Form> AgreeOnForms(vtkSPHRanks& ranks, vtkPolyData* particles)
 {
   std::int64_t most = particles->GetNumberOfPoints();
   ranks.Reduce(vtkSPHRanks::GREATEST, &most, 1);
   const bool speaks = particles->GetNumberOfPoints() > 0 || (most == 0 && particles->GetPoints());
-  Layout common;
-  for (const Layout& other : ranks.Gather(speaks ? Describe(particles) : Layout()))
+  std::vector<Form> common;
+  for (const std::vector<Form>& theirs :
+    ranks.Gather(speaks ? Describe(particles) : std::vector<Form>()))
   {
-    if (most == 0 || common.empty() || other.empty())
+    if (most == 0 || common.empty() || theirs.empty())
     {
-      common = common.size() < other.size() ? other : common;
+      common = common.size() < theirs.size() ? theirs : common;
       continue;
     }
-    common[0].Type = std::max(common[0].Type, other[0].Type); // VTK_FLOAT < VTK_DOUBLE
-    const auto isMissing = [&other](Form& form)
+    std::get<TYPE>(common[0]) = // VTK_FLOAT < VTK_DOUBLE
+      std::max(std::get<TYPE>(common[0]), std::get<TYPE>(theirs[0]));
+    const auto isMissing = [&theirs](Form& form)
     {
-      const auto theirs = std::find_if(
-        other.begin() + 1, other.end(), [&form](const Form& one) { return form.IsLike(one); });
-      const bool isThere = theirs != other.end();
+      const bool isText = std::get<TYPE>(form) == VTK_STRING;
+      const auto same = std::find_if(theirs.begin() + 1, theirs.end(),
+        [&form, isText](const Form& other)
+        {
+          return std::get<NAME>(form) == std::get<NAME>(other) &&
+            std::get<LABELS>(form).size() == std::get<LABELS>(other).size() &&
+            isText == (std::get<TYPE>(other) == VTK_STRING);
+        });
       // Numbers of several types become doubles, as when one process joins the pieces of a file.
-      form.Type = isThere && form.Type != theirs->Type ? VTK_DOUBLE : form.Type;
-      return !isThere;
+      if (same != theirs.end() && std::get<TYPE>(form) != std::get<TYPE>(*same))
+      {
+        std::get<TYPE>(form) = VTK_DOUBLE;
+      }
+      return same == theirs.end();
     };
     common.erase(std::remove_if(common.begin() + 1, common.end(), isMissing), common.end());
   }
@@ -345,59 +329,58 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, vtkPolyData* particles)
 }
 
 /**
- * Copies these tuples of an array, which may be null. Returns the array itself if all of it is
- * wanted, in this form.
+ * Copies these points, with arrays of these forms. Takes an array itself if all of it is wanted, in
+ * its own form. Arrays that are not there get no values.
  */
-vtkSmartPointer<vtkAbstractArray> TakeTuples(
-  vtkAbstractArray* array, const Form& form, vtkIdList* ids)
+vtkSmartPointer<vtkPolyData> TakePoints(
+  vtkPolyData* from, const std::vector<Form>& forms, vtkIdList* ids)
 {
-  if (array && array->GetNumberOfTuples() == ids->GetNumberOfIds() &&
-    array->GetDataType() == form.Type && LabelsOf(array) == form.Labels)
-  {
-    return array;
-  }
-  auto taken = vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(form.Type));
-  taken->SetName(form.Name.c_str());
-  taken->SetNumberOfComponents(static_cast<int>(form.Labels.size()));
-  taken->SetNumberOfTuples(ids->GetNumberOfIds());
-  for (int c = 0; c < taken->GetNumberOfComponents(); ++c)
-  {
-    const std::string& label = form.Labels[static_cast<std::size_t>(c)];
-    if (!label.empty())
-    {
-      taken->SetComponentName(c, label.c_str());
-    }
-  }
-  if (array)
-  {
-    array->GetTuples(ids, taken);
-  }
-  return taken;
-}
-
-/** Copies these points, with these arrays. */
-vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout, vtkIdList* ids)
-{
-  auto taken = vtkSmartPointer<vtkPolyData>::New();
+  auto made = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
-  taken->SetPoints(points);
-  vtkPointData* arrays = from->GetPointData();
-  for (const Form& form : layout)
+  made->SetPoints(points);
+  vtkPointData* arrays = made->GetPointData();
+  for (const Form& form : forms)
   {
-    if (&form == &layout.front())
+    const char* name = std::get<NAME>(form).c_str();
+    const std::vector<std::string>& labels = std::get<LABELS>(form);
+    const bool arePositions = &form == &forms.front();
+    vtkAbstractArray* given = from->GetPointData()->GetAbstractArray(name);
+    if (arePositions)
     {
-      vtkDataArray* positions = from->GetPoints() ? from->GetPoints()->GetData() : nullptr;
-      points->SetData(vtkDataArray::SafeDownCast(TakeTuples(positions, form, ids)));
+      given = from->GetPoints() ? from->GetPoints()->GetData() : nullptr;
+    }
+    vtkSmartPointer<vtkAbstractArray> taken = given;
+    if (!given || given->GetNumberOfTuples() != ids->GetNumberOfIds() ||
+      FormOf(given, name, std::get<ROLE>(form)) != form)
+    {
+      taken.TakeReference(vtkAbstractArray::CreateArray(std::get<TYPE>(form)));
+      taken->SetName(name);
+      taken->SetNumberOfComponents(static_cast<int>(labels.size()));
+      taken->SetNumberOfTuples(ids->GetNumberOfIds());
+      for (std::size_t c = 0; c < labels.size(); ++c)
+      {
+        if (!labels[c].empty())
+        {
+          taken->SetComponentName(static_cast<vtkIdType>(c), labels[c].c_str());
+        }
+      }
+      if (given)
+      {
+        given->GetTuples(ids, taken);
+      }
+    }
+    if (arePositions)
+    {
+      points->SetData(vtkDataArray::SafeDownCast(taken));
       continue;
     }
-    const int at = taken->GetPointData()->AddArray(
-      TakeTuples(arrays->GetAbstractArray(form.Name.c_str()), form, ids));
-    if (form.Attribute >= 0)
+    const int at = arrays->AddArray(taken);
+    if (std::get<ROLE>(form) >= 0)
     {
-      taken->GetPointData()->SetActiveAttribute(at, form.Attribute);
+      arrays->SetActiveAttribute(at, std::get<ROLE>(form));
     }
   }
-  return taken;
+  return made;
 }
 }
 
@@ -423,7 +406,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
       }
     }
   }
-  auto particles = TakePoints(view, AgreeOnLayout(ranks, view), own);
+  auto particles = TakePoints(view, AgreeOnForms(ranks, view), own);
   if (data)
   {
     particles->GetFieldData()->ShallowCopy(data->GetFieldData());
@@ -435,65 +418,15 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
-// Keeps the arrays in their order, and appends the computed ones, so that they are found again.
-vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
+void vtkSPHMatchEmpty(vtkMultiProcessController* controller, vtkPolyData* result)
 {
-  std::vector<vtkAbstractArray*> arrays;
-  for (int role = 0; role < MCOR_ROLE_COUNT; ++role)
-  {
-    arrays.push_back(used.ArrayFor(static_cast<mcor_role>(role)));
-  }
-  for (const vtkSPHAttribute& attribute : used.Interpolated)
-  {
-    arrays.push_back(attribute.Array);
-  }
-  for (const vtkSPHOnly& only : used.Description.Only)
-  {
-    arrays.push_back(own->GetPointData()->GetAbstractArray(only.Name.c_str()));
-  }
-  auto kept = vtkSmartPointer<vtkPolyData>::New();
-  kept->SetPoints(own->GetPoints());
-  vtkPointData* to = kept->GetPointData();
-  for (const auto& array : vtkSPHListArrays(own->GetPointData()))
-  {
-    if (std::find(arrays.begin(), arrays.end(), array) != arrays.end() ||
-      vtkSPHParticles::IsMade(array->GetName()))
-    {
-      to->AddArray(array);
-    }
-  }
-  for (vtkAbstractArray* array : arrays)
-  {
-    if (array && !to->HasArray(array->GetName()))
-    {
-      to->AddArray(array);
-    }
-  }
-  return kept;
-}
-
-vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPointSet* particles,
-  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from)
-{
-  return vtkSPHMakePoints(
-    vtkSPHSendTuples(ranks, vtkSPHListArrays(particles), to, from), particles);
-}
-
-void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
-{
-  const Layout common = AgreeOnLayout(ranks, result);
+  vtkSPHRanks ranks(controller);
+  const std::vector<Form> common = AgreeOnForms(ranks, result);
   if (result->GetNumberOfPoints() == 0)
   {
-    vtkNew<vtkIdList> none;
-    const vtkSmartPointer<vtkPolyData> empty = TakePoints(result, common, none);
+    const auto empty = TakePoints(result, common, vtkNew<vtkIdList>());
     result->SetPoints(empty->GetPoints());
     result->GetPointData()->ShallowCopy(empty->GetPointData());
   }
-}
-
-void vtkSPHMatchEmpty(vtkMultiProcessController* controller, vtkPolyData* particles)
-{
-  vtkSPHRanks ranks(controller);
-  vtkSPHMatchEmpty(ranks, particles);
 }
 VTK_ABI_NAMESPACE_END

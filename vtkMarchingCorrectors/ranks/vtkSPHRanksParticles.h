@@ -18,7 +18,6 @@ class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
-class vtkSPHParticles;
 struct vtkSPHParticlesChoice;
 
 using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
@@ -67,22 +66,6 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
   const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken = nullptr);
-
-/** Returns the particles with only the arrays that describe them or are interpolated. */
-vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used);
-
-/**
- * Sends to each rank the particles listed for it, which vtkSPHTakeParticles() has made. Returns the
- * particles that came, in the order of ranks; from: how many came from each. Collective.
- */
-vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPointSet* particles,
-  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
-
-/**
- * Gives a result without points the arrays that it has on other ranks, which writers of pieces
- * need. Collective.
- */
-void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result);
 VTK_ABI_NAMESPACE_END
 
 #endif

@@ -145,7 +145,7 @@ vtkSPHRanksLists vtkSPHRanksSpace::Share(vtkSPHRanks& ranks, const mcor_input& i
     for (const int rank : found)
     {
       const double reach = std::max(place.Reach, radii[Index(rank)]);
-      if (this->Reaches(rank, place.At, reach + this->Margin))
+      if (this->Reaches(rank, 1, place.At, reach + this->Margin))
       {
         to[Index(rank)].push_back(place.Particle);
         ++totals[count + Index(rank)];
@@ -217,7 +217,6 @@ void vtkSPHRanksSpace::Divide(
     }
   }
   samples = ranks.Join(samples);
-  this->Planes.resize(Index(parts));
   this->Boxes.resize(Index(parts));
   this->Cut(samples.begin(), samples.end(), 0, parts, this->Whole);
 }
@@ -266,7 +265,6 @@ void vtkSPHRanksSpace::Cut(
   const Samples middle = findEnd(plane);
   vtkSPHRanksBox low = box, high = box;
   low[Index(2 * axis + 1)] = high[Index(2 * axis)] = plane;
-  this->Planes[Index(first + lower)] = { axis, plane };
   this->Cut(begin, middle, first, lower, low);
   this->Cut(middle, end, first + lower, count - lower, high);
 }
@@ -281,6 +279,7 @@ vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
   return isEmpty ? vtkSPHRanksBox{ 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 } : box;
 }
 
+// The boxes of both halves of a group begin at the same sides, except along the axis of their cut.
 int vtkSPHRanksSpace::FindOwner(const double at[3]) const
 {
   double place[3] = { at[0], at[1], at[2] };
@@ -289,8 +288,12 @@ int vtkSPHRanksSpace::FindOwner(const double at[3]) const
   for (int count = static_cast<int>(this->Boxes.size()); count > 1;)
   {
     const int lower = count / 2;
-    const Plane& plane = this->Planes[Index(first + lower)];
-    const bool isBelow = place[plane.Axis] < plane.At;
+    bool isBelow = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double cut = this->Boxes[Index(first + lower)][Index(2 * a)];
+      isBelow = isBelow || (place[a] < cut && this->Boxes[Index(first)][Index(2 * a)] < cut);
+    }
     first += isBelow ? 0 : lower;
     count = isBelow ? lower : count - lower;
   }
@@ -307,13 +310,14 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
-bool vtkSPHRanksSpace::Reaches(int rank, const double at[3], double radius) const
+// The group's first box has the low sides of all its boxes together; the last box has the high ones.
+bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double radius) const
 {
-  const vtkSPHRanksBox& box = this->Boxes[Index(rank)];
   bool reaches = true;
   for (int a = 0; a < 3; ++a)
   {
-    const double low = box[Index(2 * a)], high = box[Index(2 * a + 1)];
+    const double low = this->Boxes[Index(rank)][Index(2 * a)],
+                 high = this->Boxes[Index(rank + count - 1)][Index(2 * a + 1)];
     // The cube reaches the box if the place moves by `first` to `last`. Along a periodic axis it can
     // move by whole periods, else not at all.
     double first = low - radius - at[a], last = high + radius - at[a];
@@ -327,20 +331,23 @@ bool vtkSPHRanksSpace::Reaches(int rank, const double at[3], double radius) cons
 
 void vtkSPHRanksSpace::FindReached(const double at[3], double radius, std::vector<int>& found) const
 {
-  const int owner = this->Holds(at) ? this->FindOwner(at) : -1;
-  bool isWithin = owner >= 0; // the usual case
-  for (int a = 0; a < 3; ++a)
+  found.clear();
+  this->AddReached(0, static_cast<int>(this->Boxes.size()), at, radius, found);
+}
+
+void vtkSPHRanksSpace::AddReached(
+  int rank, int count, const double at[3], double radius, std::vector<int>& found) const
+{
+  if (this->Reaches(rank, count, at, radius))
   {
-    isWithin = isWithin && at[a] - radius > this->Boxes[Index(owner)][Index(2 * a)] &&
-      at[a] + radius < this->Boxes[Index(owner)][Index(2 * a + 1)];
-  }
-  found.assign(isWithin ? 1 : 0, owner);
-  for (int rank = 0; rank < static_cast<int>(this->Boxes.size()) && !isWithin; ++rank)
-  {
-    if (this->Reaches(rank, at, radius))
+    if (count == 1)
     {
       found.push_back(rank);
+      return;
     }
+    const int lower = count / 2;
+    this->AddReached(rank, lower, at, radius, found);
+    this->AddReached(rank + lower, count - lower, at, radius, found);
   }
 }
 

@@ -69,15 +69,13 @@ public:
   /** Returns a rank's box in the form of mcor_options; it may hold nothing. */
   vtkSPHRanksBox GetBox(int rank) const;
 
-  /** Returns the box that holds all ranks' boxes. */
-  const vtkSPHRanksBox& GetWhole() const { return this->Whole; }
-
   /** Returns the rank whose box holds a place, or an image of it. */
   int FindOwner(const double at[3]) const;
 
   /** Lists, for each rank's box, the points of this rank that lie in it. */
   vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
+  vtkSPHRanksBox Whole = {};       ///< holds all ranks' boxes
   std::int64_t OwnedParticles = 0; ///< number of all ranks' particles that lie in this rank's box
   std::int64_t Particles = 0;      ///< the same, with copies of other ranks' particles
   std::int64_t Work = 0;           ///< work of the particles in this rank's box
@@ -90,20 +88,18 @@ private:
   void Cut(Samples begin, Samples end, int first, int count, const vtkSPHRanksBox& box);
   std::vector<double> FindRadii(
     vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
-  /** Whether a cube around a place, or around an image of the place, reaches a rank's box. */
-  bool Reaches(int rank, const double at[3], double radius) const;
+  /**
+   * Whether a cube around a place, or around an image of the place, reaches the boxes of the group
+   * of `count` ranks from `rank` on, which the k-d tree divides.
+   */
+  bool Reaches(int rank, int count, const double at[3], double radius) const;
+  /** Adds the ranks of the group whose boxes the cube reaches. */
+  void AddReached(
+    int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;
   double Margin = 0.0; ///< a box may need any particle whose support misses it by less
-  vtkSPHRanksBox Whole = {};
-  struct Plane
-  {
-    int Axis;
-    double At;
-  };
-  std::vector<Plane> Planes; ///< by rank: the cut between two groups of ranks, where the
-                             ///< upper group begins with this rank
   std::vector<vtkSPHRanksBox> Boxes; ///< by rank
 };
 

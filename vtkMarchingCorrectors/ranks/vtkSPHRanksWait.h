@@ -25,9 +25,12 @@ class vtkPolyData;
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);
 
-/** Gives particles without points the arrays that other processes' particles have. Collective. */
+/**
+ * Gives particles, or a surface, without points the arrays that other processes' points have.
+ * Collective.
+ */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
-  vtkMultiProcessController* controller, vtkPolyData* particles);
+  vtkMultiProcessController* controller, vtkPolyData* points);
 
 /**
  * Returns when all ranks have called this, and says whether all go on. Each message doubles the

@@ -8,7 +8,6 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
-#include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHSay.h"
@@ -258,21 +257,24 @@ void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 
 vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine)
 {
-  return this->Send(mine, vtkSPHKeepUsed(this->Own, mine), this->Ranks.GetCount());
+  return this->Send(mine, this->Ranks.GetCount());
 }
 
-vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(
-  vtkSPHParticles& mine, vtkPointSet* particles, int parts)
+vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(vtkSPHParticles& mine, int parts)
 {
   this->Work.resize(static_cast<std::size_t>(mine.Core.count), 1);
   this->Space = vtkSPHRanksSpace(this->Options, this->Globals);
   const vtkSPHRanksLists to =
     this->Space.Share(this->Ranks, mine.Core, this->Work, std::move(this->PlacesOfWork), parts);
-  this->Near = vtkSPHSendParticles(this->Ranks, particles, to, &this->From);
+  const auto send = [this](vtkPointSet* points, const vtkSPHRanksLists& lists)
+  {
+    return vtkSPHMakePoints(
+      vtkSPHSendTuples(this->Ranks, vtkSPHListArrays(points), lists, &this->From), points);
+  };
+  this->Near = send(this->Own, to);
   if (this->Places)
   {
-    this->Points = vtkSPHSendParticles(
-      this->Ranks, this->Places, this->Space.ListOwners(this->Places), &this->From);
+    this->Points = send(this->Places, this->Space.ListOwners(this->Places));
   }
   this->Options.globals = &this->Globals;
   const vtkSPHRanksBox box = this->Space.GetBox(this->Ranks.GetRank());
@@ -304,7 +306,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::Call(
   const std::vector<std::string> all = this->Ranks.Gather(machine);
   const auto place = std::count(all.begin(), all.begin() + this->Ranks.GetRank(), machine);
   const auto count = std::count(all.begin(), all.end(), machine);
-  Callbacks calls(this->Ranks, this->Space.IsShared() ? this->Space.GetWhole().data() : nullptr);
+  Callbacks calls(this->Ranks, this->Space.IsShared() ? this->Space.Whole.data() : nullptr);
   this->Options.ranks = &calls.Core;
   std::string message;
   const int status =
@@ -353,30 +355,22 @@ void vtkSPHAlgorithm::vtkSharedRun::FindNotFinite(
   }
 }
 
-vtkSPHAlgorithm::vtkSharedRun::Shares vtkSPHAlgorithm::vtkSharedRun::ListShares() const
+void vtkSPHAlgorithm::vtkSharedRun::AddExchange()
 {
-  return { { "RankParticles", this->Space.OwnedParticles },
-    { "RankCopies", this->Space.Particles - this->Space.OwnedParticles },
-    { "RankBytesSent", this->Ranks.GetBytesSent() } };
-}
-
-void vtkSPHAlgorithm::vtkSharedRun::AddShares(const Shares& shares, double seconds)
-{
-  for (const auto& share : shares)
-  {
-    vtkSPHAdd(this->Filter->RunStatistics, share.first, this->Ranks.Gather(share.second));
-  }
-  vtkSPHAdd(this->Filter->RunStatistics, "RankSeconds", this->Ranks.Gather(seconds));
+  this->AddShare("RankParticles", this->Space.OwnedParticles);
+  this->AddShare("RankCopies", this->Space.Particles - this->Space.OwnedParticles);
+  this->AddShare("RankBytesSent", this->Ranks.GetBytesSent());
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::AddShares()
 {
-  Shares shares = this->ListShares();
-  shares.emplace_back(
-    "RankPoints", this->Points ? this->Points->GetNumberOfPoints() : this->Space.OwnedParticles);
+  this->AddExchange();
+  this->AddShare("RankPoints",
+    this->Points ? static_cast<std::int64_t>(this->Points->GetNumberOfPoints())
+                 : this->Space.OwnedParticles);
   vtkDataArray* seconds = this->Filter->RunStatistics->GetArray("Seconds");
   const int total = seconds ? seconds->GetNumberOfComponents() - 1 : 0;
-  this->AddShares(shares, seconds ? seconds->GetComponent(0, total) : 0.0);
+  this->AddShare("RankSeconds", seconds ? seconds->GetComponent(0, total) : 0.0);
 }
 
 void vtkSPHAlgorithm::vtkSharedRun::OfAll(mcor_input& core, mcor_options& options) const

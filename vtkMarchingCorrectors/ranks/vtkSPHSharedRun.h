@@ -10,6 +10,7 @@
 
 #include "mcor_parts.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksSpace.h"
 #include "vtkSPHRun.h"
@@ -53,20 +54,19 @@ public:
   void AddShares() override;
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
-  /**
-   * Does the same as Share(), with these particles and all their arrays. `mine` describes the
-   * particles. parts: how many ranks share the space, from the first on.
-   */
-  vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
+  /** Does the same as Share() if only the first `parts` ranks share the space. */
+  vtkSPHParticles* Send(vtkSPHParticles& mine, int parts);
   /** Replaces this rank's particles by all ranks' particles, without positions, which warnings do
    * not read. */
   void OfAll(mcor_input& core, mcor_options& options) const;
-  /** Names of statistics, and this rank's numbers. */
-  using Shares = std::vector<std::pair<const char*, std::int64_t>>;
-  /** Lists what was exchanged: "RankParticles", "RankCopies" and "RankBytesSent". */
-  Shares ListShares() const;
-  /** Adds shares, one component for each rank, and "RankSeconds". */
-  void AddShares(const Shares& shares, double seconds);
+  /** Adds a statistic with one component for each rank. */
+  template <typename T>
+  void AddShare(const char* name, T mine)
+  {
+    vtkSPHAdd(this->Filter->RunStatistics, name, this->Ranks.Gather(mine));
+  }
+  /** Adds what was exchanged: "RankParticles", "RankCopies" and "RankBytesSent". */
+  void AddExchange();
 
   vtkSPHRanks Ranks;
   mcor_globals Globals = {};

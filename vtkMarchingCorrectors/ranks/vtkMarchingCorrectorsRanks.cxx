@@ -225,9 +225,8 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
 {
   mcor_measures measures = {};
   const Numbers own(numbers->GetPointer(0), numbers->GetPointer(0) + numbers->GetNumberOfTuples());
-  const auto first =
-    std::find(own.begin(), own.end(), std::int64_t(0)); // the first point of the whole surface is
-                                                        // the origin
+  // The first point of the whole surface is the origin.
+  const auto first = std::find(own.begin(), own.end(), std::int64_t(0));
   for (int a = 0; a < 3; ++a)
   {
     measures.origin[a] = first == own.end() ? std::numeric_limits<double>::infinity()
@@ -324,8 +323,8 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   std::int64_t lines = surface.line_count;
   ranks.Reduce(vtkSPHRanks::SUM, &lines, 1);
   vtkMarchingCorrectorsOutput builder(input, options, surface);
-  const std::vector<double> largest =
-    ranks.Gather(builder.FindLargestFloat(this->OutputPointsPrecision));
+  double largest = builder.FindLargestFloat(this->OutputPointsPrecision);
+  ranks.Reduce(vtkSPHRanks::GREATEST, &largest, 1);
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
@@ -338,7 +337,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
     mcor_options asked = options;
     run.OfAll(core, asked);
     asked.dimension = this->Dimension; // the user's choice counts, not what was found
-    this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));
+    this->WarnOf(input, all, core, asked, largest);
   }
   this->Summarize(input, options, surface.statistics);
   builder.AddRun(this->RunStatistics);

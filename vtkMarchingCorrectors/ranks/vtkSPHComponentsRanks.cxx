@@ -69,9 +69,10 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
   cells->SetData(3, wholeCorners);
   whole->SetPolys(cells);
   arrays.pop_back();
-  for (int i = 0; i < static_cast<int>(arrays.size()); ++i)
+  whole->GetCellData()->ShallowCopy(own->GetCellData());
+  for (const auto& array : arrays)
   {
-    vtkSPHAddLike(arrays[i], own->GetCellData(), i, whole->GetCellData());
+    whole->GetCellData()->AddArray(array); // replaces the array of the same name
   }
   whole->GetFieldData()->ShallowCopy(part->GetFieldData());
   return ranks.GetRank() == 0 ? whole : nullptr;

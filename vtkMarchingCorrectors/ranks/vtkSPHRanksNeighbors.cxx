@@ -242,37 +242,38 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   };
   vtkNew<vtkDoubleArray> found;
   found->SetNumberOfValues(own);
-  bool isGood = ratio > 0.0 ? sum(own, found->GetPointer(0)) : true;
-  if (isGood)
-  {
-    const double support = mcor_support_factor(options.sph_kernel);
-    const double unit = ratio > 0.0             ? Around * support
-      : mine.smoothing_length_is_support_radius ? 1.0
-                                                : support;
-    const mcor_input near = ViewOf(arrays, members, mine);
-    std::vector<double> sums;
-    for (vtkIdType i = 0; i < own; ++i)
-    {
-      sums.push_back(
-        unit * (ratio > 0.0 ? found->GetValue(i) : vtkSPHValueOf(near.smoothing_length, i)));
-    }
-    vtkNew<vtkIdList> order;
-    const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
-    this->AddShare(
-      "RankNeighbors", static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own));
-    const vtkIdType count = ratio > 0.0 ? asking : own;
-    isGood = sum(count, sums.data());
-    for (vtkIdType k = 0; k < count; ++k)
-    {
-      found->SetValue(order->GetId(k), sums[static_cast<std::size_t>(k)]);
-    }
-  }
-  if (!isGood) // the rank that the particle came from knows its number
+  const auto explain = [&] // the rank that the particle came from knows its number
   {
     std::string known = vtkSPHSumNeighbors(mine, options, ratio, mine.count, values);
     return ranks.Agree(known) ? problem : known;
+  };
+  if (ratio > 0.0 && !sum(own, found->GetPointer(0)))
+  {
+    return explain();
   }
-
+  const double support = mcor_support_factor(options.sph_kernel);
+  const double unit = ratio > 0.0             ? Around * support
+    : mine.smoothing_length_is_support_radius ? 1.0
+                                              : support;
+  const mcor_input near = ViewOf(arrays, members, mine);
+  std::vector<double> sums;
+  for (vtkIdType i = 0; i < own; ++i)
+  {
+    sums.push_back(
+      unit * (ratio > 0.0 ? found->GetValue(i) : vtkSPHValueOf(near.smoothing_length, i)));
+  }
+  vtkNew<vtkIdList> order;
+  const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
+  this->AddShare("RankNeighbors", static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own));
+  const vtkIdType count = ratio > 0.0 ? asking : own;
+  if (!sum(count, sums.data()))
+  {
+    return explain();
+  }
+  for (vtkIdType k = 0; k < count; ++k)
+  {
+    found->SetValue(order->GetId(k), sums[static_cast<std::size_t>(k)]);
+  }
   const vtkSPHRanksArrays came =
     vtkSPHReturnTuples(ranks, { found.Get() }, from, nullptr, to, mine.count);
   std::copy_n(static_cast<double*>(came[0]->GetVoidPointer(0)), mine.count, values);

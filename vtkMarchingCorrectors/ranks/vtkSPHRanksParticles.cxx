@@ -99,26 +99,16 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points)
   return arrays;
 }
 
-void vtkSPHAddLike(
-  vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to)
-{
-  const int at = to->AddArray(array);
-  const int attribute = like->IsArrayAnAttribute(i);
-  if (attribute >= 0)
-  {
-    to->SetActiveAttribute(at, attribute);
-  }
-}
-
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like)
 {
   auto made = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
   points->SetData(vtkDataArray::SafeDownCast(arrays[0]));
   made->SetPoints(points);
-  for (int i = 0; i + 1 < static_cast<int>(arrays.size()); ++i)
+  made->GetPointData()->ShallowCopy(like->GetPointData());
+  for (std::size_t i = 1; i < arrays.size(); ++i)
   {
-    vtkSPHAddLike(arrays[i + 1], like->GetPointData(), i, made->GetPointData());
+    made->GetPointData()->AddArray(arrays[i]); // replaces the array of the same name
   }
   return made;
 }

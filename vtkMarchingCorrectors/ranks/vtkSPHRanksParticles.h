@@ -25,9 +25,6 @@ using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
 vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data);
 /** Lists the positions, then the point arrays. */
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
-/** Adds an array, which gets the role (scalars, vectors, ...) that array i has in `like`. */
-void vtkSPHAddLike(
-  vtkAbstractArray* array, vtkDataSetAttributes* like, int i, vtkDataSetAttributes* to);
 /** Makes points of arrays that vtkSPHListArrays() lists, with the same roles as in `like`. */
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 

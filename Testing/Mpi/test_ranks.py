@@ -368,8 +368,19 @@ def check_named():
     return problems
 
 
+def check_few():
+    """A few particles have the same lengths by neighbours if other ranks have space without particles."""
+    problems, whole = [], make_two_sizes()
+    for count in 1, 2, 9:
+        few = take(whole, np.arange(count))
+        (_, alone), (_, told) = (extract({**FREE, **COMPUTED, **NEIGHBOURS}, particles, controller) for particles, controller in (
+            (few, None), (few if RANK == 0 else take(whole, []), CONTROLLER)))
+        problems += [] if told["Area"] == alone["Area"] else [f"{count} particles: {told['Area']} for {alone['Area']}"]
+    return problems
+
+
 def main():
-    cases, check, problems = ((SURFACES, check_surface, check_named()) if sys.argv[2] == "surfaces" else
+    cases, check, problems = ((SURFACES, check_surface, check_named() + check_few()) if sys.argv[2] == "surfaces" else
                               (SAMPLES, check_sample, check_without_points()))
     for number, (name, case) in enumerate(cases.items()):
         problems += check(number, name, *case) if SOME or WANTED in name else []

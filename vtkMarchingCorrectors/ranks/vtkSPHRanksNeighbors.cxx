@@ -56,14 +56,15 @@ using Sphere = std::array<double, 4>;
 vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
   const std::vector<std::vector<Sphere>>& spheresOfRanks, vtkPoints* points)
 {
+  if (points->GetNumberOfPoints() == 0) // VTK makes no tree of nothing
+  {
+    return vtkSPHRanksLists(spheresOfRanks.size());
+  }
   vtkNew<vtkPolyData> set;
   set->SetPoints(points);
   vtkNew<vtkIncrementalOctreePointLocator> tree;
   tree->SetDataSet(set);
-  if (points->GetNumberOfPoints() > 0)
-  {
-    tree->BuildLocator();
-  }
+  tree->BuildLocator();
   int last[3]; // number of images on each side
   for (int a = 0; a < 3; ++a)
   {

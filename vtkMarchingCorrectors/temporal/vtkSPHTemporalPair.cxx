@@ -272,47 +272,41 @@ bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, 
   return this->Error.empty();
 }
 
-bool vtkSPHTemporalPair::AreVelocitiesFinite()
-{
-  for (int k = 0; k < 2; ++k)
-  {
-    const Values velocity(this->Steps[k].Velocities);
-    for (vtkIdType i = 0; i < velocity.Held->GetNumberOfTuples(); ++i)
-    {
-      if (!(std::isfinite(velocity(i, 0)) && std::isfinite(velocity(i, 1)) &&
-            std::isfinite(velocity(i, 2))))
-      {
-        this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_NOT_FINITE), this->VelocityName.c_str(),
-          static_cast<long long>(i), this->NameOfStep(k).c_str(),
-          Text(this->Choice.Times[0]).c_str(), Text(this->Choice.Times[1]).c_str()));
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-// Warns if the particles' motion along their mean velocities is much less or more than the
-// velocities say.
+// Warns if a velocity is not finite, or if the particles' motion along their mean velocities is much
+// less or more than the velocities say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];
-  const vtkIdType count = static_cast<vtkIdType>(first.Partners.size());
-  const vtkIdType matched =
-    count - std::count(first.Partners.begin(), first.Partners.end(), vtkIdType(-1));
-  this->FollowsVelocities = first.Velocities && this->AreVelocitiesFinite();
-  if (!this->FollowsVelocities || matched < FewParticles)
+  const double* const times = this->Choice.Times;
+  this->FollowsVelocities = first.Velocities != nullptr;
+  if (!this->FollowsVelocities)
   {
     return;
   }
   const Values from(first.Particles->GetPoints()->GetData()),
     to(second.Particles->GetPoints()->GetData()), begun(first.Velocities), ended(second.Velocities);
-  const double* const times = this->Choice.Times;
+  for (const Values* velocity : { &begun, &ended })
+  {
+    for (vtkIdType i = 0; i < velocity->Held->GetNumberOfTuples(); ++i)
+    {
+      if (!(std::isfinite((*velocity)(i, 0)) && std::isfinite((*velocity)(i, 1)) &&
+            std::isfinite((*velocity)(i, 2))))
+      {
+        this->Warnings.push_back(vtkSPHSay(MCOR_SAY(STEP_NOT_FINITE), this->VelocityName.c_str(),
+          static_cast<long long>(i), this->NameOfStep(velocity == &begun ? 0 : 1).c_str(),
+          Text(times[0]).c_str(), Text(times[1]).c_str()));
+        this->FollowsVelocities = false;
+        return;
+      }
+    }
+  }
   const double duration = this->Choice.TimeScale * (times[1] - times[0]);
   double moved = 0.0, expected = 0.0;
-  for (vtkIdType i = 0; i < count; ++i)
+  vtkIdType matched = 0;
+  for (vtkIdType i = 0; i < first.Particles->GetNumberOfPoints(); ++i)
   {
     const vtkIdType j = first.Partners[i];
+    matched += j >= 0 ? 1 : 0;
     for (int c = 0; j >= 0 && c < 3; ++c)
     {
       const double way = 0.5 * duration * (begun(i, c) + ended(j, c));
@@ -320,7 +314,8 @@ void vtkSPHTemporalPair::CheckVelocities()
       expected += way * way;
     }
   }
-  if (expected > 0.0 && !(moved >= 0.5 * expected && moved <= 2.0 * expected))
+  if (matched >= FewParticles && expected > 0.0 &&
+    !(moved >= 0.5 * expected && moved <= 2.0 * expected))
   {
     const double ratio = moved / expected;
     std::ostringstream remedy;
@@ -340,9 +335,9 @@ void vtkSPHTemporalPair::CheckVelocities()
 void vtkSPHTemporalPair::WarnOfLostArrays()
 {
   std::string lost;
-  for (int k = 0; k < 2; ++k)
+  for (const Step& step : this->Steps)
   {
-    vtkPointData* data = this->Steps[k].Particles->GetPointData();
+    vtkPointData* data = step.Particles->GetPointData();
     for (int i = 0; i < data->GetNumberOfArrays(); ++i)
     {
       vtkAbstractArray* array = data->GetAbstractArray(i);
@@ -419,13 +414,6 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   vtkNew<vtkPoints> points;
   points->SetData(MakeArray(from, to, near.Particles->GetNumberOfPoints(), position));
   output->SetPoints(points);
-  this->InterpolateArrays(near, far, share, output);
-}
-
-// The output already has the nearer step's data.
-void vtkSPHTemporalPair::InterpolateArrays(
-  const Step& near, const Step& far, double share, vtkPolyData* output) const
-{
   vtkPointData* own = near.Particles->GetPointData();
   for (int k = 0; k < own->GetNumberOfArrays(); ++k)
   {
@@ -433,21 +421,19 @@ void vtkSPHTemporalPair::InterpolateArrays(
     if (!this->IsInBoth(array))
     {
       output->GetPointData()->RemoveArray(array->GetName());
-      continue;
     }
-    vtkDataArray* other = far.Particles->GetPointData()->GetArray(array->GetName());
-    if (!vtkSPHIsReal(array) || array == near.Ids)
+    else if (vtkSPHIsReal(array) && array != near.Ids)
     {
-      continue;
+      const Values here(vtkDataArray::SafeDownCast(array)),
+        there(far.Particles->GetPointData()->GetArray(array->GetName()));
+      output->GetPointData()->AddArray(MakeArray(here, there, near.Particles->GetNumberOfPoints(),
+        [&](vtkIdType i, int c)
+        {
+          const vtkIdType j = near.Partners[i];
+          const double value = here(i, c);
+          return j < 0 ? value : value + share * (there(j, c) - value);
+        }));
     }
-    const Values from(vtkDataArray::SafeDownCast(array)), to(other);
-    output->GetPointData()->AddArray(MakeArray(from, to, near.Particles->GetNumberOfPoints(),
-      [&](vtkIdType i, int c)
-      {
-        const vtkIdType j = near.Partners[i];
-        const double value = from(i, c);
-        return j < 0 ? value : value + share * (to(j, c) - value);
-      }));
   }
 }
 VTK_ABI_NAMESPACE_END

@@ -58,12 +58,9 @@ private:
   bool FindVelocities();
   bool Find(const std::string& role, const std::string& name, int components,
     vtkSmartPointer<vtkDataArray> Step::*member);
-  bool AreVelocitiesFinite();
   void CheckVelocities();
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;
-  void InterpolateArrays(
-    const Step& near, const Step& far, double share, vtkPolyData* output) const;
   std::string NameOfStep(int step) const;
   /** Returns the way to the nearest image. */
   double Nearest(double way, int axis) const;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <set>
 
 const std::vector<PlyType> PlyTypes = { { "char", VTK_SIGNED_CHAR }, { "uchar", VTK_UNSIGNED_CHAR },
@@ -85,12 +86,15 @@ double NumberIn(const char* bytes)
 /// Takes rows of bytes from the beginning of `bytes` into columns.
 void TakeRows(const std::string& file, View& bytes, Element& element, bool isSwapped)
 {
+  std::vector<std::size_t> sizes;
+  std::transform(element.Types.begin(), element.Types.end(), std::back_inserter(sizes),
+    [](int type) { return vtkAbstractArray::GetDataTypeSize(type); });
   for (vtkTypeInt64 i = 0; i < element.Count; ++i)
   {
     for (std::size_t c = 0; c < element.Columns.size(); ++c)
     {
       const int type = element.Types[c];
-      const std::size_t size = vtkAbstractArray::GetDataTypeSize(type);
+      const std::size_t size = sizes[c];
       char number[8];
       double value = 0.0;
       if (bytes.copy(number, size) < size)

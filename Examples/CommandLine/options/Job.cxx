@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <set>
 #include <sstream>
 
@@ -359,16 +360,18 @@ bool Job::IsFilm() const
   return (this->Mode() & (FILM | PROJECT)) && HasSteps(*this);
 }
 
-std::string WordOf(const std::string& member)
+int OptionWord(void*, const char* name, const char* value, char* word, std::size_t size)
 {
-  for (const Option& option : AllOptions())
-  {
-    if (!member.empty() && member == option.Member)
-    {
-      return option.Name;
-    }
-  }
-  return "";
+  const std::string member = name;
+  const std::vector<Option>& all = AllOptions();
+  const auto found = std::find_if(all.begin(), all.end(),
+    [&member](const Option& option) { return !member.empty() && member == option.Member; });
+  const bool isEstimate = member == "estimate_smoothing_length";
+  const std::string option =
+    isEstimate ? "--smoothing-length estimate" : found == all.end() ? "" : found->Name;
+  std::snprintf(word, size, "%s%s%s%s", option.c_str(), *value ? " " : "", value,
+    member == "fluid" && *value ? "=VALUE" : "");
+  return !option.empty();
 }
 
 bool Job::IsPointTable() const

@@ -176,7 +176,4 @@ void ParseCommandLine(int argc, char* argv[], Job& job);
 /// Throws UsageError for any other word.
 std::string CommandLineHelp(const std::string& word, std::size_t width);
 
-/// Returns the option that sets this member of the core's structures; empty if none does.
-std::string WordOf(const std::string& member);
-
 #endif

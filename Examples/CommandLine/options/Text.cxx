@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Text.h"
 
-#include "Job.h"
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -106,16 +104,6 @@ std::string QuotedForJson(const std::string& text)
                        : "";
   };
   return '"' + Rewritten(text, written) + '"';
-}
-
-int OptionWord(void*, const char* name, const char* value, char* word, std::size_t size)
-{
-  const std::string member = name;
-  const bool isEstimate = member == "estimate_smoothing_length";
-  const std::string option = isEstimate ? "--smoothing-length estimate" : WordOf(member);
-  std::snprintf(word, size, "%s%s%s%s", option.c_str(), *value ? " " : "", value,
-    member == "fluid" && *value ? "=VALUE" : "");
-  return !option.empty();
 }
 
 void Say(const std::string& sentence)

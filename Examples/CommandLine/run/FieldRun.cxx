@@ -188,15 +188,16 @@ std::string Describe(vtkDataSet* data)
   std::ostringstream line;
   if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray(MaskName)))
   {
-    const char* begin = mask->GetPointer(0);
     line << "points      " << data->GetNumberOfPoints() << ", "
-         << std::count(begin, begin + mask->GetNumberOfValues(), 1) << " of them valid\n";
-    return line.str();
+         << std::count(mask->Begin(), mask->End(), 1) << " of them valid\n";
   }
-  vtkDataArray* values = data->GetPointData()->GetScalars();
-  line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
-       << Printable(values->GetName()) << " from " << values->GetFiniteRange()[0] << " to "
-       << values->GetFiniteRange()[1] << "\n";
+  else
+  {
+    vtkDataArray* values = data->GetPointData()->GetScalars();
+    line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
+         << Printable(values->GetName()) << " from " << values->GetFiniteRange()[0] << " to "
+         << values->GetFiniteRange()[1] << "\n";
+  }
   return line.str();
 }
 

@@ -5,7 +5,6 @@
 #include "DataFile.h"
 #include "Failures.h"
 #include "Job.h"
-#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
 #include "Runs.h"
@@ -14,7 +13,6 @@
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
-#include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"

@@ -7,11 +7,9 @@
 #include "Text.h"
 
 #if MCOR_HAS_RANKS
-#include "vtkFieldData.h"
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksWait.h"

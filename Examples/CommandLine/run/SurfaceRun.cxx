@@ -4,7 +4,6 @@
 
 #include "ColorScale.h"
 #include "DataFile.h"
-#include "Extra.h"
 #include "Failures.h"
 #include "Job.h"
 #include "OutputFile.h"

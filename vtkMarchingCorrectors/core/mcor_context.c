@@ -80,10 +80,11 @@ void mcor_release_memory(mcor_context* context)
   MCOR_RELEASE_EACH(context, &context->stage);
   MCOR_RELEASE_EACH(context, &context->sort);
   mcor_release_grid(context);
-  mcor_release_bricks(context);
+  MCOR_RELEASE_BEFORE(context, &context->bricks, now);
+  mcor_release_brick_data(context, &context->bricks.now);
   MCOR_RELEASE_BEFORE(context, &context->mesh, march_count);
   mcor_release_attributes(context);
-  mcor_release_box(context);
+  MCOR_RELEASE(context, &context->box.cells, &context->box.clipped);
   mcor_release_adaptive(context);
   MCOR_RELEASE_EACH(context, &context->points);
   MCOR_RELEASE_EACH(context, &context->topology);

@@ -315,7 +315,6 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   int to_row);
 void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
-void mcor_release_bricks(mcor_context* context);
 void mcor_release_nodes(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
@@ -333,7 +332,6 @@ mcor_status mcor_evaluate_points(
   mcor_context* context, const mcor_field_points* points, int first, int count, int* group_count);
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
-mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context);

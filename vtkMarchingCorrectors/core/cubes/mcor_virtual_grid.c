@@ -11,13 +11,6 @@ void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
   data->count = 0;
 }
 
-void mcor_release_bricks(mcor_context* context)
-{
-  mcor_bricks* b = &context->bricks;
-  MCOR_RELEASE_BEFORE(context, b, now);
-  mcor_release_brick_data(context, &b->now);
-}
-
 /* Fills the new set of bricks, and moves the last set's data into it. */
 static mcor_status mcor_fill_bricks(
   mcor_context* context, const mcor_brick_data* last, int count, int words)

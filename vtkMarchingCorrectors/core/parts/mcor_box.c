@@ -340,9 +340,3 @@ void mcor_end_box(mcor_context* context)
   free(context->box.kept);
   context->box.kept = NULL;
 }
-
-void mcor_release_box(mcor_context* context)
-{
-  MCOR_RELEASE(context, &context->box.cells, &context->box.clipped);
-  mcor_end_box(context);
-}

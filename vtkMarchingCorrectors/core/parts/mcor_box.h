@@ -106,6 +106,5 @@ mcor_status mcor_crop_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
 void mcor_end_box(mcor_context* context);
-void mcor_release_box(mcor_context* context);
 
 #endif

@@ -448,7 +448,6 @@ static mcor_status mcor_make_fill_points(
   mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
   context->run.iso = (mcor_iso){ .number = context->run.options->iso_count };
   MCOR_TRY(mcor_load_attributes(context, input, 0));
-  MCOR_TRY(mcor_reserve_vertices(context, (int)count));
   MCOR_TRY(mcor_append_cap_vertices(context, vertices, count));
   mcor_release(context, &context->attributes.sorted);
   MCOR_TRY(mcor_append_output(context, input, true, surface));

@@ -8,13 +8,6 @@
 
 #include <stdlib.h>
 
-mcor_status mcor_reserve_vertices(mcor_context* context, int count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  MCOR_TRY(mcor_extend_vertices(context, 0, count));
-  return mcor_reserve(context, &mesh->evaluations, (size_t)count);
-}
-
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -34,15 +27,16 @@ mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lin
 mcor_status mcor_correct(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
-  MCOR_TRY(mcor_reserve_vertices(context, context->mesh.march_count));
+  mcor_buffer* buffer = &context->mesh.evaluations;
+  const size_t n = (size_t)context->mesh.march_count;
+  MCOR_TRY(mcor_extend_vertices(context, 0, (int)n));
+  MCOR_TRY(mcor_reserve(context, buffer, n));
   MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, false));
   if (options->preview)
   {
     return MCOR_OK;
   }
   mcor_statistics* s = context->run.statistics;
-  const mcor_buffer* buffer = &context->mesh.evaluations;
-  const size_t n = (size_t)context->mesh.march_count;
   uint8_t* owners = NULL; /* see mcor_find_counted */
   void* view = NULL;
   mcor_status status = mcor_find_counted(context, &owners);

@@ -65,7 +65,7 @@ public:
   };
 
 private:
-  using Shift = std::array<int, 3>; // in periods
+  using Shift = std::array<int, 3>;      // in periods
   using Edge = std::array<vtkIdType, 3>; // a triangle, and the points of one of its edges
   double PeriodOf(double at, int axis, double tolerance = 0.0) const;
   std::vector<Edge> ListOpenEdges(const std::vector<vtkIdType>& of) const;

@@ -77,8 +77,9 @@ public:
         1, std::min(2048, static_cast<int>(std::sqrt(static_cast<double>(this->Faces.size()))))))
     , Lists(this->Place(0, this->Count))
   {
-    const auto rangeOf = [](const Face& face, int a)
-    { return std::minmax({ face.Corner[0][a + 1], face.Corner[1][a + 1], face.Corner[2][a + 1] }); };
+    const auto rangeOf = [](const Face& face, int a) {
+      return std::minmax({ face.Corner[0][a + 1], face.Corner[1][a + 1], face.Corner[2][a + 1] });
+    };
     for (int a = 0; a < 2; ++a)
     {
       double high = -VTK_DOUBLE_MAX;
@@ -117,8 +118,7 @@ private:
   int IndexOf(int a, double x) const
   {
     const double i = std::floor((x - this->Low[a]) / this->Size[a]);
-    return i == this->Count ? this->Count - 1
-                            : static_cast<int>(std::max(-1.0, std::min(i, 1e9)));
+    return i == this->Count ? this->Count - 1 : static_cast<int>(std::max(-1.0, std::min(i, 1e9)));
   }
 
   size_t Place(int i, int j) const

@@ -99,8 +99,8 @@ Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
     all->InsertNextValue(piece);
     numbers->InsertNextValue(piece >= 0 ? next++ : -1);
   }
-  const vtkSPHRanksArrays came = vtkSPHSendTuples(
-    ranks, { all.Get(), numbers.Get() }, ranks.Exchange(std::move(wanted)));
+  const vtkSPHRanksArrays came =
+    vtkSPHSendTuples(ranks, { all.Get(), numbers.Get() }, ranks.Exchange(std::move(wanted)));
   if (given)
   {
     came[1]->SetName(given->GetName());

@@ -358,7 +358,7 @@ std::vector<double> ToBox(Text option, Text text)
   for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = box[2 * a], high = box[2 * a + 1];
-    // Two equal bounds are for particles in a plane.
+    // Particles in a plane may have two equal bounds.
     Need(low < high || (low == high && std::isfinite(low)), option,
       std::string("the lower number first along ") + "xyz"[a], text);
   }

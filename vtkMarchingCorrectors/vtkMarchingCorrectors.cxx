@@ -121,7 +121,8 @@ std::unique_ptr<vtkSPHParticles> vtkMarchingCorrectors::MakeInput(
   return std::make_unique<vtkSPHParticles>(choice, run.Own, wanted);
 }
 
-// If nobody chose what to contour, the particles decide.
+// If the user chose neither a scalar, an iso value nor the free surface, the particles decide
+// whether the free surface is drawn.
 void vtkMarchingCorrectors::ChooseMode(vtkRun& run)
 {
   const double* values = this->ContourValues->GetValues();
@@ -179,8 +180,8 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->Extract(*run, *input, vtkPolyData::SafeDownCast(output));
 }
 
-// Returns whether the particles have all that is needed, and fluid among them. Sets the run's iso
-// values: the given ones without NaN, which an empty row of a panel's list is, or a usual one.
+// Returns whether there are fluid particles and all needed arrays. Sets the run's iso values: those
+// that the user gave, without NaN (an empty row of the panel's list), else one usual value.
 bool vtkMarchingCorrectors::Take(vtkRun& run, vtkSPHParticles& input)
 {
   if (!run.Accept(input, "no surface") || !run.HasFluid ||
@@ -315,7 +316,8 @@ std::vector<double> ListFactorOptions(const mcor_options& o)
 }
 }
 
-// Gives the input the factors of its smoothing lengths: the last run's if they still hold.
+// Gives the input the factors of the smoothing lengths. Uses the last run's factors again if
+// neither the particles nor the options have changed.
 bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkSPHParticles& input)
 {
   vtkInternals& kept = *this->Internals;

@@ -231,25 +231,26 @@ public:
   ///@}
 
   /**
-   * Close the surface at the sides of the period and of the box's cells, by flat triangles where
-   * values are above the iso value; close lines by lines. Trimming and walls may leave the surface
-   * open. Off by default. An error with PAIRS or Filled.
+   * Close the surface at the sides of the period and of the box's cells: by flat triangles where
+   * values are above the iso value, in two dimensions by straight lines. Trimming and walls may
+   * leave the surface open. Off by default. An error with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
 
   /**
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
    * fluid, with triangles that share the points of the lines. The other values divide the region
-   * into bands. The cell array "BandValue" has the iso value of a line, or at which a triangle's
-   * band begins; the point array "IsoValue" has the same values. Off by default. An error in 3-D.
+   * into bands. The cell array "BandValue" has a line's iso value, or the iso value at which a
+   * triangle's band begins; the point array "IsoValue" has the same values. Off by default. An
+   * error in 3-D.
    */
   vtkSPHFlagMacro(Filled, 0);
 
   ///@{
   /**
-   * How the march is seeded; COMPLETE by default and for the free surface, which misses nothing
-   * that Marching Cubes on the full lattice would find. PAIRS is for comparisons with the paper: it
-   * misses parts of the surface without a pair of close particles on both sides, and is an error
+   * How the march is seeded. COMPLETE, the default, misses nothing that Marching Cubes on the full
+   * lattice would find; a free surface is always seeded so. PAIRS is for comparisons with the
+   * paper: it misses parts of the surface that pass between no two close particles, and is an error
    * with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, COMPLETE, PAIRS);
@@ -272,9 +273,10 @@ public:
   vtkSPHFlagMacro(Preview, 0);
 
   /**
-   * A compact contour: vertices of one node of the virtual grid become one, which is corrected
-   * along the gradient. It has a quarter fewer triangles, hardly any slivers, and the same pieces.
-   * Vertices at borders, caps and periodic sides stay. Off by default. An error with Filled.
+   * A compact contour: vertices that belong to one node of the virtual grid become one vertex,
+   * which is corrected along the gradient. The contour has a quarter fewer triangles, hardly any
+   * slivers, and the same pieces. Vertices at borders, caps and periodic sides stay. Off by
+   * default. An error with Filled.
    */
   vtkSPHFlagMacro(Compact, 0);
 
@@ -282,8 +284,8 @@ public:
   vtkSPHFlagMacro(Smooth, 0);
 
   /**
-   * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the
-   * particle stays inside of the free surface: flat water becomes flat, drops, threads and sheets
+   * Above 1, each particle's smoothing length is multiplied by a factor of at most this, such that
+   * the particle stays inside the free surface: flat water becomes flat, drops, threads and sheets
    * stay. The array Widening is the factor. From 1 (off, the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
@@ -331,10 +333,10 @@ public:
   ///@}
 
   /**
-   * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does
-   * not end at solids. -1, the default: measured, as the median share at the solids that face the
-   * fluid, so that the surface of a scalar ends there; for the free surface 0.5, about half way
-   * between the particles of both. GetRunStatistics() reports the share in use.
+   * The solids' share of the weight sum at which the surface ends, above 0 and below 1; 0: it does
+   * not end at solids. -1, the default: for a scalar, the median share at the solids that face the
+   * fluid, so that the surface ends at these solids; for the free surface 0.5, about half way
+   * between fluid particles and solids. GetRunStatistics() reports the share in use.
    */
   vtkSPHValueMacro(WallShare, double, -1.0);
 
@@ -346,7 +348,7 @@ public:
    *   "A_Dot_B". It is "IsoValue" for the free surface and where a computed array has that name.
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
-   * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, whatever is chosen there.
+   * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, even if that is WEIGHT_SUM.
    * - Curvature, "MeanCurvature" and "GaussCurvature": of the field's own surface, unit 1 / L and
    *   1 / L^2; the mean curvature of a drop of radius R is 1 / R. In two dimensions there is no
    *   Gaussian curvature.
@@ -460,7 +462,7 @@ private:
     const mcor_input& core, const mcor_options& options, double largestFloat);
   bool Take(vtkRun& run, vtkSPHParticles& input);
   void Extract(vtkRun& run, vtkSPHParticles& input, vtkPolyData* output);
-  /** Makes the input with what `wants` names, bits of mcor_want, from the run's own particles. */
+  /** Makes the input from the run's own particles. wants: bits of mcor_want, which name the arrays to find. */
   std::unique_ptr<vtkSPHParticles> MakeInput(
     vtkRun& run, const mcor_options& options, unsigned wants);
   void FillOptions(mcor_options& options);

@@ -108,8 +108,8 @@ public:
 
   ///@{
   /**
-   * The point array of smoothing lengths (unit L, > 0), found by name where it is empty (the
-   * default); or one smoothing length for all particles. 0 (the default): use the array.
+   * The point array of smoothing lengths (unit L, > 0); an empty name (the default): found by its
+   * usual name. SmoothingLength: one for all particles; 0 (the default): use the array.
    */
   vtkSPHChoiceTextMacro(SmoothingLengthArrayName);
   vtkSPHChoiceMacro(SmoothingLength, double);
@@ -142,10 +142,10 @@ public:
 
   ///@{
   /**
-   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0), found
-   * by name where they are empty (the default). Volumes that are found stay, unless mass and
-   * density are both set, or ComputeVolumes is on. Mass and Density: one value for all particles; 0
-   * (the default): use the array.
+   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0); empty
+   * names (the default): found by their usual names. A volume array that is found is used unless
+   * mass and density are both set, or ComputeVolumes is on. Mass and Density: one value for all
+   * particles; 0 (the default): use the array.
    */
   vtkSPHChoiceTextMacro(VolumeArrayName);
   vtkSPHChoiceTextMacro(MassArrayName);
@@ -155,8 +155,8 @@ public:
   ///@}
 
   /**
-   * One volume for all particles, unit L^3, in two dimensions L^2, where neither their array nor
-   * mass and density tell it. 0 (the default): volumes are computed then.
+   * One volume for all particles, unit L^3, in two dimensions L^2. Used if there is no array of
+   * volumes, and mass or density is missing. 0 (the default): volumes are then computed.
    */
   vtkSPHChoiceMacro(ParticleVolume, double);
 
@@ -247,8 +247,8 @@ public:
   ///@}
 
   /**
-   * 2 or 3: the dimension in which an update takes these particles. Collective where processes
-   * share it.
+   * Returns 2 or 3: the dimension that an update would use for these particles. Collective if
+   * processes share the update.
    */
   int FindDimension(vtkPointSet* particles);
 
@@ -282,8 +282,9 @@ public:
 
   ///@{
   /**
-   * Leave out particles whose value in this point array is not from `low` to `high`. A value in any
-   * of several ranges passes; a particle must pass for each array. None by default.
+   * Leave out particles whose value in this point array is not from `low` to `high`, as if they
+   * were not there. An array may have several ranges: a value in any one of them passes. A particle
+   * must pass for each array. None by default.
    */
   void AddOnly(const char* name, double low, double high)
   {
@@ -352,14 +353,14 @@ public:
   /**
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
    * process, all update together, each with some of the particles (without those that vtkGhostType
-   * marks as duplicates) or none, and results are as of one process, to the last bit. If one
-   * process fails, all do. If blocks are taken apart, all processes must have as many of them.
+   * marks as duplicates) or none, and results are the same as from one process, to the last bit. If
+   * one process fails, all do. If blocks are taken apart, all processes must have the same number.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  /** Why the last run failed, the sentences of its VTK errors, one a line; empty: it did not. */
+  /** Why the last run failed: the sentences of its VTK errors, one a line; empty: it did not fail. */
   vtkSPHToldMacro(ErrorMessage);
 
   /** How many errors and warnings the last run has reported. */
@@ -369,16 +370,16 @@ public:
   /**
    * One array for each number of the last update: "FlatLoops" is flat_loops of mcor_statistics in
    * mcor.h, and so on; "Seconds" has a named component for each phase, for building the OpenCL
-   * program, and in total. Or all of them as text, a line "Name: values" for each. If blocks are
-   * taken apart, costs are sums, and the rest is of the last block. Empty if nothing ran. The next
-   * update makes a new object and leaves this one as it is.
+   * program, and in total. GetStatistics() returns text, a line "Name: values" for each. If blocks
+   * are taken apart, costs are sums, and the rest is of the last block. Empty if nothing ran. The
+   * next update makes a new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
   const char* GetStatistics();
   ///@}
 
 #ifndef __VTK_WRAP__
-  /** Sets what all filters' messages call a setting: an mcor_word of mcor.h, not panels' labels. */
+  /** Sets the function that names settings in the messages of all filters, see mcor_word in mcor.h. Default: the panels' labels. */
   static void SetWord(int (*word)(void*, const char*, const char*, char*, std::size_t));
 #endif
 
@@ -390,9 +391,10 @@ public:
 
   ///@{
   /**
-   * Defaults of a panel, from the particles as they are now: FindFluidBounds(), or 0 if unknown;
-   * for each of x, y and z, a point on the densest line along this axis; 1 if the particles have no
-   * smoothing lengths; and the blocks that can be chosen as fluid array, one a line.
+   * Defaults of a panel, from the present particles. Bounds: see FindFluidBounds(), 0 if unknown.
+   * Densest: for each of x, y and z, a point on the densest line along this axis. Estimate: 1 if
+   * the particles have no smoothing lengths. Blocks: the names for FluidArrayName that choose a
+   * block, one a line.
    */
   double* GetNextBounds() VTK_SIZEHINT(6) { return this->FindNextBounds(false); }
   double* GetNextDensest() VTK_SIZEHINT(9) { return this->FindNextBounds(true); }
@@ -401,9 +403,9 @@ public:
   ///@}
 
   /**
-   * The ranges of colours for point arrays of the output, which span 98 % of the area, without
-   * walls: for each array a line of the lowest value, the highest one and the name. Empty for
-   * blocks, and if processes share a run.
+   * The colour ranges of the output's point arrays: for each array a line with the lowest value,
+   * the highest value and the name. A range holds the values on 98 % of the area, or at 98 % of the
+   * points that are no walls. Empty for composite data, and if processes share a run.
    */
   const char* GetColorRanges();
 
@@ -436,26 +438,27 @@ protected:
   /** Does the work, for the whole input or one of its blocks. */
   virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
 
-  /** Whether blocks at port 0 are taken together; whether the output then has these blocks, too. */
+  /** Whether all blocks at port 0 are one set of particles. */
   virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
+  /** Whether the output has the same blocks as an input whose blocks are one set. */
   virtual bool KeepsBlocks() const { return false; }
 
   /**
-   * Returns an input, or the particles in it, see vtkSPHTakeVertices(); kept while the input is
-   * the same. Collective if processes share a run.
+   * Returns the result of vtkSPHTakeVertices(), which is kept while the input is the same.
+   * Collective if processes share a run.
    */
   vtkDataObject* TakeVertices(vtkDataObject* data);
   /** Reports how many points of the data are not particles. Collective if processes share a run. */
   void WarnOfMesh(vtkDataObject* data, vtkDataObject* taken);
 
   /**
-   * Returns particles as one set: a point set itself, or all blocks of composite data, put
-   * together once and kept while they are the same. Null for other data.
+   * Returns the particles of an input as one set: of a point set, or of all blocks of composite
+   * data. The set is kept while the input is the same. Returns null for other data.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
-  /** Does the same ahead of an update, with data that may not have been read yet. */
+  /** Calls TakeParticles() before an update. If the data are empty, updates the input first. */
   vtkSmartPointer<vtkPointSet> TakeParticlesAhead(vtkDataObject* data);
-  /** Does the same with the result of TakeVertices(). */
+  /** Makes one set of particles of the result of TakeVertices(), as TakeParticles() does. */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
 
   /** Reports an error, naming the block, and keeps its sentence. */
@@ -483,8 +486,9 @@ protected:
   /** Whether processes share a run; always false in a build without MPI. */
   bool IsShared() const;
 
-  /** Returns the input that has the particles, and its port. */
+  /** Returns the input that has the particles; null: there is none. */
   vtkDataObject* GetParticles();
+  /** Returns the input port of the particles. */
   virtual int GetParticlesPort() { return 0; }
 
   void FillOptions(mcor_options& options) const;

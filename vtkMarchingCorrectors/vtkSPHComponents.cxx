@@ -55,8 +55,9 @@ vtkDataArray* FindArray(
 }
 
 /**
- * Adds the id of its piece to each element that stays. The ids become active scalars if there are
- * several pieces: most users want to tell pieces apart by colour. Returns the ids.
+ * Adds an array with the id of the piece of each point or triangle that stays. The ids become
+ * active scalars if there are several pieces: most users want to tell pieces apart by colour.
+ * Returns the ids.
  */
 vtkSmartPointer<vtkIdTypeArray> AddIds(
   vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers, size_t pieces)

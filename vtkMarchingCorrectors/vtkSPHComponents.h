@@ -71,7 +71,7 @@ public:
   ///@}
 
   ///@{
-  /** Arrays of the particles; empty (the default): found by name. Mass: one for all, if above 0. */
+  /** Arrays of the particles; empty (the default): found by name. Mass, if above 0: one mass for all particles. */
   vtkSPHTextMacro(MassArrayName, "");
   vtkSPHValueMacro(Mass, double, 0.0);
   vtkSPHTextMacro(VelocityArrayName, "");
@@ -110,7 +110,7 @@ private:
 
   struct Content;
 
-  /// The piece of each point and of each triangle, by number; -1: it is left out.
+  /// For each point and each triangle the number of its piece; -1: the piece is left out.
   struct Numbers
   {
     std::vector<vtkIdType> OfPoint, OfTriangle;
@@ -123,7 +123,7 @@ private:
   static void Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output);
   static std::string FindProblem(vtkPolyData* mesh);
 
-  // These are for a surface that processes share.
+  // Functions for a surface that several processes share.
   std::string SplitDistributed(
     vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const;
   vtkSmartPointer<vtkPointSet> GatherParticles(vtkSPHRanks& ranks, vtkPointSet* particles) const;

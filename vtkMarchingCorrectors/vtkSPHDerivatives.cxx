@@ -16,7 +16,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Returns gradients of vectors of two components, in a plane, as gradients of vectors in space. */
+/** Returns the gradients of vectors with 2 components as gradients of vectors with 3, which are 0 across the plane. */
 std::vector<double> InSpace(const mcor_derivatives& derivatives)
 {
   const double* extent = derivatives.statistics.fluid_extent;
@@ -35,7 +35,7 @@ std::vector<double> InSpace(const mcor_derivatives& derivatives)
 }
 }
 
-/** The arrays that a run adds to the particles, as they were wanted when it began. */
+/** The arrays that a run adds to the particles, by the settings at the beginning of the run. */
 struct vtkSPHDerivatives::vtkWanted
 {
   /** An array that is made of the gradient of a vector. */

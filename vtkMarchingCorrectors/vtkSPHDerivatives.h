@@ -28,8 +28,8 @@
  * get zeros, and so do particles that vtkGhostType marks as duplicates.
  *
  * @warning
- * A block that is processed by itself (see SetBlocks()), or a piece that is not shared by processes, has
- * gradients at its cut as at the end of the fluid.
+ * If a block is processed by itself (see SetBlocks()), or a piece is not shared by processes,
+ * gradients at the cut are as at the end of the fluid.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe vtkGradientFilter
@@ -61,7 +61,7 @@ public:
   /** Add the gradient of the array, unit of the array / L. On by default. */
   vtkSPHFlagMacro(ComputeGradient, 1);
 
-  /** The name of the gradient's array, "Gradients" by default; then, "Corrected", of the mark's. */
+  /** The name of the array of gradients, "Gradients" by default. With "Corrected" added, it names the mark of corrected gradients. */
   vtkSPHTextMacro(ResultArrayName, "Gradients");
 
   /** Replace existing arrays of the same names. Off by default: the new ones are called NAME_SPH. */

@@ -24,7 +24,7 @@
  *     mass_flux    of rho v . n; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0
  *
- * The density is its array, Density, or mass / volume if both are given.
+ * The density is the density array, the constant Density, or mass / volume if both are given.
  *
  * @sa
  * vtkSPHMeter vtkSPHGauge vtkMarchingCorrectors
@@ -56,7 +56,7 @@ public:
   ///@{
   /**
    * Sections by name. Names must differ. mcor_section_shape in mcor.h says which way the normals
-   * point. A rectangle has a corner and the ends of the two edges that begin there. The bounds of a
+   * point. A rectangle has a corner and the ends of the two edges from it. The bounds of a
    * box are x0, x1, y0, y1, z0, z1. A line is for two dimensions. A surface has the polygons, or
    * lines, of a data set.
    */

@@ -99,7 +99,7 @@ bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
   return true;
 }
 
-// Without fluid, each process calls the core without particles, which finds nothing.
+// If there is no fluid, each process calls the core without particles, and the core finds nothing.
 void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* table = vtkTable::SafeDownCast(output);

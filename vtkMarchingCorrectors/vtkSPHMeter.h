@@ -4,7 +4,7 @@
  * @class   vtkSPHMeter
  * @brief   superclass of the filters that measure the fluid at places with names
  *
- * The output is a vtkTable with a row for each place, the same whatever part of it is asked for.
+ * The output is a vtkTable with a row for each place, also if only a part of it is asked for.
  * Fluid is where the sum of the fluid particles' weights is Level or more, as for the free surface
  * of vtkMarchingCorrectors. Blocks of composite data are one set of particles, always.
  *
@@ -85,8 +85,8 @@ protected:
 
   ///@{
   /**
-   * Each subclass gives its word for one place ("gauge"), its words for what happens without fluid,
-   * its places on this process, where the second input is `more` or null, and the particle arrays
+   * Each subclass gives its word for one place ("gauge"), its words for the consequence of no
+   * fluid, its places on this process (more: the second input, or null), and the particle arrays
    * that it needs.
    */
   virtual const char* GetNoun() const = 0;

@@ -29,14 +29,16 @@ struct vtkSPHOnly
 };
 
 /**
- * Sums over neighbours if processes share the particles: writes a value for each particle of this
- * process, as vtkSPHSumNeighbors() does, and returns why that failed. Empty: there is one process.
+ * Computes sums over neighbours if processes share the particles. Writes a value for each particle
+ * of this process, as vtkSPHSumNeighbors() does, and returns why that failed, else an empty text.
+ * The function itself is empty if there is one process.
  */
 using vtkSPHSumShared = std::function<std::string(vtkPointSet* points, const mcor_input& mine,
   const mcor_options& options, double ratio, double* values)>;
 
 /**
- * Arrays that were computed from neighbours, by name, and the data that they were computed from.
+ * Arrays that were computed from neighbours: for each name, the signature of the data that an array
+ * was computed from, and the array.
  */
 using vtkSPHMade =
   std::map<std::string, std::pair<std::vector<std::uint64_t>, vtkSmartPointer<vtkDataArray>>>;
@@ -65,8 +67,8 @@ struct vtkSPHParticlesChoice
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UnusedType; ///< a sentence: no fluid was chosen, although an array seems to tell it
-  vtkTypeBool IgnoreSolids = 0; ///< each filter has a setter of this, or a setting that decides
-                                ///< on it
+  vtkTypeBool IgnoreSolids = 0; ///< a filter has a setter for this member, or sets it by another
+                                ///< setting
   int Kernel = 0;
   int Dimension = 0;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

@@ -74,8 +74,8 @@ public:
 
 private:
   /**
-   * Copies the points that GetPoint() gives. Calls of GetPoint() would take as long as sending the
-   * points to the device.
+   * Writes the same points as GetPoint() gives. Calls of GetPoint() would take as long as sending
+   * the points to the device.
    */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
@@ -150,8 +150,8 @@ class Samples
 {
 public:
   /**
-   * Begins with `null` at `count` points for the particles' interpolated arrays, and zeros for
-   * their weight.
+   * Makes the arrays for `count` points. Interpolated arrays begin as `null` at all points, the
+   * weight as 0.
    */
   Samples(const vtkSPHParticles& particles, const mcor_options& options,
     const std::string& maskName, vtkIdType count, double null)

@@ -92,7 +92,7 @@ protected:
   bool TakesTogether() const override { return false; } // each point is evaluated without the
                                                         // others
 
-  /** The port of the particles: after the points, if these are an input. */
+  /** Returns 1, or 0 in a subclass whose only input are the particles. */
   int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }
 
 private:

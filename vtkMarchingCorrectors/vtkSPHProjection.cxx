@@ -54,8 +54,8 @@ mcor_view vtkSPHProjection::MakeView() const
   return view;
 }
 
-// Places the image without values, and leaves errors to the run. Origin and spacing come with the
-// data.
+// Finds the image's extent. Does not report errors, because Process() will. Origin and spacing come
+// with the data.
 int vtkSPHProjection::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -87,8 +87,8 @@ int vtkSPHProjection::RequestInformation(
   return 1;
 }
 
-// Sums are exact, so each process projects its own particles, and the core adds up the images;
-// only where volumes are computed do particles go to the process that owns their place.
+// Sums are exact, so each process projects its own particles, and the core adds up the images. If
+// volumes must be computed, particles first go to the processes that own their places.
 void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
 {
   const std::unique_ptr<vtkRun> run = vtkRun::Make(this);

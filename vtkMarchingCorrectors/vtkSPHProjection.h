@@ -8,7 +8,7 @@
  * and gives the mean of the integrals over each pixel of an image, see mcor_project in mcor.h. The
  * image has all of the mass that falls into it.
  *
- * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
+ * The scalar is a point array, or of vectors the magnitude or ScalarComponent. By default it is the
  * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
  * over the lines of sight, which needs masses, or densities and volumes. Otherwise the array has
  * the scalar's name. With WeightArrayName the array is the mean of the scalar along the line of
@@ -66,8 +66,9 @@ public:
   ///@}
 
   /**
-   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. With
-   * the array of masses, each particle counts by its mass. Empty (the default): the integral itself.
+   * The array whose values B are the weights of a mean: sum V B A / sum V B of what a pixel sees.
+   * With the array of masses, each particle counts by its mass. Empty (the default): the integral
+   * itself.
    */
   vtkSPHTextMacro(WeightArrayName, "");
 

@@ -37,7 +37,7 @@ constexpr double Margin = 0.03;
 /** How many points a volume has if its dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
-/** The range of a plane in a box, along the plane's axes u and v; empty if they do not meet. */
+/** The range of a plane inside a box, along the plane's axes u and v; empty if the plane misses the box. */
 struct Rectangle
 {
   double U[3], V[3];
@@ -90,7 +90,7 @@ struct Rectangle
 };
 
 /**
- * Makes a rectangle of quads in a plane, around its part in the box (x0, x1, y0, y1, z0, z1),
+ * Makes a rectangle of quads that holds the part of a plane in the box (x0, x1, y0, y1, z0, z1),
  * with `resolution` points along the longer side. Empty if the plane misses the box.
  */
 void MakeSlice(const double box[6], const double origin[3], const double normal[3], int resolution,
@@ -172,9 +172,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Origin and spacing depend on the particles, and come with the data. Dimensions that follow the
-// shape of the fluid follow the particles as they are now: cells are about cubes, in one layer if
-// the fluid is flat.
+// Origin and spacing depend on the particles, and come with the data. Dimensions that are not set
+// follow the shape of the present fluid: cells are about cubes, in one layer if the fluid is flat.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -215,8 +214,8 @@ int vtkSPHResample::RequestInformation(
   return 1;
 }
 
-// Finds the fluid's box with a margin, but without one along the axis of a plane. Returns false if
-// no particle is fluid.
+// Finds the fluid's box with a margin, but without a margin along the constant axis of particles in
+// a plane. Returns false if no particle is fluid.
 bool vtkSPHResample::FindBounds(vtkPointSet* particles, double bounds[6])
 {
   if (!this->FindFluidBounds(particles, bounds))
@@ -241,7 +240,8 @@ bool vtkSPHResample::FindBounds(vtkPointSet* particles, double bounds[6])
   return true;
 }
 
-// Makes the points that this process is asked for. The first one has all points of a slice or line.
+// Makes the points that this process is asked for. The first process makes all points of a slice or
+// line.
 vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
 {
   vtkInformation* info = this->GetOutputInformation(0);
@@ -269,7 +269,7 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
                                      : info->Get(Pipeline::UPDATE_PIECE_NUMBER());
   if (piece <= 0 && this->Shape == SLICE)
   {
-    // A slice cuts a plane of particles in a line, unless it is that plane.
+    // If the particles lie in a plane, the slice is this plane: any other would cut it in a line.
     const bool isFlat = this->FlatAxis >= 0;
     const double along[3] = { this->FlatAxis == 0 ? 1.0 : 0.0, this->FlatAxis == 1 ? 1.0 : 0.0,
       this->FlatAxis == 2 ? 1.0 : 0.0 };

@@ -4,7 +4,7 @@
  * Private to the module: one run of a filter over particles, by this process alone. A run of many
  * processes is vtkSharedRun in ranks/. Filters take the same steps with both, in the order below.
  * In a shared run all processes call all steps, and each step returns the same everywhere: false if
- * it failed on any process, which all report, or if the run was cancelled.
+ * it failed on any process (then all processes report the error), or if the run was cancelled.
  */
 #ifndef vtkSPHRun_h
 #define vtkSPHRun_h
@@ -35,15 +35,16 @@ public:
   ~vtkInternals();
 
   /**
-   * Makes a context for this device, or keeps the present one if it fits. This process is number
-   * `place` of `count` on this machine. Returns why the device is not usable, or an empty string.
+   * Makes a context for this device, or keeps the present one if nothing differs. This process is
+   * number `place` of `count` on this machine. Returns why the device is not usable, or an empty
+   * string.
    */
   std::string Prepare(const std::string& device, int place, int count);
 
   /** Forgets the data on the device after a failure, and the device itself after a device error. */
   void Forget(mcor_status status);
 
-  /** Gives memory back. Between BeginRun() and EndRun() it is in use, so EndRun() does it. */
+  /** Frees the device memory. Between BeginRun() and EndRun() it is in use, so EndRun() frees it. */
   void Release();
   void BeginRun()
   {
@@ -53,7 +54,7 @@ public:
   void EndRun();
 
   mcor_context* Context = nullptr;
-  /** Data made of an input, which serve while the input and `How` are the same. */
+  /** Data that were made from an input, and are valid while the input and `How` stay the same. */
   struct Made
   {
     vtkSmartPointer<vtkDataObject> Data;
@@ -61,19 +62,19 @@ public:
     std::string How;
     vtkTimeStamp Time;
 
-    /** Returns whether the data serve; if not, the caller makes them anew. */
+    /** Returns whether the data are valid for this input. If not, the caller must make them anew. */
     bool Serves(vtkDataObject* from, const std::string& how);
   };
   Made Taken;  // particles among the cells of a mesh; how: whether any rank has vertices
   Made Joined; // blocks as one set of particles; how: the fluid array, which may be a block
 
-  /** A value of the last run, and how often it has changed: equal versions mean equal data. */
+  /** The signature of the last run's data, and how often the data have changed: equal versions mean equal data. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
-    /** Keeps this value. Returns whether it differs from the value before. */
+    /** Keeps this signature. Returns whether the data have changed; with isOther, they always have. */
     bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false)
     {
       isOther = isOther || signature != this->Signature;
@@ -119,13 +120,13 @@ public:
   {
     return { mine };
   }
-  /** Sums over neighbours, which other processes may have, see vtkSPHSumShared. */
+  /** Computes sums over neighbours, which may be on other processes, see vtkSPHSumShared. */
   virtual std::string SumNeighbors(
     vtkPointSet*, const mcor_input&, const mcor_options&, double, double*)
   {
     return "";
   }
-  /** Returns false, after an error, if a process has a problem. */
+  /** Returns false, after an error, if `problem` is not empty on any process. */
   virtual bool Agree(const std::string& problem);
 
   /** Takes this process's particles, which may be null. */
@@ -137,17 +138,18 @@ public:
    * something has no effect. Returns false, after an error, if an array is not usable.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
-  /** Finds the period and, for many processes, the globals: of mcor_probe if forSamples is set. */
+  /** Finds the period and, in a shared run, the globals: those of mcor_probe if forSamples is set, else of mcor_extract. */
   virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
-  /** Finds the period alone, and, from all particles, the smoothing length if it is estimated. */
+  /** Finds the period and, if smoothing lengths are estimated, the estimate from all processes' particles. */
   virtual bool MeasureLengths(vtkSPHParticles& particles) { return this->Measure(particles, true); }
-  /** Limits the run to the box around places. */
+  /** Limits a shared run to the box around places with these least and greatest coordinates. */
   virtual void PlaceBox(const double[3], const double[3]) {}
   /** Takes the points at which to evaluate, which may be null. */
   virtual void PlacePoints(vtkDataSet* points) { this->Points = points; }
   /**
-   * Sends particles, and points, to the processes that need them. Returns the particles that came,
-   * already collected (alone: `mine`); null if these are not usable.
+   * Sends particles and points to the processes that need them. Returns the particles that came to
+   * this process, after Collect(); null if they are not usable. A run of one process returns
+   * `mine`.
    */
   virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }
   /** Marks the particles of Share() that this process owns; null: it owns all. */
@@ -156,7 +158,7 @@ public:
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
   /** Calls a function of the core that needs no context; `call` returns false if it failed. */
   virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
-  /** Does the same with a function that cannot fail, and returns its result. */
+  /** Calls a function of the core that needs no context and cannot fail, and returns its result. */
   template <typename CallT>
   auto Ask(const CallT& call)
   {
@@ -170,11 +172,11 @@ public:
     return answer;
   }
   /**
-   * Sends results, a tuple for each point, or else for each particle, back to the process that it
-   * came from. home: where the results belong on this process; may be null.
+   * Sends results back to the processes that the points came from; if there are no points, to the
+   * processes of the particles. home: the data set of this process that gets results; may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
-  /** Lists the first particle of all processes at which each interpolated array is not finite. */
+  /** Lists, for each interpolated array, the first particle of all processes whose value is not finite. */
   virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
   /** Adds what each process has done to the statistics of the run. */
   virtual void AddShares() {}

@@ -74,8 +74,8 @@ std::vector<double> TimesOf(vtkInformation* info)
 }
 
 /**
- * Returns the stored time that equals the requested one; the first or last time if that is outside
- * the range; else the two stored times around it.
+ * Returns the stored time that equals the requested time; the first or last stored time if the
+ * requested time is outside the range; else the two stored times around it.
  */
 std::vector<double> StepsAround(const std::vector<double>& times, double time)
 {
@@ -166,7 +166,7 @@ int vtkSPHTemporalInterpolator::RequestInformation(
   return 1;
 }
 
-// Requests the first step that is not kept from upstream; if all are kept, nothing new.
+// Requests the first step that is needed and not kept. If all are kept, requests no new step.
 int vtkSPHTemporalInterpolator::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -5,21 +5,21 @@
  * @brief   SPH particles at any time between the steps that are stored
  *
  * This filter provides particles at any time from the first step that its reader has to the last,
- * interpolated between two steps. It keeps these, so that an animation reads each step once.
+ * interpolated between two steps. It keeps both, so that an animation reads each step once.
  *
  * Particles are matched between two steps by their ids, in any order. The position follows the
  * cubic Hermite curve through both positions with both velocities as tangents; float and double
  * arrays are linear in time; integers, strings and ids are those of the nearer step. A particle
  * that is in only one of the two steps exists in the half of the interval next to that step, moves
- * with the velocity that it has there, and keeps its values. Particles are in the order of the
- * nearer step (in the middle: of the later one).
+ * with the velocity that it has in this step, and keeps its values. Particles are in the order of
+ * the nearer step (in the middle: of the later one).
  *
  * Ids and velocities are point arrays, found by their usual names (see mcor_name_priority in
  * mcor.h) unless they are named; ids are also found as the active global ids. Without ids, or if
  * two particles share one, it is an error to request a time between two steps. Without velocities
  * (or with UseVelocities off) positions are linear in time, and particles of only one step stay
- * where they are. The same is done, with a warning, if the particles (100 or more) moved less than
- * half or more than twice as far as their mean velocities say, see TimeScale.
+ * where they are. Velocities are not used either, with a warning, if the particles (100 or more)
+ * moved less than half or more than twice as far as their mean velocities say, see TimeScale.
  *
  * The output is a vtkPolyData with the points and point arrays; if the input has cells, each
  * particle is a vertex. Composite data must have the same tree in both steps, and give composite
@@ -83,7 +83,7 @@ public:
   vtkSPHClampMacro(ResampleFactor, int, 1, 1, 1000000);
 
   ///@{
-  /** The arrays used for the last time between two steps; empty if there was none, or no velocity. */
+  /** The arrays used for the last requested time between two steps; empty if none was used. */
   vtkSPHToldMacro(UsedIdArrayName);
   vtkSPHToldMacro(UsedVelocityArrayName);
   ///@}

@@ -91,7 +91,8 @@ void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
-// The surface's field data list the values, and name the array: see vtkMarchingCorrectors.
+// The field array "IsoValues" lists the iso values. Its component name is the name of the point
+// array.
 vtkDataArray* vtkSPHFindIsoValues(vtkDataSet* surface)
 {
   vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
@@ -181,8 +182,8 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 
 namespace
 {
-/// Adds a value to the sum over several runs; or keeps the greatest value; or, if all values are
-/// the same, takes the last one.
+/// Merges a statistic of one more run into the run data: SAME replaces the earlier value, MOST keeps
+/// the greater one, all others add.
 template <typename T>
 void AddToRun(vtkFieldData* run, vtkSPHHow how, const char* name, const T& value)
 {
@@ -302,8 +303,8 @@ std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks)
 
 mcor_array vtkSPHView(vtkDataArray* array)
 {
-  static const double none = 0.0; // an array without values has no pointer, and the core would take
-                                  // it for a constant
+  static const double none = 0.0; // an empty array may have a null pointer, and the core reads
+                                  // arrays without data as constants
   mcor_array view = {};
   view.type = array->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
   view.components = array->GetNumberOfComponents();

@@ -40,7 +40,7 @@ std::string vtkSPHRealName(const std::string& name);
 /** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
-/** Adds an object's state to a signature: its address and its time, which VTK gives only once. */
+/** Adds an object's address and modification time to a signature. VTK gives no time to two changes. */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
@@ -51,7 +51,7 @@ vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdT
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(
   vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
 
-/** Adds all arrays, and replaces arrays of the same names; active scalars stay active. */
+/** Adds all arrays of `from` to `to`, in place of arrays of the same names. Active scalars of `from` become active in `to`. */
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
 /** Returns the array of a surface that says which iso value each point has; null: there is none. */
@@ -66,12 +66,12 @@ vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
 /** Copies a text of the core, and frees the core's text; returns an empty text for null. */
 std::string vtkSPHTakeText(char* text);
-/** Does the same with a sentence of the core, and fills its slots, see vtkSPHAlgorithm::SetWord(). */
+/** Returns a sentence of the core with its slots filled, see vtkSPHAlgorithm::SetWord(), and frees the core's text. */
 std::string vtkSPHTakeText(mcor_message message);
-/** The function that gives the words for slots. */
+/** The function that returns the word for a slot of a sentence. */
 extern mcor_word vtkSPHWord;
 
-/** Makes a VTK array of values that it borrows. */
+/** Makes a VTK array that points to these values. The caller still owns and frees them. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> vtkSPHBorrow(const ValueT* values, int components, vtkIdType tuples)
 {
@@ -85,7 +85,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHBorrow(const ValueT* values, int components,
   return array;
 }
 
-/** Hands a malloc'ed buffer over to a VTK array. */
+/** Makes a VTK array that owns these malloc'ed values, and sets `values` to null. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
 {
@@ -98,7 +98,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkId
   return array;
 }
 
-/** Does the same with doubles, which become floats if `asFloat` is set. */
+/** Makes a VTK array of these malloc'ed doubles, as vtkSPHAdopt() does. If `asFloat` is set, the array holds floats. */
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat);
 
@@ -130,7 +130,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds the count of each level as a tuple, up to the last level with a count above 0. */
+/** Adds one tuple for each level, its count, up to the last level with a count above 0. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 
@@ -161,7 +161,7 @@ void vtkSPHAddColumns(vtkTable* table, const RowT* rows, vtkIdType count,
   }
 }
 
-/** A result of the core, which is freed at the end. */
+/** A result of the core. The destructor frees the memory that the core allocated for it. */
 template <typename ResultT, void (*Free)(ResultT*)>
 struct vtkSPHOwned : ResultT
 {
@@ -189,7 +189,7 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics
 /** Finds the point array with the most usual name for this quantity; nullptr: there is none. */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
-/** Arrays as the core lists them. Holds the arrays; copies them if their values do not lie in one piece. */
+/** Lists VTK arrays for the core, and keeps the arrays alive. Copies arrays whose values the core cannot read in place. */
 class vtkSPHNamed
 {
 public:
@@ -219,7 +219,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 /** Views an array of floats or doubles that lie one after another. */
 mcor_array vtkSPHView(vtkDataArray* array);
 
-/** Returns an element of the core's array, or the constant that stands for it. */
+/** Returns element `i` of the core's array, or the array's constant. */
 inline double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
 {
   return !array.data             ? array.constant

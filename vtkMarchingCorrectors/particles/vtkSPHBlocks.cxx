@@ -34,9 +34,10 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 }
 
 /**
- * Joins the arrays of this name, one block after the other. Returns null if a block that is no wall
- * lacks the array. For walls that lack it, makes up values, unless the array tells kinds of
- * particles apart: then returns null, too.
+ * Joins the arrays of all blocks that are named as `first`, one block after the other. A wall that
+ * lacks the array gets the first tuple of `first`. Returns null if a block that is no wall lacks
+ * the array, if a wall lacks an array of particle types, or if a wall's array has another type or
+ * size.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
@@ -73,12 +74,12 @@ bool TellsOfWalls(const std::string& name)
   return mcor_tells_of_walls(name.c_str()) != 0;
 }
 
-/** A block, and what to call it. */
+/** A block and its name. */
 struct Leaf
 {
   vtkDataObject* Data; ///< null: the block is empty
-  std::string Name;    ///< its name, or the name of the block that it is a partition of; empty:
-                       ///< none
+  std::string Name;    ///< a partition without a name takes the name of the partitioned data
+                       ///< set; empty: no name
   unsigned int Index;
 
   vtkPointSet* Points() const
@@ -87,7 +88,7 @@ struct Leaf
     return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
   }
 
-  /** The name by which a fluid array may choose this block. */
+  /** The text that, as name of the fluid array, chooses this block as the fluid. */
   std::string FluidArray() const { return "Block: " + this->Name; }
 };
 
@@ -121,9 +122,10 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 }
 
 /**
- * Finds which of the blocks with points are walls. If a block is chosen as fluid, all others are
- * walls, else the blocks with names of walls. Returns an empty list if no block of the tree, or
- * every block, is a wall. Empty blocks count, so that processes with different blocks agree.
+ * Returns, for each block with points, whether it is a wall. If `fluidArray` chooses blocks as
+ * fluid, all other blocks are walls, else the blocks whose names tell of walls. Returns an empty
+ * list if no block, or every block, is a wall. Blocks without points count for this, so that all
+ * processes agree.
  */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {

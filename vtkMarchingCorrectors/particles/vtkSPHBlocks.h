@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: particles among the cells of a mesh; blocks of composite data, what
- * messages call them, and all their particles as one set.
+ * Private to the project: takes particles out of a mesh, lists and names the blocks of composite
+ * data, and joins the particles of all blocks.
  */
 #ifndef vtkSPHBlocks_h
 #define vtkSPHBlocks_h
@@ -33,30 +33,33 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);
 
 /**
- * Lists "Block 'NAME', index N" for each block that is there, in the order of iteration: its name,
- * or that of the block that it is a partition of, and the flat index that ParaView shows.
+ * Lists "Block 'NAME', index N" for each block that is not null, in the order of iteration. A
+ * partition without a name has the name of its partitioned data set. N is the flat index that
+ * ParaView shows.
  */
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
 
-/** Lists the data set itself, or its blocks, as far as they are point sets with points. */
+/** Lists the point sets with points: the data set itself, or its blocks. */
 std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 
 /**
  * Joins the points of all blocks that are point sets, one block after the other, with the point
  * arrays that all of them have (same name, type and number of components). If the names of some
- * blocks, but not of all, tell of walls, the array MCOR_WALL_BLOCK is 1 for their particles;
- * arrays that only walls lack are kept, with a meaningless value there. If the fluid array is a
- * block, see vtkSPHListFluidBlocks(), all others are walls. Field data of all blocks are kept.
+ * blocks, but not of all, tell of walls, the array MCOR_WALL_BLOCK is 1 for particles of walls. An
+ * array that only walls lack is kept; its values for the walls mean nothing. If `fluidArray` names
+ * a block, see vtkSPHListFluidBlocks(), all other blocks are walls. Field data of all blocks are
+ * kept.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
-/** Lists "Block: NAME" for each name of a block, if there are several, to choose as fluid array. */
+/** Lists "Block: NAME" for each different name of a block: names of fluid arrays. Lists nothing if there is only one name. */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
- * Gives each block of `output` its part of the point arrays that a filter has made: the arrays of
- * `joined` that are not in `before`, the particles that vtkSPHJoinBlocks() made of `tree`.
+ * Makes `output` a copy of `tree`, and adds to each block its part of the arrays that a filter has
+ * made: the point arrays of `joined` that `before` does not have. before: the particles that
+ * vtkSPHJoinBlocks() made of `tree`.
  */
 void vtkSPHSplitBlocks(
   vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output);

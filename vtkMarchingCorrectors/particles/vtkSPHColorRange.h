@@ -15,13 +15,13 @@ class vtkDataArray;
 class vtkDataSet;
 
 /**
- * Finds the values between which 98 % of a surface's area lie, or of the length of lines, or of the
- * points of other data. A few fast drops or sharp corners then do not decide all colours.
+ * Finds a range of values that 98 % of a surface's area have, or of the length of lines, or of the
+ * points of other data. So a few fast drops or sharp corners do not decide all colours.
  */
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHColorRange
 {
 public:
-  /** isLeftOut: the points that do not count; may be empty. */
+  /** isLeftOut: for data without polygons and lines: the points that do not count; may be empty. */
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**

@@ -41,8 +41,9 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 /** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
-/** Calls mcor_tells_apart, or mcor_name_priority for positions, with the name of a table's column. */
+/** Calls mcor_tells_apart with the name of a table's column. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
+/** Calls mcor_name_priority, for positions, with the name of a table's column. */
 VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
 
 /** Returns a period as six bounds. Three lengths are placed around the particles' extent. */
@@ -50,13 +51,13 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * Finds the period that the first of many processes tells. `problem` becomes a sentence if another
- * process tells a different period. Collective.
+ * Finds the period in the field data of the first process that has one. `problem` becomes a
+ * sentence if another process has a different period. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
-/** Returns a period as six bounds, placed by the particles of all processes. Collective. */
+/** Returns a period as six bounds. Three lengths are placed around the extent of all processes' particles. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END

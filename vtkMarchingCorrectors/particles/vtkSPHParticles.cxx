@@ -264,7 +264,7 @@ std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& opti
   return status == MCOR_CANCELLED ? "" : problem;
 }
 
-// Particles that another process sent have these values as an array.
+// Particles that another process sent already have the sums, as the array NameMade(name).
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, double ratio)
 {
   vtkPointData* arrays = this->Points->GetPointData();
@@ -311,7 +311,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, do
   return made.second;
 }
 
-// A density tells of a liquid even if volumes are not made of it.
+// A density array may tell of a liquid even if the core does not compute volumes from it.
 bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
 {
   mcor_input core = {};

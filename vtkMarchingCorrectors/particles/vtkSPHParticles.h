@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: finds the point arrays that describe the particles, and those to be
- * interpolated, and views them as the core's input. Holds all that it points to.
+ * Private to the module: finds the point arrays that describe the particles, and the point arrays
+ * to be interpolated. The core's input points to these arrays, and vtkSPHParticles keeps them
+ * alive.
  */
 #ifndef vtkSPHParticles_h
 #define vtkSPHParticles_h
@@ -48,7 +49,7 @@ struct vtkSPHWanted
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
 
-/** Marks the particles that the choice keeps; empty: all. An array that does not exist keeps all. */
+/** Returns, for each particle, whether the choice keeps it; empty: all are kept. A condition on a missing array keeps all. */
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
@@ -84,24 +85,25 @@ public:
 
   /**
    * Takes the arrays that vtkMarchingCorrectors::FindWidening() has found. The factors become the
-   * core's last attribute, without being one of Interpolated.
+   * core's last attribute; Interpolated does not list them.
    */
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /** The name of values from neighbours that go to other processes. IsMade() knows such names. */
+  /** The name of an array that sends sums over neighbours to other processes. */
   static std::string NameMade(const std::string& name);
+  /** Whether NameMade() returned this name. */
   static bool IsMade(const char* name);
   ///@}
 
-  /** Returns a sentence for each array that the core left out of `place`, see mcor_samples. */
+  /** Returns a sentence for each array that the core left out of the result. place: the result's name in the sentence. */
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
   /** Calls mcor_has_free_surface() for these particles; after Collect(). */
   bool HasFreeSurface(const mcor_ranks* ranks) const;
 
-  /** Returns what tells the fluid, "ParticleType = 0"; empty if all particles are fluid. */
+  /** Returns the condition for fluid, such as "ParticleType = 0"; empty if all particles are fluid. */
   std::string DescribeFluid() const;
 
   /** Returns the array that has this role; null: none has. */
@@ -125,8 +127,8 @@ public:
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Fills an array of this name, unless it was filled for the same particles, see
-   * vtkSPHSumNeighbors(). Returns null, and sets Error, if that fails. */
+  /** Returns the array of this name that vtkSPHSumNeighbors() fills, or the one that it filled for the
+   * same particles before. If the sums fail, returns null and sets Error. */
   vtkSmartPointer<vtkDataArray> SumNeighbors(const char* name, double ratio);
   vtkSmartPointer<vtkAbstractArray> ArrayOf(int index) const;
   std::vector<std::uint64_t> Sign() const;

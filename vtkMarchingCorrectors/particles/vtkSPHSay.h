@@ -10,7 +10,7 @@
 #include <string>
 
 /**
- * Writes a sentence, with its slots filled, see vtkSPHAlgorithm::SetWord(); use as
+ * Returns a sentence with its slots filled, see vtkSPHAlgorithm::SetWord(). Call it as
  * vtkSPHSay(MCOR_SAY(CODE), ...).
  */
 VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHSay(mcor_says code, const char* format, ...)

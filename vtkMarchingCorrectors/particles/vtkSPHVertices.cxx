@@ -26,7 +26,7 @@ bool IsVertex(int type)
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
 }
 
-/** The list of cells that has a data set's vertices; these cells have the first numbers. */
+/** The list of cells that holds a data set's vertices. A cell has the same number in the cell data. */
 struct Cells
 {
   vtkCellArray* List = nullptr;
@@ -57,7 +57,7 @@ struct Cells
   }
 };
 
-/** Adds the arrays that have `count` values, unless an array of the same name exists. */
+/** Adds the tuples `ids` of each array with `count` tuples, unless `to` has an array of the same name. */
 void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkPointData* to)
 {
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)

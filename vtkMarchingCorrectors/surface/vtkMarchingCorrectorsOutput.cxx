@@ -32,8 +32,8 @@ namespace
 /// A variation on the surface below this share of the array's range among the particles is noise.
 constexpr double LeastShare = 0.03;
 
-// Adds the array's name, as it was when the run began, and the value if one was used for all
-// particles.
+// Adds the text `arrayName` with the array's name, which is empty if no array was used. If all
+// particles had one value, adds the number `name` with this value.
 void AddQuantity(
   vtkFieldData* data, const char* arrayName, const char* name, const mcor_array& array)
 {
@@ -202,9 +202,9 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   }
 }
 
-// Chooses the active scalars: an attribute of the particles, if it varies on the surface (the
-// contoured one varies by rounding alone), or the iso value if there are several. Vectors count by
-// their magnitudes.
+// Chooses the active scalars among the particles' attributes that vary on the surface, and the iso
+// value if there are several iso values. The contoured scalar does not count: it varies by rounding
+// alone. For vectors, the magnitudes must vary.
 void vtkMarchingCorrectorsOutput::ChooseActive(vtkPolyData* output, const Merge& merge) const
 {
   vtkPointData* data = output->GetPointData();
@@ -349,7 +349,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAdd(fieldData, "IgnoreSolids", this->Input.Core.ignore_solids);
     vtkSPHAdd(fieldData, "WallShare", this->Surface.statistics.wall_share);
   }
-  // Values in use are already statistics, see AddRun.
+  // AddOption() skips options whose values in use are statistics, or are added below.
 #define WORD true
 #define FLAG false
 #define AT_LEAST_0 false

@@ -36,7 +36,7 @@ class vtkSPHParticles;
 class vtkMarchingCorrectorsOutput
 {
 public:
-  /** Takes over the surface's arrays if types agree; they are NULL in the surface then. */
+  /** BuildMesh() takes over arrays of the surface, and sets their pointers in `surface` to NULL. */
   vtkMarchingCorrectorsOutput(
     const vtkSPHParticles& input, const mcor_options& options, mcor_surface& surface);
 
@@ -44,14 +44,14 @@ public:
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
   /**
-   * Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm; merge:
-   * merges ranges over all processes, see vtkRun.
+   * Writes the mesh, its arrays and the iso values to `output`. precision: of the points, as in
+   * vtkAlgorithm; merge: merges ranges over all processes, see vtkRun::MergeRanges().
    */
   using Merge = std::function<void(double* ranges, int count)>;
   void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);
   /** Returns the largest magnitude of the mesh's coordinates if they are floats; else 0. */
   double FindLargestFloat(int precision) const;
-  /** Adds statistics and parameters. All but costs depend on the input and the options alone. */
+  /** Adds statistics and parameters. Except the costs of the run, they depend on input and options alone. */
   void AddRun(vtkFieldData* run) const;
 
 private:

@@ -150,7 +150,8 @@ class Rows:
 
 
 def program_options(folder):
-    """Returns {option: (argument, help, modes, member)} of Options.def. Modes are words, as "surface"; "usual" marks what most people need."""
+    """Returns {option: (argument, help, modes, member)} of Options.def. A mode is a word such as "surface";
+    the word "usual" marks the options that most people need."""
     words = {}
     for name, value in re.findall(r"^  ([A-Z]+) = ([\w| ]*\w)", (folder / "Job.h").read_text(encoding="utf-8"), re.M):
         words[name] = [name.lower()] if value.isdigit() else [word for each in value.split(" | ") for word in words[each]]
@@ -192,7 +193,7 @@ def python_module(header, rows):
 
 
 def c_checks(module, header):
-    """Returns a C file that fails to compile unless sizes and offsets are those of ctypes."""
+    """Returns a C file that compiles only if the compiler gives the structures the sizes and offsets that ctypes gives them."""
     scope = {}
     exec(compile(module, "_structs.py", "exec"), scope)  # This is the file that was just written.
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
-# The package's folder. In a build this is a folder of links, so a link is followed only if the folder lacks the panel's
-# XML: ParaView may load a link to this file.
+# The package's folder. ParaView may load a link to this file, which lies in another folder, without the panel's XML: then
+# the link is followed. The links in a build's folder are not followed.
 FOLDER = Path(__file__).absolute().parent
 if not (FOLDER / "MarchingCorrectors.xml").exists():
     FOLDER = Path(__file__).resolve().parent
@@ -58,7 +58,7 @@ def read_panel():
 
 
 def read_properties():
-    """Returns the panel's properties of one value, {name: (default, conversion, whether it has NameOn and NameOff, limits)}."""
+    """Returns the panel's properties that have one value, {name: (default, conversion, whether it has NameOn and NameOff, limits)}."""
     found = {"ScalarComponent": (-1, int, False, (-BIG, BIG)), "DetectArrays": (1, int, True, ())}  # These are not in the panel.
     for each in read_panel().find(".//SourceProxy[@class='vtkMarchingCorrectors']"):
         name = each.get("command", "")[len("Set"):]
@@ -78,11 +78,11 @@ SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) *
 # The words for the numbers of properties, in order. A word is in a method's name, such as SetSeedModeToPairs(), and in a constant's.
 WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
          "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
-# The panel shows these findings of a run. Here they are empty.
+# What the panel shows of a run, before the run has found anything.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-# The last run: marks of its particles and of its scalar, which tell whether data on the device still hold; the options that factors of
-# smoothing lengths depend on; and these factors.
+# What the filter keeps of its last run, here of none: a mark of the particles and a mark of the scalar, which tell whether the data on the
+# device can be used again; the options that the factors of smoothing lengths depend on; and these factors.
 NO_RUN = None, None, None, None
 
 
@@ -177,7 +177,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def RequestDataObject(self, request, inInfo, outInfo):
-        """Makes a poly data; blocks of poly data if the input has blocks."""
+        """Makes the output: blocks like those of the input if each block gets its own surface, else a poly data."""
         data = self.GetInputData(inInfo, 0, 0)
         info = outInfo.GetInformationObject(0)
         blocks = isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART
@@ -210,7 +210,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         into[:len(values)] = values
 
     def _levels(self, name):
-        """Lists the values, without NaN, which is an empty row of a panel's list."""
+        """Lists the values of a property such as ContourValues. Leaves out NaN, which stands for an empty row of the panel's list."""
         values = getattr(self, name)
         values = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
         return [value for value in values if value == value]
@@ -278,7 +278,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return "".join(f"{i}: {device}\n" for i, device in enumerate(devices()))
 
     def ReleaseDeviceMemory(self):
-        """Releases memory; during a run, which uses the memory, only when the run ends."""
+        """Releases the memory on the device, or, if a run uses it, asks the run to release it at its end."""
         if self._in_run:
             self._release = True
         elif self._context:
@@ -307,7 +307,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return self._ahead
 
     def _settle(self, choice, points):
-        """If nobody chose what to contour, the particles decide."""
+        """Sets choice.FreeSurface if it is automatic: 1 if no array and no iso value is chosen, and the particles have a free
+        surface; else 0."""
         if choice.FreeSurface >= 0:
             return
         choice.FreeSurface = int(not request_of(self, 0, points).name and not self._levels("ContourValues"))
@@ -368,12 +369,12 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return self._kept[make][1]
 
     def _join(self, data):
-        """Returns the data, or all blocks joined."""
+        """Returns all blocks joined into one set if they get one surface together, else the data."""
         is_one = not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART
         return data if is_one else self._keep(join_blocks, data)
 
     def _process_blocks(self, given, output):
-        """Extracts the surface of each block. A block that fails leaves its place empty, and the others go on."""
+        """Extracts the surface of each block. If a block fails, its surface is empty, and the next block follows."""
         data = copy_of(given)  # An observer of the progress may remove blocks from the input, or change them.
         output.CopyStructure(data)
         names = ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, index, _ in leaves_of(data)]
@@ -566,7 +567,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._say(sentence, "Warning")
 
     def _fail(self, sentence):
-        """Adds the sentence to the sentences of other blocks, one on each line, and reports it."""
+        """Adds the sentence to ErrorMessage, on a line of its own if other blocks have failed before, and reports the sentence."""
         self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + in_panel(sentence)
         self._say(sentence, "Error")
 

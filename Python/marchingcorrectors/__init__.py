@@ -43,7 +43,7 @@ __path__ = _extend_path(__path__, __name__)
 
 
 def read_pyvista(path: Any, **words: Any) -> "pyvista.PolyData":
-    """A solver's file as pyvista.PolyData, for particles.sph. words: the keywords of io.read().
+    """Reads a solver's file into a pyvista.PolyData, which has the methods of .sph. words: the keywords of io.read().
 
     Example: read_pyvista("snapshot.hdf5").sph.isosurface("Density", 1e-4).plot()
     """
@@ -66,8 +66,7 @@ def _find_class(name: str) -> Any:
     except ImportError:
         raise ImportError("VTK was not found: pip install vtk, or pip install pyvista.") from None
     module: Any = None
-    # Wheels of VTK bring no headers, so no C++ class can have been built against one, and a class built against another VTK must not be
-    # loaded beside it.
+    # A VTK from a wheel has no headers, so the C++ class was built against another VTK, and must not be loaded beside the wheel's VTK.
     if any(list(_Path(folder).glob("vtkMarchingCorrectors*.so")) for folder in __path__) and not list(
             _Path(vtkmodules.__file__).resolve().parents[1].glob("vtk-*.dist-info")):
         try:

@@ -47,8 +47,8 @@ class Particles(Keywords, total=False):
 
 
 def _method(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Returns a decorator. It gives a method the keywords of Particles and these options, in its signature and in its
-    text. The functions for NumPy arrays check them."""
+    """Returns a decorator that adds the keywords of Particles and these options to a method's signature and docstring. The
+    functions for NumPy arrays check the keywords."""
     def decorate(function: Function) -> Function:
         function.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
         show(function, own_keywords(Particles, options), options)
@@ -58,7 +58,7 @@ def _method(options: Sequence[str]) -> Callable[[Function], Function]:
 
 
 def _triangles_in(sections):
-    """Returns the sections, with triangles in place of surfaces."""
+    """Returns the sections, with arrays of triangles, (triangles, 3, 3), in place of surfaces of PyVista."""
     if isinstance(sections, pyvista.PolyData):
         return sections.points[sections.triangulate().faces.reshape(-1, 4)[:, 1:]].astype(np.float64)
     if isinstance(sections, Mapping):
@@ -99,7 +99,8 @@ class SphAccessor:
 
     @property
     def _particles(self) -> pyvista.DataSet:
-        """Returns the data set, or the vertices in it; the result is kept while the data set stays the same."""
+        """Returns the particles: the points of the data set, or only its vertices if it is a mesh with vertices. The result is kept
+        while the data set stays the same."""
         time = self._data.GetMTime()
         if self._taken[0] != time:
             taken = take_vertices(self._data)
@@ -116,13 +117,13 @@ class SphAccessor:
     def isosurface(self, scalar: Union[str, np.ndarray], iso: Union[None, float, Sequence[float]] = None, *,
                    scalar_dot: Union[None, str, np.ndarray] = None,
                    **words: Unpack[Particles]) -> pyvista.PolyData:
-        """Where a point array (its magnitude, or scalar_component=0, 1, ...) has the value `iso`.
+        """The surface where a point array (its magnitude, or scalar_component=0, 1, ...) has the value `iso`.
 
         Example: particles.sph.isosurface("Velocity", 1.0).plot()
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
 
-        scalar, scalar_dot: names of point arrays, or arrays. "Density", where there is no such array, is summed from masses.
+        scalar, scalar_dot: names of point arrays, or arrays. If there is no array "Density", it is summed from masses.
         iso: as in marchingcorrectors.isosurface().
         """
         particles, keywords = self._prepare(words)
@@ -167,8 +168,8 @@ class SphAccessor:
 
         Example: particles.sph.derivatives("Velocity")["Vorticity"]
 
-        Returns a copy of the particles with "Gradients" of a point array; of one with three components also "Divergence",
-        "Vorticity", "Q-criterion", "Lambda2" (not in two dimensions) and "StrainRate".
+        Returns a copy of the particles with "Gradients" of a point array. If the array has three components, the copy also has
+        "Divergence", "Vorticity", "Q-criterion", "Lambda2" (not in two dimensions) and "StrainRate".
 
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
@@ -191,13 +192,13 @@ class SphAccessor:
 
     @_method(GAUGE)
     def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _functions.Gauges:
-        """Water levels: where straight lines cross the free surface, every crossing.
+        """Water levels: all places where straight lines cross the free surface.
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
 
         Returns Gauges, as marchingcorrectors.gauge() does.
 
-        lines, iso: as of marchingcorrectors.gauge().
+        lines, iso: as in marchingcorrectors.gauge().
         """
         particles, keywords = self._prepare(words, with_attributes=False)
         return _functions.gauge(particles, lines, iso, **keywords)
@@ -211,7 +212,7 @@ class SphAccessor:
 
         Returns Fluxes, as marchingcorrectors.flux() does.
 
-        sections, iso: as of marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
+        sections, iso: as in marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
         velocity: the name of a point array, or an array; by default the point array with a usual name.
         """
         particles, keywords = self._prepare(words, with_attributes=False)
@@ -228,7 +229,7 @@ class SphAccessor:
         Returns a Projection, as marchingcorrectors.project() does.
 
         scalar, weighted_by: names of point arrays, or arrays; without a scalar, the density.
-        direction, resolution, box: as of marchingcorrectors.project().
+        direction, resolution, box: as in marchingcorrectors.project().
         """
         particles, keywords = self._prepare(words, with_attributes=False)
         return _functions.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box, **keywords)
@@ -244,7 +245,7 @@ class SphAccessor:
 
 @pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)
 class BlocksAccessor:
-    """Works like SphAccessor, on the points of all blocks as one set. Names of blocks tell walls."""
+    """Works like SphAccessor, on the points of all blocks as one set. A block's name tells whether it holds walls."""
 
     def __init__(self, blocks: pyvista.MultiBlock):
         self._blocks = blocks

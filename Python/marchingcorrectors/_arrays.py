@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Passes NumPy arrays to the core, lets it find quantities among them (mcor_find.h), and copies its results to NumPy arrays."""
+"""Passes NumPy arrays to the core, lets the core find the quantities among the arrays (mcor_find.h), and copies the core's results to
+NumPy arrays."""
 import contextlib
 import ctypes
 import os
@@ -31,7 +32,8 @@ OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
 
 
 def as_array(values, role):
-    """Calls np.asarray, and raises one sentence if this fails or would lose something. Arrays on a CUDA device are copied to the host."""
+    """Returns np.asarray(values), or a copy of an array on a CUDA device. Raises InvalidArgument if this fails, or would lose
+    a mask or a unit."""
     if np.ma.is_masked(values):
         raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
     parts = values if isinstance(values, (list, tuple)) else [values]
@@ -55,7 +57,7 @@ def as_array(values, role):
 
 
 def contiguous(values, role):
-    """Returns an array of floats or doubles in one piece as it is, any other array as a copy."""
+    """Returns an array of floats or doubles itself if it is contiguous and aligned, and a contiguous copy of any other array of numbers."""
     array = as_array(values, role)
     if array.dtype == object:  # A data frame with columns of several types gives such objects.
         with contextlib.suppress(TypeError, ValueError):
@@ -115,7 +117,7 @@ def as_bytes(text):
 
 
 def copy_at(address, kind, shape):
-    """Returns an array that NumPy owns, of the numbers at this address."""
+    """Returns a copy, which NumPy owns, of the numbers at this address."""
     size = int(np.prod(shape)) * kind.itemsize
     return np.frombuffer((ctypes.c_char * size).from_address(address), kind).reshape(shape).copy() if size else np.empty(shape, kind)
 
@@ -152,8 +154,9 @@ class Found:
         self.positions, self.count, self.found = positions, len(positions), c.mcor_found()
 
     def find(self, arrays, wants, names=None, values=None, only=(), taken=(), excluded=(), **words):
-        """Asks the core, and returns self. arrays: {name: array}, or pairs; wants: names of mcor_want; names: {role: name}; values: {role: number};
-        only: (name, low, high); taken, excluded: names; words: further members of mcor_request."""
+        """Lets the core find `wants` among the arrays. Returns self. arrays: {name: array}, or pairs; wants: names of mcor_want;
+        names: {role: name}; values: {role: number}; only: (name, low, high); taken, excluded: names;
+        words: further members of mcor_request."""
         pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
         request = c.mcor_request(wants=sum(WANTS[name] for name in wants), active=-1)
         for role, name in (names or {}).items():
@@ -189,14 +192,14 @@ class Found:
         return (self.found.views[ROLES[role]].name or b"").decode(errors="replace")
 
     def made(self, i):
-        """Returns (name, a copy of the array)."""
+        """Returns the name, and a copy, of the i-th array that the core has made."""
         made = self.found.made[i]
         kind = next(dtype for dtype, number in ELEMENTS.items() if number == made.type)
         return made.name.decode(), copy_at(made.data, kind, (made.tuples, made.components)[:1 + (made.components > 1)])
 
 
 class Arguments(Found):
-    """Fills the structures for one call, and keeps alive the arrays that the core borrows."""
+    """Fills the core's structures for one call, and keeps alive the arrays that the core borrows."""
 
     def __init__(self, positions, options=None):
         super().__init__(as_points(positions, "positions", "(particles, 3)"))
@@ -222,7 +225,7 @@ class Arguments(Found):
         return array
 
     def marks(self, solid, keyword="solid"):
-        """Returns an array that tells solid from fluid particles."""
+        """Returns `solid`, one number for each particle, as an array. keyword: the name of `solid` in the error."""
         marks = as_array(solid, f"array of {keyword}")
         if marks.dtype.kind not in "fiub" or marks.shape != (self.count,):
             raise InvalidArgument(f"The array of {keyword}, of {marks.dtype}, has the shape {marks.shape}; it must have one number for "
@@ -230,7 +233,7 @@ class Arguments(Found):
         return marks if marks.dtype in ELEMENTS or marks.dtype == bool else marks.astype(float)
 
     def set_attributes(self, attributes):
-        """Sets the attributes, {name: array}, in the order of the core's results."""
+        """Sets the attributes, {name: array}. The core's results have the same order."""
         views = [self.per_particle(values, f"attribute '{name}'", str(name))
                  for name, values in attributes.items()]
         self.set_views(views)
@@ -242,7 +245,8 @@ class Arguments(Found):
         self.input.attributes, self.input.attribute_count = self.kept[-1], len(views)
 
     def set_widening(self, factors, volumes, of_surface):
-        """Takes factors of smoothing lengths. of_surface: they also become the last attribute, which has no entry in `kinds`."""
+        """Sets the factors of the smoothing lengths, and the volumes unless they are None. of_surface: the factors also become the
+        last attribute, which has no entry in `kinds`."""
         self.input.widening = self.view(factors, "Widening")
         if volumes is not None:
             self.input.volume = self.view(volumes, None)
@@ -271,7 +275,7 @@ class Arguments(Found):
         lib.mcor_spell_out(ctypes.byref(self.options))
 
     def sum_over_neighbours(self, ratio):
-        """Computes the smoothing lengths (ratio: their ETA) and the densities that the core lacks."""
+        """Computes the smoothing lengths and the densities if the core lacks them. ratio: the `eta` of mcor_find_smoothing_lengths()."""
         for name, is_needed, function, more, take_it in (
                 ("SmoothingLength", self.found.needs_lengths, lib.mcor_find_smoothing_lengths, [ratio], lib.mcor_take_lengths),
                 ("Density", self.found.needs_densities, lib.mcor_sum_densities, [], lib.mcor_take_densities)):
@@ -280,7 +284,7 @@ class Arguments(Found):
                 take_it(ctypes.byref(self.found), self.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 
     def sums(self, name, function, *more):
-        """Returns sums over neighbours, (particles,), by a function of the core, which takes the masses of all particles."""
+        """Returns the array (particles,) that a function of the core sums over neighbours. The function gets all masses."""
         given, values, why = c.mcor_input.from_buffer_copy(self.input), np.empty(self.count), c.mcor_message()
         given.mass = self.found.views[ROLES["mass"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,
@@ -370,7 +374,7 @@ def find_iso_value(given):
 
 
 def values_of(view, count):
-    """Returns a copy of the numbers, (count,), of a mcor_array, or its constant; None if it is not given."""
+    """Returns a copy of the numbers of an mcor_array, (count,). If it has no numbers, returns its constant; None if it has no constant."""
     if not view.data:
         return view.constant or None
     return copy_at(view.data, next(dtype for dtype, number in FLOATS.items() if number == view.type), (count,))
@@ -382,7 +386,7 @@ def take(pointer, shape):
 
 
 def take_rows(pointer, count):
-    """Returns a copy of the core's structures, with a column for each member."""
+    """Returns a copy of `count` structures of the core as a structured array."""
     return take(pointer, (count,)) if count else np.empty(0, pointer._type_)
 
 

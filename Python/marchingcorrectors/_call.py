@@ -64,7 +64,7 @@ def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str
 
 
 def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
-    """Returns a decorator. It gives a function Keywords and these options, in its signature and in its text.
+    """Returns a decorator that adds the keywords of Keywords and these options to a function's signature and docstring.
 
     Positions may be particles of io.read(). Names then mean the file's arrays, and smoothing length, mass, walls, kernel
     and period come from the file unless they are given.
@@ -121,8 +121,8 @@ def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no
 
 
 class Ranges(list):
-    """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. Pairs may share a name; then one of them must
-    hold."""
+    """A list of pairs (name, value or (low, high)), in place of the dictionary `only`. If pairs share a name, a particle must fit one
+    of them."""
 
 
 class Finder(Arguments):
@@ -243,7 +243,7 @@ class Finder(Arguments):
         self.ranges.append((self.texts[-1], 1, 1))
 
     def complete(self, wants, options, nothing):
-        """Sets the input and the options. nothing: the warning's words for no fluid; None: no fluid is an error."""
+        """Sets the input and the options. nothing: the warning's words if there is no fluid; None makes this an error."""
         self.find(self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges, **self.request)
         if self.error:
             raise InvalidArgument(say("LENGTH_MISSING") if self.error.code == "NO_SMOOTHING_LENGTH" else self.error)

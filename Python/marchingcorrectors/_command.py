@@ -232,7 +232,7 @@ def run_surface(given, particles):
 
 
 def run_gauge(given, particles):
-    """Measures all steps of a file, as the program does."""
+    """Measures the gauges at all steps of a file, or in one set of particles, and writes a row for each step and gauge."""
     rows, is_film = [], len(given.input) == 1
     for step, each in enumerate(io.read_steps(given.input[0], walls=given.walls) if is_film else [particles]):
         found = gauge(each, dict(given.gauge), (given.iso or [0.5])[0], **find_words(given, GAUGE, each, "gauge"))

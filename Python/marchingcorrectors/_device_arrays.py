@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Copies arrays on a CUDA device, of CuPy, PyTorch, Warp, Numba, JAX and others, to NumPy arrays. They come by __cuda_array_interface__, else by
-__dlpack__. CUDA's driver itself copies them into memory that it has locked, which is as fast as the bus."""
+"""Copies arrays on a CUDA device, of CuPy, PyTorch, Warp, Numba, JAX and others, to NumPy arrays. The arrays are
+found by __cuda_array_interface__, else by __dlpack__. CUDA's driver copies them into page-locked memory, as fast as the bus allows."""
 import contextlib
 import ctypes
 import functools
@@ -36,7 +36,7 @@ def on_host(values, role):
         dtype, stream = np.dtype(interface["typestr"]), interface.get("stream")
         return _copy(interface["data"][0], interface["shape"], dtype, interface.get("strides"), stream, role)
     if hasattr(values, "__dlpack_device__") and int(values.__dlpack_device__()[0]) == ON_CUDA:
-        # The producer makes its legacy default stream (1) wait until the array is complete. A capsule that is not taken frees itself.
+        # 1 is CUDA's legacy default stream: the array's library makes it wait until the array is complete. The capsule frees itself.
         capsule = values.__dlpack__(stream=1)
         pointer = ctypes.pythonapi.PyCapsule_GetPointer
         pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
@@ -69,8 +69,8 @@ def _copy(address, shape, dtype, strides, stream, role):
 
 
 class Driver:
-    """CUDA's driver, and memory that it has locked. Blocks that arrays no longer use serve the next arrays, because locking takes far
-    longer than a copy."""
+    """CUDA's driver, and blocks of page-locked memory. A block that no array uses any more is used for a later array, because locking
+    memory takes far longer than copying."""
 
     def __init__(self, library):
         self.library, self.lock, self.idle, self.primary = library, threading.Lock(), [], {}
@@ -91,8 +91,8 @@ class Driver:
             self.call("cuCtxPopCurrent_v2", ctypes.byref(ctypes.c_void_p()))
 
     def contexts_of(self, address):
-        """Returns the context that an array belongs to, and the device's primary one, which is never destroyed here. Memory of pools and of virtual
-        addresses belongs to no context."""
+        """Returns the context of the array at this address, and the primary context of its device, which stays retained. Memory of
+        pools and of virtual addresses has no context: the primary context takes its place."""
         context, device = ctypes.c_void_p(), ctypes.c_int()
         self.call("cuPointerGetAttribute", ctypes.byref(device), DEVICE_OF, ctypes.c_uint64(address))
         if device.value not in self.primary:
@@ -118,7 +118,8 @@ class Driver:
         return block
 
     def take(self, size):
-        """Takes the smallest idle block with enough room; if there is none, makes the largest idle block larger."""
+        """Returns (address, size) of the smallest idle block with enough room. If there is none, frees the largest idle
+        block, and allocates one."""
         block = min((each for each in self.idle if each[1] >= size), key=lambda each: each[1], default=None) or max(
             self.idle, key=lambda each: each[1], default=None)
         if block:

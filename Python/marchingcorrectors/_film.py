@@ -50,8 +50,9 @@ def in_order(paths):
 
 
 def run(given, inputs, steps, add):
-    """Adds each step, a pair of (label, function that returns a thing and its time), by add(film, thing, time). If a step fails, reports it and adds
-    the others."""
+    """Writes a film of all steps, pairs of (label, function that returns a thing and its time). add(film, thing, time): adds one step.
+    A step that fails is reported, and left out. Returns how many steps the film has, as text. Raises InvalidArgument at the end if a
+    step failed."""
     failed, words = 0, {name: getattr(given, name) for name in ("fps", "slow", "meters_per_unit", "velocity")}
     with Film(given.output, inputs, **{name: value for name, value in words.items() if value is not None}) as film:
         for i, (label, load) in enumerate(steps):
@@ -110,7 +111,8 @@ def run_particles(given, surface_of):
 
 
 def between_steps(steps, times, rate, velocity):
-    """Yields the steps at these times or, without times, at each frame of this rate from the first step on. At most two steps are in memory."""
+    """Yields (label, function that returns particles and their time) for each of `times` or, without times, for each frame of this rate
+    from the first step on. At most two steps are in memory."""
     before, number, label = None, 0, ""
     for label, load in steps:
         try:
@@ -138,9 +140,9 @@ def between_steps(steps, times, rate, velocity):
 def between(before, after, first, last, time, velocity=None):
     """Returns the particles at a time between two steps, which are at the times first and last.
 
-    Particles are matched by their ids. Positions follow the cubic curve with both velocities; without velocities they
-    are linear in time, as other numbers are; integers are the nearer step's. A particle that only one step has exists
-    in the half of the interval next to this step.
+    Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps; without
+    velocities they are linear in time. Other real numbers are linear in time, and integers are those of the nearer step.
+    A particle that only one step has exists in the half of the interval next to this step.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []
@@ -203,7 +205,7 @@ def to_times(text):
     return sorted(found)
 
 
-# -- spray: particles in small drops, or alone, which a film shows as balls beside the surface of the others --
+# -- spray: particles in small drops, or alone; a film shows them as balls, and the other particles by their surface --
 
 SPRAY_WORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid", "within", "only", "device")
 
@@ -211,9 +213,9 @@ SPRAY_WORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid"
 def take_spray(surface, particles, words, iso, least, velocity=None):
     """Returns the surface without the closed pieces that enclose fewer than `least` fluid particles, and the spray: the
     particles in these pieces, and particles where the sum of the weights is below `iso`. A particle that is nearest to a
-    point of another piece, as at its tip, is no spray.
+    point of a piece that stays is no spray, even if its sum is below `iso`, as at the tip of a piece.
 
-    words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of its array.
+    words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of the array of velocities.
     """
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
@@ -241,7 +243,7 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
 
 
 def label_pieces(triangles, count):
-    """Returns the lowest point of each point's piece; triangles that share points are one piece."""
+    """Returns a label for each point: the lowest number of a point in its piece. Triangles that share points are one piece."""
     label = np.arange(count)
     edges = np.concatenate([triangles[:, :2], triangles[:, 1:]]).astype(np.int64)
     while True:
@@ -255,8 +257,8 @@ def label_pieces(triangles, count):
 
 
 def small_pieces(surface, label, positions, fluid, least):
-    """Returns (piece, its particles) for each closed piece with fewer than `least` particles. A piece's particles are enclosed by it, or nearest
-    to its points. Cavities are not listed; a cavity is left out with the piece around it."""
+    """Returns (piece, its particles) for each closed piece with fewer than `least` particles. The particles of a piece
+    are enclosed by the piece, or nearest to one of its points. A cavity is listed if such a piece surrounds it."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))

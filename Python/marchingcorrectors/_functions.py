@@ -37,12 +37,12 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     Returns a Surface: points, triangles, normals, attributes, statistics, and the arrays that were asked for; lines in two
     dimensions. Points and attributes are float32 where positions or attributes are.
 
-    positions: (particles, 3), length unit L. float32 and float64 arrays in C order are used where
-        they lie; so are all arrays below. Lists, data frames, and what speaks DLPack will do, too.
+    positions: (particles, 3), length unit L. float32 and float64 arrays in C order are not
+        copied, neither here nor below. Lists, data frames, and arrays that support DLPack will do, too.
         Or particles of io.read(): scalar is then an array's name, attributes a list of names.
-    scalar: (particles,), or (particles, components): then its magnitude, or one component
-        (scalar_component=0, 1, ...), or its dot product with scalar_dot.
-    iso: the value of the scalar on the surface, or a list of values; without it one about the median.
+    scalar: (particles,), or (particles, components), whose magnitude is taken, or one component
+        (scalar_component=0, 1, ...), or the dot product with scalar_dot.
+    iso: the value of the scalar on the surface, or a list of values; by default a value near the median.
     smoothing_length: (particles,) or one value, L, greater than 0; with
         smoothing_length_is_support_radius=True it is the radius at which the kernel ends; with
         estimate_smoothing_length=True it is not needed.
@@ -54,16 +54,16 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     scalar_dot: a second vector for each particle; the scalar is then the dot product.
     solid: (particles,), True or not 0 for walls. They take no part in the field.
     fluid: ("Type", 0) or "Type=0": where this array, of the file or of the attributes, has another value, particles are
-        solid. Or (array, 0). "auto": by an array of a usual name that clearly tells it.
+        solid. Or (array, 0). "auto": an array of a usual name tells the fluid, if it does so clearly.
     outputs: further arrays of the surface, by their names below: outputs="residual", or ("residual", "gradients"); each is
         also a keyword: residual=True.
-    within: six bounds, as of box, L: particles beyond these are left out, whatever their values are; sides may be infinite.
-    only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: particles whose value in this array, of the file or of the
-        attributes, is another, or not from the lowest to the highest one, are left out likewise. All names
-        must agree. Or (particles,), True for those that are taken.
-    context: a Context, to keep particles on the device between calls; else one of our own per
-        device, which keeps compiled programs alone.
-    device: a number or part of a name as in devices(), where no context is given.
+    within: six bounds, as in box, L: particles outside are left out, whatever their values are; sides may be infinite.
+    only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: only particles with this value, or with a
+        value from the lowest to the highest one, in this array of the file or of the attributes are taken. A particle must
+        fit for all names. Or (particles,), True for particles that are taken.
+    context: a Context, to keep particles on the device between calls; by default the package
+        has a context for each device, which keeps only compiled programs.
+    device: a number or part of a name as in devices(), if no context is given.
     progress: True shows a bar; or a function, called with a fraction from 0 to 1 and the name of the
         phase, which ends the run by returning False, or by an exception.
 
@@ -71,10 +71,10 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
 
     Arrays with units, of pint, unyt or astropy: lengths are converted to the unit of the positions,
     mass / density with them, and iso to the scalar's unit; results are plain numbers in these units.
-    What has a unit beside what has none is refused.
+    A call refuses arrays with units together with arrays without units.
 
     Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). What is
-    legal, but hardly meant, gives an InputWarning. Other threads go on meanwhile; Ctrl-C ends the run.
+    legal, but hardly meant, gives an InputWarning. Other threads run during the call; Ctrl-C ends it.
     """
     return _extract(positions, iso, attributes, words, scalar, scalar_dot)
 
@@ -163,8 +163,8 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
 
     Returns a Surface, as isosurface() does.
 
-    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. All arguments are those of isosurface();
-    most people need some of the first ones.
+    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. The arguments are as in isosurface();
+    most people need only some of the first ones.
 
     fluid: ("Type", 0): where this array has another value, particles are solid.
     smoothing_length: (particles,) or one value, L, unless a file has it.
@@ -186,7 +186,7 @@ def probe(positions: Positions, points: ArrayLike, *,
     Returns Samples: values, gradients, weight_sum and valid, in the shape (...) of the points. Where a point is not valid,
     because there is no fluid, values are NaN.
 
-    points: (..., 3), L; one that is not finite is not valid.
+    points: (..., 3), L; a point that is not finite is not valid.
     attributes: {name: (particles,) or (particles, components)}, or a data frame.
 
     The other arguments are those of isosurface().
@@ -226,13 +226,13 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 
     Example: flow(derivatives(x, {"v": velocity}, smoothing_length=h).gradients["v"])["vorticity"]
 
-    Returns Derivatives: gradients, (particles, 3) or (particles, components, 3) by name, and where they are corrected.
+    Returns Derivatives: gradients, {name: (particles, 3) or (particles, components, 3)}, and at which particles they are corrected.
 
     attributes: {name: (particles,) or (particles, components)}, or a data frame.
     form: "corrected" (exact for linear attributes) or "standard".
 
-    The other arguments are those of isosurface(). For divergence, vorticity and the like give the
-    gradients of a velocity to flow().
+    The other arguments are those of isosurface(). flow() makes divergence, vorticity
+    and the like from the gradients of a velocity.
 
     {options}
     """
@@ -251,15 +251,15 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float = 2,
              return_volume: bool = False,
              **words: Unpack[Keywords]) -> Any:
-    """The factors of smoothing lengths with which isosurface() and free_surface() contour where widen is above 1.
+    """The factors by which isosurface() and free_surface() multiply smoothing lengths if widen is above 1.
 
     Example: s = widening(x, smoothing_length=h, volume=v, widen=2)
 
-    Returns s, (particles,) float64, from 1 to widen; or with return_volume=True s and the volumes, computed from the
-    smoothing lengths h themselves, or None where they are given. The surface of s * h with these volumes, the same
-    cube_size and cubes of one size (level_limit=0) is that of widen, bit for bit.
+    Returns s, (particles,) float64, from 1 to widen. With return_volume=True, returns s and the volumes, which are
+    computed from the smoothing lengths h themselves; None in their place if volumes are given. A surface made with s * h
+    and these volumes is, bit for bit, the surface made with widen, for the same cube_size and level_limit=0.
 
-    iso: the greatest iso value of the free surface; None: for the surface of a scalar.
+    iso: the greatest iso value of the free surface; None: the factors are for the surface of a scalar.
     return_volume: True: the volumes, too.
 
     The other arguments are those of isosurface().
@@ -289,16 +289,16 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
 
     Returns a Projection: values and extent of the image, exact means over pixels, so that all of the mass is there.
 
-    scalar: what is integrated: (particles,), or (particles, components): then its magnitude, or one component. Without
-        it, the density: the image is the mass of what is seen by area, which needs masses, or densities.
-    direction: of the lines of sight: "x", "y", "z", or any three numbers; without it the constant axis of particles in
+    scalar: what is integrated: (particles,), or (particles, components), whose magnitude is taken, or one component.
+        By default the density: the image is then the mass per area, which needs masses, or densities.
+    direction: the direction of the lines of sight: "x", "y", "z", or any three numbers; by default the constant axis of particles in
         a plane, else z.
     resolution: pixels along the longer side of the image.
-    weighted_by: (particles,): the image is the scalar's mean with these weights; by the array of masses, the mean by
-        mass. NaN where there is nothing.
-    box: (x0, x1, y0, y1, z0, z1): what is seen; sides may be infinite. Along x, y or z, particles count, with all of
-        their kernel, whose positions are in it along the line of sight. Without it the period, or all that particles
-        reach.
+    weighted_by: (particles,): the image is the scalar's mean with these weights, such as the masses. NaN where there is
+        nothing.
+    box: (x0, x1, y0, y1, z0, z1): what is seen; sides may be infinite. If the lines of sight
+        are along x, y or z, a particle counts with its whole kernel if its position along them is in the box. By default
+        the period, or all that particles reach.
 
     The other arguments are those of isosurface().
 
@@ -338,16 +338,16 @@ def _warn_of_dry(arguments, noun, names, outside):
 
 @of_particles(GAUGE)
 def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Gauges:
-    """Water levels: where straight lines cross the free surface, every crossing.
+    """Water levels: all places where straight lines cross the free surface.
 
     Example: gauge(x, {"mast": ((0.5, 0, 0), (0.5, 1, 0))}, smoothing_length=h, mass=m, density=rho).last
 
     Returns Gauges: state, first, last, depth and place of each line, and all crossings by name.
 
-    lines: (lines, 2, 3), L: from and to of each; or one line, (2, 3); or {name: (from, to)}.
+    lines: (lines, 2, 3), L: the beginning and the end of each; or one line, (2, 3); or {name: (from, to)}.
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
 
-    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share). The other
+    Solids count in the sum, and the fluid ends where solids weigh more than fluid (wall_share). The other
     arguments are those of isosurface().
 
     {options}
@@ -428,7 +428,7 @@ def _as_sections(sections, units):
 
 @of_particles(GAUGE)
 def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
-    """Fluxes through sections, to 1e-5 of the largest flux that the velocities there allow.
+    """Fluxes through sections, with errors of up to 1e-5 of the largest flux that the velocities at the section allow.
 
     Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
 
@@ -443,7 +443,7 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
     density: (particles,) or one value, for mass fluxes; or mass and volume, which give it.
 
-    Solids count in the sum, and the fluid ends where they weigh more than it (wall_share); the means are those of the
+    Solids count in the sum, and the fluid ends where solids weigh more than fluid (wall_share); the means are over the
     fluid. The other arguments are those of isosurface().
 
     {options}
@@ -466,7 +466,7 @@ def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
     Returns {name: array}: "divergence" (tr J), "vorticity" (the curl, (particles, 3)), "q_criterion", "lambda2" and
     "strain_rate" ((particles, 3, 3)), in the unit of J or its square.
 
-    gradients: (particles, 3, 3), d component / d axis, as of derivatives().
+    gradients: (particles, 3, 3), d component / d axis, as in derivatives().
     """
     matrices = contiguous(without_unit(gradients), "array of velocity gradients").astype(np.float64)
     if matrices.ndim != 3 or matrices.shape[1:] != (3, 3):

@@ -25,7 +25,7 @@ NO_DEVICE = ("No device was found: this processor has none of the instruction se
 class Error(RuntimeError):
     """A call failed; the sentence says what was wrong, with which array or particle, and what to do.
 
-    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for one of this package.
+    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for a sentence of this package.
     """
 
     code = property(lambda self: getattr(self.args[0], "code", "") if self.args else "")
@@ -96,7 +96,7 @@ def word_by(function):
 
 @word_by
 def _python_word(name, value):
-    """Returns Python's word: cube_size, dimension=3, precision="double"."""
+    """Returns Python's words for an option and its value, such as cube_size, dimension=3 or precision="double"; "" if it has none."""
     known = name in c.OPTIONS or name in c.SLOTS
     if name == "fluid" and value:
         return f"fluid=('{value}', VALUE)"
@@ -147,7 +147,7 @@ _ready_in = None  # OpenCL was started in this process.
 
 
 def start():
-    """Prepares OpenCL. Must be called before anything else is asked of it."""
+    """Prepares OpenCL. Must be called before any other call that uses OpenCL."""
     global _ready_in
     with _state_lock:
         if _ready_in is None:
@@ -159,8 +159,8 @@ def start():
 
 
 def devices() -> List[str]:
-    """The devices, "device (platform)" each, in the order of their numbers: the built-in one, whose kernels
-    are in this package, then those of OpenCL drivers, as the system's loader lists them.
+    """The devices, each as "device (platform)", in the order of their numbers: first the built-in one, whose kernels
+    are in this package, then the devices of OpenCL drivers, in the order of the system's loader.
     """
     start()
     text = ctypes.c_void_p()
@@ -171,7 +171,7 @@ def devices() -> List[str]:
 class InputWarning(UserWarning):
     """Something about the particles or options is legal, but hardly what was meant.
 
-    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for one of this package.
+    code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for a sentence of this package.
     """
 
     code = Error.code
@@ -197,7 +197,7 @@ def describe_warnings(arguments, surface):
 
 
 def warn_of_particles(arguments, statistics):
-    """Gives the warnings that do not need a surface."""
+    """Warns of particles far away, of a period that is too short, and of rounded positions. Needs no surface."""
     kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
     for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
         if kinds[kind] in found:
@@ -212,7 +212,7 @@ class Context:
     Example: with Context() as context: isosurface(x, speed, 1.0, smoothing_length=h, context=context, particles_version=1)
 
     device: a number or part of a name as in `devices()`; None: the built-in
-    device if it can do the run. Calls on one context from several threads wait for each other; contexts of their own run side by side.
+    device if it can do the run. Calls on one context from several threads wait for each other; calls on several contexts run side by side.
 
     Particles that stay the same between calls can stay on the device: give them equal nonzero
     numbers as `particles_version` (and `scalar_version`).
@@ -234,7 +234,8 @@ class Context:
 
     @contextlib.contextmanager
     def _alone(self):
-        """Waits for other threads' calls. Refuses a callback of the present call, which would wait for ever."""
+        """Waits until no other thread uses the context. Raises InvalidArgument in a callback of the running call,
+        which would wait for ever."""
         if self._used_by == threading.get_ident():
             raise InvalidArgument("A progress callback cannot use the context whose call it belongs to. Use "
                                   "another Context there, or do it when the call has returned.")
@@ -256,7 +257,7 @@ class Context:
 
     def close(self) -> None:
         """Releases the device. Using the context afterwards is an error."""
-        # A forked child has the handle, but not the driver's threads.
+        # A forked child has the handle, but not the driver's threads, so it cannot free the context.
         if self._handle and self._pid == os.getpid():
             with self._alone():
                 lib.mcor_free_context(self._handle)
@@ -302,7 +303,7 @@ class Context:
 
 
 class TextBar:
-    """Shows progress if there is no tqdm: by one line on stderr, which is overwritten; in a file, by a line per
+    """Shows progress on stderr if there is no tqdm: on a screen as one line that is overwritten, in a file as a line for each
     phase."""
 
     def __init__(self):
@@ -344,8 +345,8 @@ def callback_of(progress):
 
 
 class Watch:
-    """The callback between launches. In the main thread it also sees Ctrl-C: Python's own handler would raise where nobody
-    can catch the exception, so a handler of ours only notes the signal."""
+    """The callback that the core calls between launches. In the main thread, it also ends the run at Ctrl-C: a handler notes
+    the signal, because Python's own handler would raise inside the core's call, where nobody can catch the exception."""
 
     def __init__(self, progress):
         self.progress, self.failure, self.interrupted, self.before = progress, None, None, None

@@ -51,7 +51,7 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """Returns the panel's text on a property. Leaves out a default without a comma, which is a word or a number."""
+    """Returns the panel's text on a property. The default at its end is left out if it is only a word or a number, without a comma."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said
@@ -167,7 +167,7 @@ def check_names(function, given, options):
 
 
 def describe(names):
-    """Returns a line or more for each option."""
+    """Returns the lines of the help text on these options."""
     lines = []
     for name in names:
         choices = " | ".join(f'"{word}"' for word in words_of(name))
@@ -178,7 +178,7 @@ def describe(names):
 
 def show(function, keywords, options):
     """Puts keywords, {name: type}, and options, a list of names, into the function's signature, and the texts on the
-    options into its own text, in place of {options}."""
+    options into the function's docstring, in place of {options}."""
     def parameter(name, default, kind):
         return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default,
                                  annotation=getattr(kind, "__forward_arg__", kind))

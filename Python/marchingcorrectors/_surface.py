@@ -60,7 +60,7 @@ CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets", 
 
 @dataclass(eq=False, repr=False)
 class Surface(Result):
-    """A triangle mesh, or lines of two dimensions, which may be filled. Arrays that were not asked for are None; all own
+    """A triangle mesh, or, in two dimensions, lines, which may be filled. Arrays that were not asked for are None. All arrays own
     their memory."""
 
     points: np.ndarray  #: (points, 3), float32 or float64 as the positions, in their unit (L)
@@ -92,14 +92,14 @@ class Surface(Result):
 
     @property
     def lines(self) -> List[np.ndarray]:
-        """The points of each polyline, in two dimensions, greater values on its left; a closed one ends with its
-        first point."""
+        """In two dimensions, the numbers of the points of each polyline, with greater values on its left. A closed polyline ends
+        with its first point."""
         if self.line_offsets is None:
             return []
         return np.split(self.line_points, self.line_offsets[1:-1]) if len(self.line_offsets) > 1 else []
 
     def line_values(self) -> np.ndarray:
-        """The iso value of each of the lines, which needs the array iso_value."""
+        """Returns the iso value of each line. The array iso_value must have been asked for."""
         return self.iso_value[self.line_points[self.line_offsets[:-1]]]
 
     def __repr__(self):
@@ -155,11 +155,11 @@ class Surface(Result):
         return meshio.Mesh(self.points, cells, point_data=arrays, cell_data={"BandValue": [of_lines, self.band_value]})
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes a file, whose name's end tells the format.
+        """Writes a file. The end of its name tells the format.
 
         .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of
-        numbers as properties of the points, as the program writes them. .csv: the points of lines, of
-        particles in a plane, with their arrays as columns. .vtp, .vtk, .stl, .obj: by
+        numbers as properties of the points, as the program writes them. .csv: for particles in
+        a plane, the points of the lines, with their arrays as columns. .vtp, .vtk, .stl, .obj: by
         PyVista. .usdc, .usda, .usd: by usd-core, with all arrays. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
         """
         path = Path(path)
@@ -258,7 +258,7 @@ def _save_ply(path, surface):
 
 @dataclass(eq=False, repr=False)
 class Samples(Result):
-    """The field at points, in arrays of the shape (...) that the points (..., 3) had. NaN where it is not valid."""
+    """The field at points, in arrays of the shape (...) that the points (..., 3) had. Values are NaN at points that are not valid."""
 
     weight_sum: np.ndarray  #: (...) float64, of fluid particles
     valid: np.ndarray  #: (...) bool: the weight sum is not below node_threshold

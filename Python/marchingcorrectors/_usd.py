@@ -49,16 +49,16 @@ class Film:
 
     Example: with Film("film.usdc", fps=24) as film: film.add(surface, time)
 
-    The file is written beside its place and takes it at the end of the with block, also where Ctrl-C ends the block after
-    a step; any other exception leaves no file. Steps leave memory as they come, but for .usda, whose text is made at the
-    end.
+    The film is written to a file beside `path`, which gets the name `path` at the end of the with block, also if Ctrl-C ends
+    the block after a step. Any other exception leaves no file. Each step is written at once and leaves memory; only .usda
+    keeps all steps, because its text is made at the end.
 
     path: .usdc (binary), .usda (text) or .usd. It cannot be one of the inputs.
     fps: frames of a second of film; a step's time code is time x fps x slow.
-    slow: how many seconds of film a unit of time takes; velocities are divided by it, as they are per second of film.
+    slow: how many seconds of film a unit of time takes; velocities are divided by it, and so are per second of film.
     up: "y" or "z"; it may be set until the first step is added.
     meters_per_unit: how many metres a unit of length is.
-    velocity: the name of the array that is the velocity; without it one of the usual names is looked for.
+    velocity: the name of the array that is the velocity; by default an array with a usual name.
     """
 
     def __init__(self, path: Any, inputs: Sequence[Any] = (), *, fps: float = 24.0, slow: float = 1.0, up: str = "z",
@@ -93,9 +93,9 @@ class Film:
 
     def add(self, surface: Surface, time: float = 0.0, velocities: Optional[np.ndarray] = None,
             spray: Optional[Spray] = None) -> None:
-        """Adds the surface of one time, which must be later than all before.
+        """Adds the surface of one time, which must be later than the times of the surfaces before.
 
-        velocities: (points, 3); without them the array of the surface that is the velocity.
+        velocities: (points, 3); by default the surface's array that is the velocity.
         spray: particles beside the surface.
         """
         from pxr import UsdGeom
@@ -143,7 +143,7 @@ class Film:
             self._save()
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Sets velocities, and arrays as primvars."""
+        """Returns {name: (type, values)} of the attribute `velocities`, and of a primvar for each array."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)
@@ -168,7 +168,7 @@ class Film:
                         **self._common(arrays, velocities)}
 
     def _lines_of(self, surface, arrays, velocities):
-        """Makes curves. Their width is half the median length of their pieces."""
+        """Makes curves. Their width is half the median length of their segments."""
         at = surface.line_points
         points, counts = surface.points[at], np.diff(surface.line_offsets)
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)[np.setdiff1d(
@@ -230,7 +230,7 @@ class _Part:
         self.attributes, self.names = {}, set()  # {our name: (attribute, USD's type of array)}
 
     def write(self, code, values, first):
-        """Sets values: {name: (type, array)}; first: the film's first time code. Returns their bytes."""
+        """Sets values: {name: (type, array)}; first: the film's first time code. Returns the number of bytes of the values."""
         from pxr import Sdf
 
         has_points, is_new, size = bool(values) and len(values["points"][1]) > 0, not self.attributes, 0

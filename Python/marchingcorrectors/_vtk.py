@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's data sets: the particles of a set, or of all blocks joined to one set, as arguments of the core, which finds their arrays; and a surface as
-vtkPolyData, with a run's results, settings and costs as field data, as vtkMarchingCorrectorsOutput has them."""
+"""Makes the core's arguments from VTK's data sets: from one set, or from all blocks joined to one set; the core finds the arrays. Makes a
+vtkPolyData from a surface, with a run's results, settings and costs as field data, like vtkMarchingCorrectorsOutput."""
 import ctypes
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from ._options import camel
 from .io.vtk_files import VERTICES, find_vertices
 
 GHOSTS = "vtkGhostType"
-# These options of mcor_options are left out: users do not look for them, or statistics tell them.
+# The field data lack these options: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.
 
@@ -46,7 +46,7 @@ def to_numpy(array):
 
 
 def named(data):
-    """Returns (name, values) of all arrays, for the core; the shape alone of an array that has no numbers, such as text."""
+    """Returns (name, values) of all arrays, for the core. Arrays without numbers, such as texts, have a shape in place of values."""
     return [(array.GetName(), to_numpy(array) if isinstance(array, vtkDataArray) else SimpleNamespace(
         shape=(array.GetNumberOfTuples(), array.GetNumberOfComponents()))) for array in abstract_arrays_of(data)]
 
@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns the list of cells that has the vertices, and the types of all cells. The cells of this list are numbered
-    first."""
+    """Returns the vtkCellArray that has the vertices, and the types of all cells. The types begin with those of this
+    vtkCellArray."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -155,7 +155,7 @@ def cells_of(points):
 
 
 def add_values(data, count, chosen, made):
-    """Adds the arrays that have `count` values, with the values `chosen`, unless `made` has an array of the same
+    """Adds to `made` the values `chosen` of each array that has `count` values, unless `made` has an array of the same
     name."""
     for i, array in enumerate(abstract_arrays_of(data)):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
@@ -264,10 +264,11 @@ def join_blocks(tree):
 # -- quantities --
 
 class Particles(Arguments):
-    """Arguments whose quantities the core finds among the point arrays. If something is missing, raises InvalidArgument, which has what was found
-    nevertheless as `particles`.
+    """Arguments whose quantities the core finds among the point arrays. If something is missing, raises InvalidArgument, whose member
+    `particles` has what was found.
 
-    choice: a copy of the filter's properties; wants: names of mcor_want; requests: of the scalar and of the second vector.
+    choice: a copy of the filter's properties; wants: names of mcor_want; requests: for the scalar, and for the
+    second vector of a dot product.
     """
 
     def __init__(self, choice, points, wants, requests=(Request(), Request()), taken=(), options=None):
@@ -323,7 +324,7 @@ class Particles(Arguments):
 
     @property
     def used(self):
-        """Returns {quantity: array}."""
+        """Returns {quantity: array} of the arrays that the run uses."""
         summed = dict(self._summed)
         if self.input.density.data != self.input.scalar.data:
             summed.pop("Density", None)  # It is the scalar alone.
@@ -333,7 +334,7 @@ class Particles(Arguments):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def sums(self, name, function, *more):
-        """Takes the last run's array if that run had the same particles."""
+        """Returns the sums, or those of the last run if the particles and the options that matter are the same."""
         key = (*self.signatures()[0], self.options.sph_kernel, self.options.dimension, *self.options.periodic, *more)
         if self.choice.Made.get(name, (None,))[0] != key:
             self.choice.Made[name] = key, self._wrap(name, super().sums(name, function, *more))
@@ -341,8 +342,8 @@ class Particles(Arguments):
         return to_numpy(self._summed[name])
 
     def has_free_surface(self):
-        """Whether the free surface is what a user sees first. A density is a sign of a liquid, even if volumes are not made of
-        it."""
+        """Returns whether the free surface is what a user sees first. The core gets the densities, which tell a liquid, even if
+        no volumes are made from them."""
         given = c.mcor_input.from_buffer_copy(self.input)
         given.density = self.found.views[ROLES["density"]]
         return lib.mcor_has_free_surface(ctypes.byref(given), None)
@@ -352,8 +353,8 @@ class Particles(Arguments):
         return lib.mcor_estimate_cells(given, ctypes.byref(self.options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """Returns marks that differ if the particles, the scalar, or the options on which factors of smoothing lengths depend (and some more) differ.
-        The data set's own time counts, too: users change arrays in place, and call only its Modified()."""
+        """Returns three marks. A mark changes with the particles, with the scalar, or with the options that the factors of smoothing
+        lengths depend on. The data set's own time counts, too, because users change arrays in place, and call only the data set's Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())

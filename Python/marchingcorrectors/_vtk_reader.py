@@ -12,8 +12,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from . import io
 from .io.convert import to_vtk
 
-# ParaView reads VTK's own files itself. Its readers of tables and molecules make no particles; for their endings ParaView asks
-# which reader to use.
+# ParaView reads VTK's own files itself. It also has readers of tables and molecules, which make no particles; for such files
+# ParaView asks which reader to use.
 ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *io.LISTS)] + ["gadget"]
 
 

@@ -24,7 +24,7 @@ XYZ = (".xyz", ".extxyz", ".exyz")
 LISTS = (".pvtp", ".pvtu", ".pvd", ".series")
 DUMPS = (".dump", ".lammpstrj")
 PACKED = (*TABLES, *XYZ, *DUMPS, ".gro", ".data", ".ply")  # These endings may be followed by .gz.
-# The module (none: this one) and the function that read a file, and whether it may hold several steps.
+# For each ending: the module (none: this one) and the function that read a file, and whether the file may hold several steps.
 READERS = {**{ending: ("tables", "read_table", False) for ending in TABLES}, **{ending: ("molecules", "read_xyz", True) for ending in XYZ},
            **{ending: ("molecules", "read_lammps", True) for ending in DUMPS}, ".gro": ("molecules", "read_gro", True),
            ".data": ("molecules", "read_data", False), ".ply": ("tables", "read_ply", False), ".npz": ("tables", "read_arrays", False),
@@ -69,17 +69,17 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
 
 def count_steps(path: PathName) -> int:
-    """How many steps a file holds; more than one only in .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series."""
+    """Returns how many steps a file holds. Can be more than one only for .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series."""
     reader = reader_of(Path(path))
     return len(read(path).times or [0]) if (reader and reader[2]) or Path(path).suffix.lower() in HDF5 else 1
 
 
 def read_steps(path: Union[PathName, Sequence[PathName]], **words: Any) -> Iterator[Particles]:
-    """Particles of each time of a film: of one file after the other, and of all steps that a file holds.
+    """Yields the particles of each time of a film: all steps of the first file, then those of the next file.
 
     Example: levels = [gauge(particles, lines).last for particles in read_steps("run.pvd")]
 
-    words: those of read().
+    words: the keywords of read().
     """
     for each in [path] if isinstance(path, (str, os.PathLike)) else path:
         for step in range(count_steps(each)):
@@ -134,7 +134,8 @@ def read_pieces(path):
 
 
 def reader_of(path):
-    """Finds the format by the name's ending, except for files that begin like a dump, and .xyz files without a count, which are tables."""
+    """Returns the file's entry of READERS, or None. The ending of its name decides, with two exceptions: a file may begin like a
+    dump of LAMMPS, and a .xyz file without a count is a table."""
     ending = ending_of(path)
     head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
     if head.startswith(b"ITEM:"):
@@ -165,8 +166,8 @@ def load(path, step):
 
 
 def column(name, bodies, fluids):
-    """Returns one array of all bodies. Walls that lack it get the fluid's median: they take part in no field, so only their
-    smoothing lengths, and the arrays that give volumes, matter."""
+    """Returns the array `name` of all bodies, joined. Walls without the array get the fluid's median: walls take part in no
+    field, so only their smoothing lengths, and the arrays that give volumes, matter."""
     shape = fluids[0].arrays[name].shape[1:]
     parts = [body.arrays.get(name) for body in bodies]
     parts = [part if part is not None and part.shape[1:] == shape else None for part in parts]

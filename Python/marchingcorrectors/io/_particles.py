@@ -30,7 +30,7 @@ class FileError(Error, ValueError):
     """A file is damaged, empty, or in no format that is known here."""
 
     def __init__(self, sentence):
-        """Makes one line of a text, whatever names a damaged file may have put into it."""
+        """Makes the sentence one short line of printable letters, because it may contain names from a damaged file."""
         plain = "".join(letter if letter.isprintable() else "?" for letter in str(sentence))
         plain = plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:]
         super().__init__(sentence if plain == sentence else plain)  # a sentence of the core keeps its code
@@ -86,11 +86,11 @@ class Particles:
     """Positions, arrays, and what the functions of this package want to know.
 
     smoothing_length, volume, mass, density: the name of an array, one value, or None. support_radius: whether
-    the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
-    solid: None, or for each particle whether it is a wall. cell: nine numbers, the sides of a tilted
-    cell, which is no period here. times: of a file that holds several, all of
-    them. up: the axis that points up, as far as the layout tells. parameters: all else that the file says
-    (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
+    the smoothing length is the radius at which the kernel ends. h_factor: quantity() multiplies the
+    smoothing length with it. solid: None, or for each particle whether it is a wall. cell: nine numbers, the
+    sides of a tilted cell, which cannot be used as a period. times: all times of a file that holds several.
+    up: the axis that points up, if the layout tells it, else "z". parameters: all else that the file says
+    (time, units, box_size, scale_factor, ...), as it stands in the file; no value is applied.
     """
 
     smoothing_length: Union[None, str, float] = None
@@ -209,7 +209,7 @@ def usual_quantities(names):
 
 
 def add_velocity(read, names):
-    """Adds the vector of vx, vy and vz to {name: function}, if they are among the names."""
+    """Adds the vector "Velocity" to `read`, {name: function}, if vx, vy and vz are among the names."""
     if {"vx", "vy", "vz"} <= set(names) and "Velocity" not in read:
         read["Velocity"] = lambda: np.stack([read[name]() for name in ("vx", "vy", "vz")], axis=1)
 
@@ -262,7 +262,7 @@ def ending_of(path):
 
 
 def inflate(path, data, least=None):
-    """Unpacks data, or at least its first `least` bytes."""
+    """Returns gzipped data unpacked, or at least the first `least` bytes; other data as they are."""
     if not data.startswith(b"\x1f\x8b"):
         return data
     found, left = [], 1000 * len(data) + 1024  # Deflate cannot pack more densely.
@@ -295,7 +295,8 @@ def choose_step(file, step, times):
 
 
 def period_of_field(field):
-    """Returns the six bounds, or the nine numbers of a tilted cell, in {name: array}, as convert writes them; or None."""
+    """Returns the numbers of the array PeriodicBounds, which convert writes: six bounds, or nine for a tilted cell. Returns
+    None without a period."""
     bounds = np.ravel(field.get("PeriodicBounds", ()))
     return bounds.tolist() if len(bounds) in (6, 9) and np.isfinite(bounds).all() and bounds.any() else None
 

@@ -90,7 +90,7 @@ def bytes_at(file, place, count):
 
 
 def order_of(head):
-    """Returns the byte order, from the first record: the header, or a name of four letters and a number."""
+    """Returns the byte order, "<" or ">", in which the first record is a header of 256 bytes, or the name "HEAD" of 8 bytes; else None."""
     for order in "<>":
         size = struct.unpack_from(order + "I", head)[0] if len(head) >= 8 else 0
         if size == 256 or (size == 8 and head[4:8] == b"HEAD"):
@@ -193,10 +193,10 @@ def read_gadget_binary(path, types):
                     "types": wanted})
 
 
-# DualSPHysics: Part_0000.bi4. Head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64 bits (0, 1). Then an
-# item: size of its definition, "\nITEM\n", name, hidden, values hidden, two formats, numbers of arrays and items, bytes of values;
-# "\nVALUES", number, (name, type, value); arrays, each: size of its definition, "\nARRAY", name, hidden, type, count, bytes, data;
-# items. Text: length, letters. Arrays stay in the file until they are used.
+# DualSPHysics: Part_0000.bi4. A head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64 bits (0, 1). Then one
+# item. An item has, in this order: size of its definition, "\nITEM\n", name, hidden, values hidden, two formats, numbers of arrays and
+# items, bytes of values; "\nVALUES", number, (name, type, value) for each value; its arrays; its items. An array has: size of its
+# definition, "\nARRAY", name, hidden, type, count, bytes, data. A text has: length, letters. Arrays stay in the file until they are used.
 PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
          20: "i4", 21: "u4", 22: "f4", 23: "f8"}
 TEXT, DEPTH = 1, 8
@@ -299,7 +299,8 @@ def read_bi4(path):
 
 
 def bi4_period(values):
-    """Returns the period by PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) do not count."""
+    """Returns the six bounds of the period, or None. PeriActive, else PeriMode, tells the axes: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted
+    periods (PeriXinc along another axis) do not count."""
     axes = {1: "x", 2: "y", 3: "xy", 4: "z", 5: "xz", 6: "yz"}.get(values.get("PeriActive", values.get("PeriMode", 0)), "")
     low, high = values.get("MapPosMin"), values.get("MapPosMax")
     if not axes or not low or not high:
@@ -352,7 +353,8 @@ def read_bgeo(path):
                      density="density" if "density" in arrays else None, up="y")
 
 
-# Phantom: native dumps by sarracen. Accreted particles (h <= 0) are left out; gas that is inactive in a step (itype -1) counts as gas.
+# Phantom: native dumps, which the package sarracen reads. Accreted particles (h <= 0) are left out; gas that is inactive in a step
+# (itype -1) counts as gas.
 def make_phantom(path, is_alive, array, positions, names, values):
     if not is_alive:
         raise FileError(f"{path.name} has no gas that is alive.")

@@ -175,7 +175,7 @@ class Outputs:
                 raise FileError(say("FILM_STEP_TAKEN", path))
 
     def write(self, path, data):
-        """Writes one file; its bytes need not stay in memory."""
+        """Writes one file at once, so that its bytes need not stay in memory."""
         with _sentences(path), open(self.beside(path), "wb") as file:
             file.write(data)
             file.flush()

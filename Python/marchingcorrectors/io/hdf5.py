@@ -18,8 +18,8 @@ KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or 
 
 
 def get(group, place):
-    """Returns a member of a group by its path, or None. No link is followed and no other file is opened, because a file
-    could name any file that its reader may open."""
+    """Returns a member of a group by its path, or None. Raises FileError for a link, because a file of an attacker could link
+    to any file that the user may read."""
     file = os.path.basename(group.file.filename)
     for name in place.strip("/").split("/"):
         link = group.get(name, getlink=True) if isinstance(group, h5py.Group) else None
@@ -110,7 +110,7 @@ def check_claims(groups):
 
 
 def number(attributes, name, default=None):
-    """Returns an attribute's first number."""
+    """Returns an attribute's first number, or `default`."""
     try:
         value = np.ravel(attributes[name])[0]
         return value.item() if isinstance(value, np.generic) and value.dtype.kind in "fiub" else float(value)
@@ -312,7 +312,7 @@ def is_h5part(names):
 
 
 def read_h5part(path, file, step):
-    """Reads a group Step#N for each step, with x, y, z and arrays of one value per particle."""
+    """Reads one step: a group Step#N with x, y, z and arrays of one value per particle."""
     steps = sorted((int(name[5:]), name) for name in file if is_h5part([name]))
     found = [number(get(file, name).attrs, "time") for _, name in steps]
     times = [float(i) for i, _ in steps] if None in found else found
@@ -341,8 +341,9 @@ def integers(group, place):
 
 
 def read_vtkhdf(path, step):
-    """Reads points of poly data or an unstructured grid, and their arrays. An array has its steps one after the other. Steps tells where each
-    step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and arrays that begin elsewhere (PointDataOffsets)."""
+    """Reads one step of poly data or an unstructured grid: the points and their arrays. An array has all steps, one after the other. The
+    group Steps tells where each step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and arrays that begin
+    elsewhere (PointDataOffsets)."""
     with h5py.File(path, "r") as file:
         root = get(file, "VTKHDF")
         kind = text(root.attrs.get("Type", ""))

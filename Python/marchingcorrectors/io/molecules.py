@@ -110,7 +110,8 @@ def read_box(file, words, lines, at):
 
 
 def read_lammps(path, step):
-    """Reads the items of a dump: a line with the name, then lines with the content. TIME is in the run's unit, TIMESTEP is a number."""
+    """Reads the items of a dump: a line with the name, then lines with the content. A step's time is TIME, else
+    TIMESTEP."""
     lines, at, steps, head = lines_of(path), 0, [], {}
     while at < len(lines):
         words, at = lines[at].split(), at + 1
@@ -153,7 +154,7 @@ def read_lammps(path, step):
     return body_of(path.name, columns, positions, period=period, **times)
 
 
-# The columns of an atom in .data, by its style; images may follow.
+# The columns of an atom in .data, by the style of the atoms. Three more columns may follow: by how many periods the atom has moved.
 STYLES = {"atomic": "id type x y z", **dict.fromkeys(("bond", "angle", "molecular"), "id molecule type x y z"), "charge": "id type q x y z",
           "full": "id molecule type q x y z", "dipole": "id type q x y z mux muy muz",
           **dict.fromkeys(("sphere", "granular"), "id type diameter density x y z"), "sph": "id type rho esph cv x y z",

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads particles from tables: text, one in each line, with commas, semicolons or tabs between columns, or with blanks and comments behind #;
-.ply, of which VTK's own reader leaves out properties; and NumPy's .npz and .npy of plain arrays. Arrays of objects hold pickles, which are not
-opened. Columns whose names end in :0, _x, .x, [0], X, ... form one array."""
+"""Reads particles from tables: text with one particle in each line; commas, semicolons, tabs or blanks between columns; comments behind #.
+Reads .ply, because VTK's own reader leaves out properties, and NumPy's .npz and .npy of plain arrays. Arrays of objects hold pickles,
+and are refused. Columns whose names end in :0, _x, .x, [0], X, ... form one array."""
 import csv
 import io
 import re
@@ -116,14 +116,14 @@ def join_vectors(columns):
 
 
 def axes_of(columns, behind=""):
-    """Returns the names of the columns x, y and z, with these letters behind, as far as they exist."""
+    """Returns the names of the columns x, y and z that exist. behind: letters that follow x, y and z in the names."""
     found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
     return [name for name in found if name is not None]
 
 
 def body_of(file, columns, positions=(), unnamed=(), **more):
-    """Makes a Body of a table. positions: the names of the columns of positions; if empty, usual names tell them, and if no name does, `unnamed` are
-    taken."""
+    """Makes a Body of a table. positions: the names of the columns of positions. If empty, the columns with usual names are taken,
+    and if there are none, the columns `unnamed`."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         at = usual([name for name in arrays if arrays[name].ndim == 2 and arrays[name].shape[1] <= 3], "position")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads VTK's files: points and their arrays, of XML (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd) and of the legacy format (.vtk). VTK's own
-readers believe the lengths in a damaged file, and end Python, or give random values; here all lengths are checked against the file."""
+"""Reads points and their arrays from VTK's files: XML (.vtp, .vtu, and the lists .pvtp, .pvtu, .pvd) and the legacy format (.vtk). VTK's
+own readers trust the lengths in a damaged file, and crash, or give random values; these readers check all lengths against the file."""
 import binascii
 import bisect
 import json
@@ -45,7 +45,8 @@ def parse_numbers(text, kind, count):
 
 
 def offsets_of(cells, count):
-    """Returns where cells begin, and their points alone. cells: each cell's number of points, then its points."""
+    """Returns where each cell begins in the list of the points of all cells, and this list. cells: for each cell, its number of points, then
+    its points."""
     width = len(cells) // count if count else 0
     if count and width * count == len(cells) and (cells[::width] == width - 1).all():
         return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()
@@ -70,7 +71,8 @@ def find_vertices(types, offsets, points, count):
 
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
-    of the points, unless points have an array of that name. The same holds if all cells are vertices, and each point has one.
+    of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become arrays of the
+    points, too.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.
@@ -224,7 +226,7 @@ class XmlFile:
             return body
 
     def bytes_of(self, array):
-        """Returns the array's bytes, by the header before them."""
+        """Returns the array's bytes, unpacked. The header before the bytes tells their number."""
         if array.format == "binary":
             data = decode_base64(array.text.encode())
         else:
@@ -260,7 +262,7 @@ class XmlFile:
 
 
 def read_xml(path):
-    """Reads the points; there may be none."""
+    """Reads all points as one Body, which may be empty."""
     try:
         file = XmlFile(path)
         bodies = [file.body(path.name, piece) for piece in file.pieces if piece["count"]]
@@ -283,7 +285,7 @@ def elements(path, tag):
 
 
 def list_pieces(path):
-    """Reads .pvtp and .pvtu: a list of files whose points are one set."""
+    """Lists the files of a .pvtp or .pvtu, whose points together are one set."""
     names = [piece.get("Source") for piece in elements(path, "Piece") if piece.get("Source")]
     wanted = path.suffix[:1] + path.suffix[2:]
     odd = next((name for name in names if not name.lower().endswith(wanted.lower())), None)
@@ -293,7 +295,7 @@ def list_pieces(path):
 
 
 def list_series(path):
-    """Reads .vtk.series, ParaView's list of files and times, as {time: files} in the order of time."""
+    """Returns {time: files}, in the order of time, of a .vtk.series, ParaView's list of files and times."""
     try:
         entries = json.loads(path.read_bytes())["files"]
         found = sorted(((float(each["time"] + 0), each["name"] + "") for each in entries), key=lambda pair: pair[0])
@@ -308,7 +310,8 @@ def list_series(path):
 
 
 def list_times(path):
-    """Reads .pvd as {time: files} in their order. A run that is repeated in a folder adds its steps again: the last entries count."""
+    """Returns {time: files} of a .pvd, in the order of time. A run that is repeated in a folder adds its steps again: the last entries
+    count."""
     entries, again = {}, []
     for entry in elements(path, "DataSet"):
         try:

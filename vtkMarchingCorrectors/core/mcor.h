@@ -19,11 +19,12 @@
  *   mcor_free_context(context);
  *
  * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs
- * are empty and safe to free. The library never prints, never exits and keeps no global state. A
- * context may be used by one thread at a time; several contexts by several threads at once. A call
- * starts helper threads on the processors that its thread may use. On the built-in device, these
- * wait for the context's next call, and end with the context. On other devices there are up to 15,
- * and up to 12 that build programs; they end before the call returns, even if it is cancelled.
+ * are empty and safe to free. The library never prints, never exits and keeps no global state. Only
+ * one thread at a time may use a context; several threads may use several contexts at once. A call
+ * starts helper threads on the processors that its thread may use. On the built-in device, the
+ * helpers wait for the context's next call, and end with the context. On other devices, up to 15
+ * helpers work and up to 12 build programs; all end before the call returns, even if it is
+ * cancelled.
  *
  * Lengths are in the unit of the particle positions ("length unit L"). */
 
@@ -34,7 +35,7 @@
 extern "C"
 {
 #endif
-/* A shared library shows what its headers declare, and nothing else. */
+/* A shared library exports only what its public headers declare. */
 #ifdef __GNUC__
 #pragma GCC visibility push(default)
 #endif
@@ -60,9 +61,9 @@ extern "C"
     MCOR_SAYS_COUNT
   } mcor_says;
 
-  /* A sentence: a failure or a warning. In the text, {cube_size} is a slot for the name of a member
-   * of mcor_options or mcor_input, and {precision double} one for an option with a value: see
-   * mcor_fill_slots. Owned; free with mcor_free_message. */
+  /* A sentence: a failure or a warning. In the text, the slot {cube_size} stands for the name of a
+   * member of mcor_options or mcor_input, and the slot {precision double} for an option and its
+   * value: see mcor_fill_slots. The caller frees a message with mcor_free_message. */
   typedef struct mcor_message
   {
     mcor_says code; /* MCOR_SAYS_NOTHING: there is no message */
@@ -71,22 +72,24 @@ extern "C"
   void mcor_free_message(mcor_message* message);
 
   /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
-   * stands behind the name in the slot, or "". Returns 0 if there is no word: then a member's own
-   * name is the word, and a slot that names no member stays as it is, with its braces. */
+   * stands behind the name in the slot, or "". Returns 0 if there is no word, else another number.
+   * Without a word, a member's own name is written, and a slot that names no member stays as it is,
+   * with its braces. */
   typedef int (*mcor_word)(
     void* user, const char* name, const char* value, char* word, size_t size);
   /* mcor_member_word gives the words of C, "cube_size" and "precision=double"; mcor_label_word
    * gives the words of panels, "Cube Size" and "Field Precision double". */
   int mcor_member_word(void* user, const char* name, const char* value, char* word, size_t size);
   int mcor_label_word(void* user, const char* name, const char* value, char* word, size_t size);
-  /* Returns the text with its slots filled, to be freed with free(); NULL if memory ran out. word
-   * NULL: mcor_member_word. */
+  /* Returns the text with its slots filled; free it with free(). NULL: memory ran out. If word is
+   * NULL, mcor_member_word gives the words. */
   char* mcor_fill_slots(const char* text, mcor_word word, void* user);
-  /* The code's name, "ISO_OUTSIDE", and its text, with formats and slots; NULL if there is none. */
+  /* Return the code's name, such as "ISO_OUTSIDE", and its text, with printf's formats and with
+   * slots; NULL if there is no such code. */
   const char* mcor_says_name(mcor_says code);
   const char* mcor_says_text(mcor_says code);
-  /* Returns the code of a sentence in the words of any interface; MCOR_SAYS_NOTHING if the sentence
-   * is not of this library. */
+  /* Returns the code of a sentence of this library, in whichever interface's words;
+   * MCOR_SAYS_NOTHING if this library has no such sentence. */
   mcor_says mcor_code_of(const char* sentence);
 
   /* Element type of an array. */
@@ -123,14 +126,15 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length
-     * apart and straddle the iso value. For comparisons; needs cubes of one size, and no box, caps
-     * or ranks. MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
+    /* The paper's seeds: the cells between two particles that are at most an (unscaled) smoothing
+     * length apart, and whose values lie on different sides of the iso value. For comparisons.
+     * Needs cubes of one size, and no box, caps or ranks. With MCOR_WEIGHT_SUM particles have no
+     * values, so seeds are complete. */
     MCOR_PAIRS = 1
   } mcor_seed_mode;
 
   /* How nodes are connected on an ambiguous face (two above the iso value and two below,
-   * diagonally) and inside a cell. Either way gives the same vertices, and a manifold. */
+   * diagonally) and inside a cell. Both ways give the same vertices, and a manifold. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above the iso value are kept apart on such faces, and no cell
@@ -140,12 +144,12 @@ extern "C"
                               * are those of the field */
   } mcor_topology;
 
-/* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks
- * of 4^3 where all particles that reach the brick have at least 2^L times the smallest smoothing
- * length; bricks that touch differ by one level at most. The surface is closed across levels. With
- * one smoothing length for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD, the
- * field decides only in cubes and on faces that no finer cube touches. A period is a whole number
- * of the largest bricks, which may allow fewer levels: see mcor_statistics.highest_level. */
+/* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. A brick of 4^3 cubes has
+ * level L only if all particles that reach the brick have at least 2^L times the smallest smoothing
+ * length. Bricks that touch differ by one level at most. The surface is closed across levels. If
+ * all particles have the same smoothing length, all cubes have level 0. With MCOR_TOPOLOGY_FIELD,
+ * the field decides only in cubes and on faces that no finer cube touches. A period is a whole
+ * number of the largest bricks; this may limit the level, see mcor_statistics.highest_level. */
 #define MCOR_CUBE_LEVELS 25
 
   /* Which sides caps close, see mcor_options.capping. */
@@ -161,9 +165,10 @@ extern "C"
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
     /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x -
-     * x_j), the inverse of the renormalisation matrix (Marrone et al. 2010), over the same
-     * particles. Set vertex_threshold, too: 0.3 trims about where a weight of 0.5 does; 0.75 trims
-     * 0.9 smoothing lengths inside a flat surface. Near 0.5 the border is ragged. */
+     * x_j), the inverse of the renormalisation matrix (Marrone et al. 2010), summed over the
+     * particles of the trimming weight. Set vertex_threshold, too: 0.3 trims about where a weight
+     * of 0.5 does; 0.75 trims 0.9 smoothing lengths inside a flat surface. Near 0.5 the border is
+     * ragged. */
     MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
@@ -180,10 +185,10 @@ extern "C"
     /* For programs with an OpenCL context of their own: a cl_mem of any context, which holds the
      * values if data is NULL. The values of the first particle begin at byte `offset`, of each next
      * particle `stride` bytes later; stride 0: values are packed. Calls on a mcor_context map such
-     * arrays of mcor_input for reading (on a CPU without a copy; from a GPU they pass through the
-     * host, which checks and measures all particles); commands that write to them must have
-     * finished. `memory` is not read by functions without a context, nor in arrays outside of
-     * mcor_input. See mcor_store for results. */
+     * arrays of mcor_input for reading. On a CPU nothing is copied; from a GPU the values pass
+     * through the host, which checks and measures all particles. Commands that write to the memory
+     * must have finished. `memory` is read only in arrays of mcor_input, and only by functions with
+     * a context. mcor_store writes results to such memory. */
     void* memory;
     size_t offset, stride;
   } mcor_array;
@@ -192,7 +197,7 @@ extern "C"
   int mcor_is_given(const mcor_array* array);
 
 #define MCOR_MAGNITUDE (-1)
-/* A mark in mcor_input.solid. */
+/* A value in mcor_input.solid: the particle is left out of everything. */
 #define MCOR_ABSENT 2
 
   typedef struct mcor_input
@@ -218,11 +223,11 @@ extern "C"
      * both are given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j
      * sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the
      * sum is low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j =
-     * the kernel's standard deviation along an axis, d = the dimension. Solids fill that side: g
-     * contains their part times the factor from 0 to 1 that makes |g| least; F_j = 1 for solids
-     * themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless
-     * the free surface ends at them. Computed volumes next to walls therefore differ between the
-     * fields. */
+     * the kernel's standard deviation along an axis, d = the dimension. Solids fill such a side: g
+     * contains the solids' part, times the factor from 0 to 1 that makes |g| least; F_j = 1 for
+     * solids themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids
+     * unless the free surface ends at them. Computed volumes next to walls therefore differ between
+     * the fields. */
     mcor_array volume, mass, density;
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. If it has 2 or more components,
@@ -258,10 +263,11 @@ extern "C"
 /* The default wall share: measured for the surface of a scalar, none for the free surface. */
 #define MCOR_WALL_SHARE_AUTO (-2)
 
-/* A measured wall share: the median of the solids' share of the weight at a sample of the solids,
- * each weighted by the fluid's weight there. The surface of a scalar then ends on the layer of
- * solids that faces the fluid, however many layers there are and whatever their distance from the
- * fluid. The free surface stays in front of that layer; its wall share is 0.5. */
+/* The wall share is measured: at a sample of the solids, the solids' share of the weight is
+ * computed, and the wall share is the median of these shares, weighted by the fluid's weight at
+ * each solid. The surface of a scalar then ends on the layer of solids that faces the fluid,
+ * however many layers there are and whatever their distance from the fluid. For the free surface
+ * the wall share is 0.5, and the surface stays in front of that layer. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
   /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
@@ -300,8 +306,8 @@ extern "C"
     mcor_seed_mode seeds;
     mcor_topology topology;
     /* 1 to 4; default 1: off. The greatest factor that mcor_widen finds for the smoothing length of
-     * a particle. mcor_extract takes these factors from mcor_input.widening, which it needs if this
-     * is not 1. */
+     * a particle. mcor_extract takes these factors from mcor_input.widening, which must be given if
+     * `widen` is not 1. */
     double widen;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
@@ -311,8 +317,8 @@ extern "C"
     int level_limit;
     const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
-    /* Cells with a node of lower weight are discarded; default 0.1. With MCOR_SHEPARD, so are cells
-     * with a node of fluid weight below 0.001. */
+    /* Cells with a node whose weight is below this are discarded; default 0.1. With MCOR_SHEPARD,
+     * cells with a node whose fluid weight is below 0.001 are discarded, too. */
     double node_threshold;
     mcor_boundary_detection boundary_detection;
     /* Triangles are trimmed where the weight (or the boundary eigenvalue) is below this; default
@@ -337,53 +343,54 @@ extern "C"
      * that belong to one node of the virtual grid, and that edges of triangles join, are merged.
      * The merged vertex moves onto the surface along the gradient, not along a lattice edge. A
      * merge is undone if it would join or split pieces of the surface, or turn a triangle over. The
-     * widest corner of a sliver that is left starts anew from the middle of its neighbours. Points
-     * on the sides of periods, at caps and on borders do not change. Cannot be combined with
-     * `filled`. */
+     * widest corner of each remaining sliver moves to the middle of its neighbours, and from there
+     * onto the surface. Points on the sides of periods, at caps and on borders do not change.
+     * Cannot be combined with `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; mcor_spell_out sets what this stands for */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision; /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    /* Bytes of device memory in use and kept, >= 0; 0: no limit. Memory kept for reuse is freed
-     * before a run fails for lack of memory. */
+    /* The most bytes of device memory that may be in use or kept for reuse, >= 0; 0: no limit. Kept
+     * memory is freed before a run fails for lack of memory. */
     int64_t memory_limit;
 
-    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the result is the part of the surface in cells
-     * whose centres are in the box, box[2 a] <= x < box[2 a + 1] along axis a, with the same bits;
-     * boxes side by side make up the whole surface. Sides may be infinite. A box may be flat (y0 =
-     * y1) only around particles in that plane. Lattice, ranges and smallest h are measured over all
-     * particles; only those that reach the box are evaluated. mcor_probe and mcor_derive read the
-     * box only with globals. */
+    /* x0, x1, y0, y1, z0, z1; unit L. Unless all are 0, the result is the part of the surface in
+     * cells whose centres are in the box, box[2 a] <= x < box[2 a + 1] along axis a. It has the
+     * same bits as the whole surface, and boxes side by side make up the whole surface. Sides may
+     * be infinite. A box may be flat (y0 = y1) only around particles in that plane. Lattice, ranges
+     * and smallest h are measured over all particles; only particles that reach the box are
+     * evaluated. mcor_probe and mcor_derive read the box only with globals. */
     double box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is
-     * that of one period and open at the periodic sides, where it meets itself: points a period
-     * apart agree in all bits except for the rounded coordinate along the period. Each period is a
-     * whole number of cubes: the cube size is reduced to fit, by less than half. A box may lie across
-     * the sides of a period, which is moved then, see mcor_move_period. x0 = x1 (default 0): not
-     * periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
+     * that of one period, and open at the periodic sides. Its points on opposite sides agree in all
+     * bits, except for the rounded coordinate along the period. Each period is a whole number of
+     * cubes: the cube size is reduced to fit, by less than half. A box may lie across the sides of
+     * a period: the period is then moved, see mcor_move_period. x0 = x1 (default 0): not periodic.
+     * mcor_probe and mcor_derive read this, too; their points may lie anywhere. */
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
-     * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of
+     * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (with ranks: of
      * whole_box). These caps share the points of the surface's border; their other points are
      * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
      * Trimming also cuts caps. The trimmed border stays open, and so does the border at solids (see
      * wall_share). With caps, all cubes have the smallest size. With a box, MCOR_CAP_PERIOD closes
      * the sides of its cells that lie on a periodic side. A box that no particle reaches gets no
      * caps, even where the iso value of a sum is 0. Cannot be combined with MCOR_PAIRS. In two
-     * dimensions, straight lines along these sides, cut exactly, close the contour; lines that end
-     * at walls stay open. Cannot be combined with `filled` either. */
+     * dimensions, straight lines along these sides close the contour, and end exactly where
+     * trimming cuts them; lines that end at walls stay open. Cannot be combined with `filled`
+     * either. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
      * particles. The input then needs only the particles whose supports miss the box by no more
      * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
      * supports of those particles. The surface has the same bits as with all particles. Borrowed
-     * until return. For mcor_probe and mcor_derive: the result of mcor_measure_probe_globals. Their
-     * results are valid in the box and on its sides; elsewhere they are meaningless, or 0 for
-     * particles two cubes or more away from the box. */
+     * until return. mcor_probe and mcor_derive take the result of mcor_measure_probe_globals in its
+     * place. What they compute is valid in the box and on its sides; elsewhere it is meaningless,
+     * or 0 for particles two cubes or more away from the box. */
     const mcor_globals* globals;
 
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
@@ -399,9 +406,9 @@ extern "C"
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
-    /* What progress reports while a driver builds programs, which may take a minute; if the rest of
-     * the time is known, ", about 5 s to come" follows. Programs of the built-in device are built
-     * ahead. */
+    /* What progress reports while a driver builds programs, which may take a minute. If the
+     * remaining time is known, ", about 5 s to come" follows. Programs of the built-in device are
+     * compiled beforehand. */
 #define MCOR_BUILDING "building the OpenCL program (first time only)"
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
@@ -432,8 +439,8 @@ extern "C"
     int64_t far_particles, far_first;
     double far_place[3];
     /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
-     * lowest iso value: alone they have no free surface. 0 if volumes are computed, and if a scalar
-     * is contoured. */
+     * lowest iso value: alone, such a particle has no free surface. 0 if volumes are computed, or
+     * if a scalar is contoured. */
     int64_t lone_particles;
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
@@ -443,8 +450,8 @@ extern "C"
      * as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
-    /* Fluid particles that the sum of mcor_widen puts inside with s = 1, but outside with their
-     * factor. In a box, mcor_widen also counts particles next to the box. */
+    /* Fluid particles that are inside by mcor_widen's weight sum with s = 1, but outside by the sum
+     * with their factors s. In a box, mcor_widen also counts particles next to the box. */
     int64_t widening_outside;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
@@ -460,20 +467,20 @@ extern "C"
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not
-     * exclude; with adaptive cubes, the cells of leaves through which the surface passes. Pair
-     * seeds: the cells between the two particles of each pair. seed_cells_not_intersected: how many
-     * of these cells the surface does not use. These and the following counts are summed over iso
-     * values. */
+    /* Complete seeds: with uniform cubes, the cells that bounds of the field, each for 8 x 8 x 8
+     * nodes, do not exclude; with adaptive cubes, the cells of leaves through which the surface
+     * passes. Pair seeds: the cells between the two particles of each pair.
+     * seed_cells_not_intersected: how many of these cells the surface does not use. These and the
+     * following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
-    /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume
-     * that a closed surface encloses, less cavities, unit L^3 (negative where values grow
-     * outwards), else 0. In two dimensions: whether all lines are closed; the area that they then
-     * enclose, else 0, or the filled area; the length of the lines, unit L. */
+    /* The returned surface. is_closed: each edge has triangles on both sides; in two dimensions,
+     * all lines are closed. area: unit L^2; in two dimensions the filled area, or the area that the
+     * lines enclose, 0 if they are not closed. volume: unit L^3, what a closed surface encloses,
+     * less cavities (negative where values grow outwards), else 0. length: of the lines, unit L. */
     int is_closed;
     double area, volume, length;
     int64_t march_rounds;
@@ -485,16 +492,16 @@ extern "C"
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso
      * value, which the table keeps apart; cells with two loops that may form a tunnel, and how many
-     * do. */
+     * of them do. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
-    /* Correction, Table V: distance between linear and corrected vertex, unit L. */
+    /* Distance between the linear and the corrected vertex, unit L, as in the paper's Table V. */
     double correction_mean, correction_max, correction_deviation;
     int64_t correction_count; /* vertices in the mean: all but trim vertices and points of caps */
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Greatest |f - iso|, in the scalar's unit: as evaluated on the device, plus the most that its
-     * rounding of positions and sums may add. Leaves out caps and trim_vertices_linear. */
+    /* Greatest |f - iso|, in the scalar's unit: as evaluated on the device, plus the most that the
+     * device's rounding of positions and sums may add. Leaves out caps and trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
@@ -535,8 +542,8 @@ extern "C"
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
     /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the
-     * last band has no upper end. At interior points, iso_value is this value, and residual is the
-     * field minus it. */
+     * last band has no upper end. At nodes inside the region, iso_value is the value at which the
+     * node's band begins, and residual is the field minus iso_value. */
     double* band_value;
     /* Optional arrays, see mcor_output; NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
@@ -582,7 +589,8 @@ extern "C"
   /* Says in one sentence, with C's words in its slots, why the last failed call on this context
    * failed; "" if none failed. Valid until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
-  /* Returns the same sentence with its code; its slots are not filled yet. */
+  /* Returns the sentence of mcor_last_error with its code, but with its slots not filled. Free the
+   * message with mcor_free_message. */
   mcor_message mcor_last_message(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
@@ -608,12 +616,12 @@ extern "C"
     MCOR_QUANTITY_COUNT
   } mcor_quantity;
 
-  /* 0 for the most usual name of the quantity, higher for less usual ones, -1 for any other name.
-   * Case, blanks, "_" and "-" do not matter. */
+  /* Returns 0 for the most usual name of the quantity, a higher number for less usual ones, -1 for
+   * any other name. Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
 
-  /* Whether a table's column of this name tells particles, or kinds of them, apart by whole
-   * numbers: it ends in "id", "type", "index", ... */
+  /* Whether a table's column of this name holds whole numbers that tell particles, or their kinds,
+   * apart: the name ends in "id", "type", "index", ... */
   int mcor_tells_apart(const char* name);
 
   /* Whether an array of this name, with whole numbers from low to high over all particles, clearly
@@ -621,13 +629,14 @@ extern "C"
    * becomes the value of fluid particles. */
   int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
-  /* Which array to show if the user has chosen none: the one with the lowest priority number.
-   * Velocities come first, then other vectors, scalars, particle properties, and the rest. -1: do
-   * not show it, because it holds particle ids or types, or does not vary (`varies`: any component
-   * has two different values). */
+  /* Returns an array's priority number. If the user has chosen no array, show the one with the
+   * lowest number. Velocities come first, then other vectors, scalars, particle properties, and the
+   * rest. -1: do not show the array, because it holds particle ids or types, or does not vary
+   * (`varies`: any component has two different values). */
   int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
-  /* A numeric array of a particle file's field data, in tuples of any size. */
+  /* A numeric array of a particle file's field data: the components of all its tuples, one after
+   * the other. */
   typedef struct mcor_field_data
   {
     const char* name;     /* may be NULL */
@@ -635,15 +644,15 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a
-   * periodic boundaryType (SPH-EXA); spelled as for mcor_name_priority. Returns how many numbers
-   * `period` has: 6 bounds, as in mcor_options.periodic; 3 lengths, see mcor_place_period; 0 if no
-   * array gives a period. which: the index of the array; may be NULL. */
+  /* Finds the period that field data give: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box
+   * with a periodic boundaryType (SPH-EXA). Case, blanks, "_" and "-" of names do not matter.
+   * Returns how many numbers `period` has: 6 bounds, as in mcor_options.periodic; 3 lengths, see
+   * mcor_place_period; 0 if no array gives a period. which: the index of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
-  /* The bounds of a period of known lengths. Along each axis they begin at 0, or are centred at 0,
-   * if they then contain all particles, whose extent is (x0, x1, ...); otherwise they begin at the
-   * lowest particle. */
+  /* Finds the bounds of a period of known lengths. Along each axis the period begins at 0, or is
+   * centred at 0, if it then contains all particles; otherwise it begins at the lowest particle.
+   * extent: x0, x1, ... of the particles. */
   void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
 
   /* Whether mcor_find_period reads arrays of this name. */
@@ -654,8 +663,9 @@ extern "C"
 
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
-  /* With `smooth`, sets `compact` unless `filled` is set, and sets `widen` to 2 if it is 1. Call it
-   * when the options are complete; with `smooth`, mcor_widen and mcor_extract fail without it. */
+  /* If `smooth` is set, sets `compact` unless `filled` is set, and sets `widen` to 2 if it is 1.
+   * Call it when the options are complete: without this call, mcor_widen and mcor_extract fail if
+   * `smooth` is set. */
   void mcor_spell_out(mcor_options* options);
 
   /* Extracts the surface. *surface is overwritten; free what it held before the call. */
@@ -673,12 +683,12 @@ extern "C"
 
   /* Finds the range of the finite values of the scalar at fluid particles, and suggests an iso
    * value: the median (one of the values). If the median is at an end of the middle 90 % of the
-   * values, the suggestion is the middle of these 90 %, or of the range if these are one value. If
-   * all values are positive, and all but the lowest and highest 2 % span at least three decades
-   * (but no more than six if the median is at an end), the suggestion is the logarithmic middle of
-   * these 96 %. Reads only the scalar and the solids of the input; over all ranks unless `ranks` is
-   * NULL. Returns 0 and changes nothing if there is no such value, if mcor_extract would refuse the
-   * form of the scalar, or if another rank failed. */
+   * values, the suggestion is the middle of these 90 %, or of the range if these values are all
+   * equal. If all values are positive, and all but the lowest and highest 2 % span at least three
+   * decades (but no more than six if the median is at an end), the suggestion is the logarithmic
+   * middle of these 96 %. Reads only the scalar and the solids of the input; over all ranks unless
+   * `ranks` is NULL. Returns 0 and changes nothing if no value is finite, if mcor_extract would
+   * refuse the form of the scalar, or if another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
@@ -696,24 +706,24 @@ extern "C"
   /* The usual `eta` of mcor_find_smoothing_lengths, which sets the number of neighbours. */
 #define MCOR_USUAL_ETA 1.3
 
-  /* Finds smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the
-   * h_i, unit L, that solve h_i^d sum_j W(x_i - x_j, h_i) = eta^d, to 1e-6 of h_i; d is the
-   * dimension. The sum goes over all particles that play a part, fluid and solid, j = i
-   * included. Only the first `count` particles get a length; the others, such as particles of other
-   * ranks, are neighbours only. Particles that play no part get 0. No length exceeds the extent of
-   * all particles. Reads positions and solids of the input, and sph_kernel, dimension, periodic and
+  /* Finds smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the h_i,
+   * unit L, that solve h_i^d sum_j W(x_i - x_j, h_i) = eta^d, to 1e-6 of h_i; d is the dimension.
+   * The sum goes over all particles that play a part, fluid and solid, j = i included. Only the
+   * first `count` particles get a length; the others, such as particles of other ranks, are
+   * neighbours only. Particles that play no part get 0. No length exceeds the extent of all
+   * particles. Reads positions and solids of the input, and sph_kernel, dimension, periodic and
    * ranks of the options. Fails with M'4, whose sum does not grow with h. *why: why the call
    * failed; no message if it did not.
-   * Ranks: each particle is among the first ones of one rank, which may lack some of the particle's
-   * neighbours. Its length is then too long; it has the same bits as in one process if all
-   * particles and images within 1.25 times its support radius are there. */
+   * With ranks, each particle is among the first `count` of one rank. Its length has the same bits
+   * as in one process if this rank has all particles and images within 1.25 times the particle's
+   * support radius. If some neighbours are missing, the length is too long. */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
     double eta, int64_t count, double* lengths, mcor_message* why);
 
   /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i), unit of mass / L^d, over the
    * same particles as mcor_find_smoothing_lengths. Reads positions, masses, solids, and smoothing
-   * lengths [count] of the input, and the same options. Ranks must have all particles within the
-   * support radii. */
+   * lengths [count] of the input, and the same options. Each rank must have all particles within
+   * the support radii of its first `count` particles. */
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
     int64_t count, double* densities, mcor_message* why);
 
@@ -727,12 +737,13 @@ extern "C"
    * that share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
-  /* Warns of how long a run of `cells` cells may take. */
+  /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */
   mcor_message mcor_describe_estimate(double cells);
 
-  /* Return words for panels, with numbers of six digits: the smoothing length and the volume in
-   * use, "0.02 to 0.045 (array h)", "array Mass / array Density"; area and volume, or length and
-   * area, "" if there is no surface. Free them with free(). NULL if memory ran out. */
+  /* Return texts for panels, with numbers of six digits. The first two tell which smoothing length
+   * and volume are in use: "0.02 to 0.045 (array h)", "array Mass / array Density". The third tells
+   * area and volume, or length and area; "" if there is no surface. Free them with free(). NULL if
+   * memory ran out. */
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
   char* mcor_describe_measures(const mcor_statistics* statistics);
@@ -766,7 +777,7 @@ extern "C"
 /* In blocks joined to one set, this array marks the particles of blocks that are named as walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
-  /* The field at given points. Owned; free with mcor_free_samples. */
+  /* The field at given points; free it with mcor_free_samples. */
   typedef struct mcor_samples
   {
     int64_t count;           /* of points */
@@ -820,7 +831,7 @@ extern "C"
     int64_t crossing_count; /* this line's crossings, into fluid and out of it */
   } mcor_gauge_reading;
 
-  /* Owned; free with mcor_free_gauges. */
+  /* What mcor_gauge finds; free it with mcor_free_gauges. */
   typedef struct mcor_gauges
   {
     int64_t count;                /* of lines */
@@ -888,7 +899,7 @@ extern "C"
     double velocity;    /* volume_flux / area; NaN where the area is 0 */
   } mcor_flux_reading;
 
-  /* Owned; free with mcor_free_fluxes. */
+  /* What mcor_flux finds; free it with mcor_free_fluxes. */
   typedef struct mcor_fluxes
   {
     int64_t count;               /* of sections */
@@ -898,10 +909,11 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles of at
-   * most 3/4 of the smallest (scaled) smoothing length, which are cut where the weight sum is the
-   * level, and halved until two ways to integrate them agree to 2.5e-6 of what their velocities
-   * allow. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles with
+   * sides of at most 3/4 of the smallest (scaled) smoothing length. The triangles are cut where the
+   * weight sum is the level, and halved until two ways to integrate over them agree to 2.5e-6 of
+   * their area times their greatest speed and density. Options, globals and ranks are as for
+   * mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -913,10 +925,10 @@ extern "C"
      * axis of a plane, else z. */
     double direction[3];
     /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, or along axes without one, all that
-     * particles reach. Sides may be infinite. The image is the box as it is seen. If the line of
-     * sight is x, y or z, a particle counts if its position along this axis is in the box and its
-     * kernel reaches the image; otherwise, if its position is in the box. It counts with its whole
-     * kernel. */
+     * particles reach. Sides may be infinite. The image shows the box as it is seen along the line
+     * of sight. If the line of sight is x, y or z, a particle counts if its position along this
+     * axis is in the box and its kernel reaches the image; otherwise, if its position is in the
+     * box. It counts with its whole kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what
@@ -926,7 +938,7 @@ extern "C"
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
 
-  /* Owned; free with mcor_free_projection. */
+  /* What mcor_project computes; free it with mcor_free_projection. */
   typedef struct mcor_projection
   {
     int size[2];       /* pixels along the image's axes; 0, 0: there is nothing to see */
@@ -943,17 +955,17 @@ extern "C"
    * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
    * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
    * progress apply; if volumes are computed, all options of mcor_probe do. The result has the same
-   * bits for any order of the particles. Each rank gets the whole image. Only if volumes are
-   * computed or h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and
-   * `counted`, so that each particle counts once. *projection is overwritten. */
+   * bits for any order of the particles. Each rank gets the whole image. If volumes are computed or
+   * h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and `counted`, so
+   * that each particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
-  /* Finds the image without its values. */
+  /* Finds the size and place of the image, but not its values. */
   mcor_status mcor_place_view(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   void mcor_free_projection(mcor_projection* projection);
 
-  /* Widened smoothing lengths. Owned; free with mcor_free_widening. */
+  /* Widened smoothing lengths; free them with mcor_free_widening. */
   typedef struct mcor_widening
   {
     int64_t count;  /* of particles */
@@ -979,7 +991,8 @@ extern "C"
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);
-  /* Adds the seconds of mcor_widen, and its particles outside, to the statistics of a surface. */
+  /* Adds the seconds of mcor_widen to the statistics of a surface, and sets widening_outside
+   * there. */
   void mcor_add_widening(mcor_statistics* surface, const mcor_statistics* widening);
 
   typedef enum mcor_gradient
@@ -989,7 +1002,7 @@ extern "C"
     MCOR_GRADIENT_STANDARD = 1   /* sum_j V_j (A_j - A_i) grad W_ij, W_ij with h_j */
   } mcor_gradient;
 
-  /* SPH gradients at the particles. Owned; free with mcor_free_derivatives. */
+  /* SPH gradients at the particles; free them with mcor_free_derivatives. */
   typedef struct mcor_derivatives
   {
     int64_t count;      /* of particles */
@@ -1001,9 +1014,9 @@ extern "C"
     mcor_statistics statistics;
   } mcor_derivatives;
 
-  /* Gradients of the attributes of the input, from sums over fluid particles. The options of
-   * mcor_probe apply, except field, outputs and node_threshold. A gradient too large for a double
-   * is infinite. *derivatives is overwritten. */
+  /* Computes gradients of the attributes of the input at the particles, from sums over fluid
+   * particles. The options of mcor_probe apply, except field, outputs and node_threshold. A
+   * gradient too large for a double is infinite. *derivatives is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);
@@ -1019,7 +1032,8 @@ extern "C"
     double* strain_rate; /* [count][3][3], S */
   } mcor_flow;
 
-  /* gradients: [count][3][3], d component / d axis, as in mcor_derivatives. */
+  /* Computes the arrays of `flow` from gradients [count][3][3], d component / d axis, as in
+   * mcor_derivatives. */
   mcor_status mcor_decompose_gradients(
     const double* gradients, int64_t count, const mcor_flow* flow);
 

@@ -21,7 +21,8 @@
     }                                                                                              \
   } while (0)
 
-/* Returns with a status and the sentence that explains it: MCOR_SAY(CODE), and what its formats need. */
+/* If the condition holds, keeps the sentence that explains the status, and returns the status. The
+ * further arguments are MCOR_SAY(CODE) and the values for the sentence's formats. */
 #define MCOR_FAIL_IF(condition, context, status, ...)                                              \
   do                                                                                               \
   {                                                                                                \
@@ -31,10 +32,11 @@
     }                                                                                              \
   } while (0)
 
-/* Makes a call unless one before it has failed; for functions that end by freeing something. */
+/* Makes a call unless `status` tells that an earlier call failed; for functions that end by freeing
+ * something. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
 
-/* An array that grows, and a value appended to it. */
+/* MCOR_LIST: an array that grows. MCOR_APPEND appends a value. */
 #define MCOR_LIST(type)                                                                            \
   struct                                                                                           \
   {                                                                                                \
@@ -52,8 +54,8 @@
     (list)->of[(list)->count++] = __VA_ARGS__;                                                     \
   } while (0)
 
-/* Keeps the sentence in the context, which may be NULL if nobody will ask for it; use as
- * mcor_fail(context, status, MCOR_SAY(CODE), ...). */
+/* Keeps the sentence in the context, and returns the status. The context may be NULL if nobody will
+ * ask for the sentence. Use it as mcor_fail(context, status, MCOR_SAY(CODE), ...). */
 mcor_status mcor_fail(
   mcor_context* context, mcor_status status, mcor_says code, const char* format, ...)
 #if defined(__GNUC__)
@@ -61,8 +63,9 @@ mcor_status mcor_fail(
 #endif
   ;
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
-/* mcor_text writes a new text; mcor_append returns a text with more behind it, and frees the given
- * one. The caller frees the result. NULL: memory ran out, now or before (`text` is NULL). */
+/* mcor_text writes a new text. mcor_append returns the given text with more text behind it, and
+ * frees the given one. The caller frees the result. NULL: memory ran out in this call, or in an
+ * earlier one (`text` is NULL). */
 char* mcor_text(const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 1, 2)))
@@ -73,12 +76,14 @@ char* mcor_append(char* text, const char* format, ...)
   __attribute__((format(printf, 2, 3)))
 #endif
   ;
-/* Fills slots into out [size], as snprintf does; returns the length. */
+/* Writes the text with its slots filled to out [size], and cuts it as snprintf does. Returns the
+ * full length. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
 /* The room for a slot's word, with the final 0; a longer word is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
-/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. [0]: in space, [1]: in a plane. */
+/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. Of each two numbers, the first is for
+ * three dimensions, the second for two. */
 typedef struct mcor_kernel_row
 {
   const char *name, *norm_text, *support_text, *neighbours[2];
@@ -123,8 +128,8 @@ static inline double mcor_real_of(const mcor_context* context, double value)
   return context->cl.real_size == sizeof(float) ? (double)(float)value : value;
 }
 
-/* The most elements that kernels count: rounded up to any work-group or batch, their number is
- * still an int. */
+/* The most elements that kernels count. Even rounded up to whole work-groups or batches, this
+ * number is an int. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 /* The most lattice nodes along an axis. Fixed point of single precision then resolves 2^-9
  * cubes. */
@@ -169,7 +174,7 @@ static inline double mcor_asked_share(const mcor_options* options)
                                                      : MCOR_WALL_SHARE_MEASURED;
 }
 
-/* Whether solids are needed; a free surface needs them only to end at them. */
+/* Whether the call needs solids. A free surface needs them only if it ends at solids. */
 static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options* options)
 {
   return !input->ignore_solids &&
@@ -249,26 +254,28 @@ mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
-/* Gathers the records of all ranks; they are valid until the next gathering. A single process gets its own. */
+/* Gathers the records of all ranks; they are valid until the next gathering. A single process gets
+ * its own records. */
 mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count,
   size_t width, const void** all, int64_t* all_count);
 
-/* mcor_statistics.c. Begins a report of progress from one fraction of the call to another; the report may cancel the
- * call. */
+/* mcor_statistics.c. Reports progress: `doing` takes the call from one fraction to another. The
+ * observer of progress may cancel the call. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
 /* Called between two launches, or steps of a loop of the host: if the last report is old enough,
  * reports progress that is a bit nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
-/* The observer of calls that report progress. */
+/* What the OpenCL layer calls between launches, and while programs are built, if the caller wants
+ * progress. */
 mcor_status mcor_observe_call(mcor_context* context, bool compiles);
-/* Ends the phase under way and reports progress, which may cancel. */
+/* Ends the current phase, begins the next one, and reports progress, which may cancel the call. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(
   const mcor_context* context); /* the most by which positions on the device are rounded, along each axis */
 
-/* mcor_reuse.c. mcor_check_reuse finds which results of the last call still hold; mcor_same_particles says whether,
- * by the caller's version, the particles are the same. */
+/* mcor_reuse.c. mcor_check_reuse finds which results of the last call still hold.
+ * mcor_same_particles tells by the caller's version number whether the particles are the same. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
@@ -298,12 +305,12 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift);
 
-/* mcor_box.c. Whether there are bounds: all zeros, -0 too, mean none. */
+/* mcor_box.c. Whether `sides` holds bounds; six zeros (0 or -0) mean none. */
 bool mcor_has_sides(const double sides[6]);
 
-/* mcor_extract.c. Whether a surface's programs read solids, even if this part has none. */
+/* mcor_extract.c. Whether a surface's programs read solids, even if this rank has none. */
 bool mcor_has_solids(const mcor_input* input, const mcor_options* options);
-/* Returns the programs that a surface needs, for the plane that was found. */
+/* Returns the programs that a surface needs, a bit for each. The plane must have been found. */
 int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool has_solids);
 
@@ -337,7 +344,7 @@ mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 mcor_status mcor_march(mcor_context* context);
 mcor_status mcor_resolve_topology(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context);
-/* Evaluates the boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
+/* Evaluates the boundary eigenvalue at vertices: at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
 /* Return whether the mesh is trimmed; whether by the boundary eigenvalue; the quantity that
@@ -383,7 +390,7 @@ mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
 /* Moves a triangle and its keys to another place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
-/* Return the key of a brick (rung: the one of its level) and of a node (its level is in node[3]).
+/* Return the key of a brick (rung: of the brick's level) and of a node (its level is in node[3]).
  * Keys have the order of slots and vertices: by level, block, brick and node, each by z, y, x. A
  * cell has the key of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
@@ -404,22 +411,23 @@ static inline uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int n
   const mcor_rung* rung = &lattice->rungs[node[3] >> MCOR_LEVEL_SHIFT];
   return mcor_brick_key(rung, brick) << 6 | (uint64_t)inner;
 }
-/* mcor_area.c. Whether the gradient gives no normal. The second function makes normals for such points. */
+/* mcor_area.c. Whether a point has no normal, because the gradient there is 0. mcor_finish_normals
+ * makes normals for such points. */
 static inline bool mcor_lacks_normal(const float normal[3])
 {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
-/* Measures the surface into its statistics. */
+/* Measures the surface: writes is_closed, area and volume to its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
 /* The cases of Marching Cubes, with all decisions on their ambiguous faces. */
 #define MCOR_CASE_ROWS 1200
 typedef struct mcor_case_table
 {
-  /* First row << 6 | ambiguous faces, bit axis * 2 + side. The rows of a case count from 0. If bit
-   * i of a row's number is set, the corners above the iso value are joined on the i-th ambiguous
-   * face. Rows with tunnels come last. */
+  /* Of each case: first row << 6 | ambiguous faces, bit axis * 2 + side. The rows of a case count
+   * from 0. If bit i of a row's number is set, the corners above the iso value are joined on the
+   * i-th ambiguous face. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_CASE_ROWS];

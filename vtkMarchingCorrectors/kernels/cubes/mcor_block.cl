@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds the blocks. A few large cubes of nodes cover the whole lattice; active cubes are divided,
- * down to blocks. A cube is inactive if it and all cubes around it are void or certain of their
- * side of the iso value, and none is above while another is below: then no crossed edge is in the
- * cube or leads out of it. Empty space costs next to nothing, and so does space that coarse
- * particles fill with values far from the iso value.
+/* Finds the blocks: cubes of 8 x 8 x 8 bricks that may have surface. A few large cubes cover the
+ * whole lattice. Active cubes are divided into 8, level by level, down to blocks. A cube is
+ * inactive if it and all cubes around it are void or certain of their side of the iso value, and
+ * all certain ones are on the same side: no crossed edge is in the cube or leads out of it. Empty
+ * space costs next to nothing, and so does space that coarse particles fill with values far from
+ * the iso value.
  *
- * Cubes of one size are sorted by key, like blocks, and mcor_find_block finds them. */
+ * Cubes of one size are sorted by key, like blocks, so mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
 /* One work-item = one cube of the largest size. Writes the cube's key. All cubes of this size
@@ -21,8 +22,8 @@ __kernel void mcor_block_all(
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one cube, 32 << level nodes long: cube index[i], or cube i if `index` is NULL.
- * Reads the particles that reach it. Writes its state. */
+/* One work-item = one cube, 32 << level nodes long: cube index[item], or cube `item` if `index` is
+ * NULL. Reads the particles that reach the cube. Writes the cube's state. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
   __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS,
   __global uchar* states)
@@ -96,7 +97,8 @@ __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   }
 }
 
-/* One work-item = one brick that has a slot. Requests it again if values of its nodes are known. */
+/* One work-item = one brick that has a slot. Requests the brick again if the values of its nodes
+ * are known. */
 __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {

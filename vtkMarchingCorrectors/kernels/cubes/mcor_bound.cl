@@ -22,8 +22,9 @@
  *
  *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
  *
- * For a Shepard mean, the quotient of the sums of A_j and of 1, |A_j| + |iso| <= |A_j - iso| + 2
- * |iso| takes the place of |A_j - iso|. */
+ * where c_j has the factor |A_j - iso| for a Shepard mean. A mean is the quotient of two sums, so
+ * its error needs the factor |A_j| + |iso|. The code takes |A_j - iso| + 2 |iso|, which is not
+ * less. */
 #define MCOR_UNIT_ROUNDOFF (MCOR_DOUBLE ? (real)1.1102230246251565e-16 : (real)5.9604645e-8f)
 #define MCOR_BOUND_ROUNDINGS ((real)256)
 #define MCOR_BOUND_LARGER ((real)1 + 16 * MCOR_UNIT_ROUNDOFF)
@@ -31,7 +32,8 @@
 #define MCOR_BOUND_FARTHER ((real)1 + 8 * MCOR_UNIT_ROUNDOFF)
 
 #if MCOR_TENSOR
-/* Finds the interval of the one-dimensional w from d - e to d + e: w falls, then rises to 0. */
+/* Finds the least and the greatest one-dimensional w for distances from |d| - e to |d| + e. As the
+ * distance grows, w falls below 0, then rises to 0. */
 void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
 {
   const realv near = fmax(fabs(d) - e, (realv)0) * (inv_h * MCOR_BOUND_NEARER);
@@ -131,7 +133,7 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
   bound->count += tile->count;
 }
 
-/* Returns the state that the sums prove. */
+/* Returns the state that the sums prove for the box; MCOR_EXAMINE if they prove none. */
 int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
 {
   const real k = (2 * (real)bound->count + MCOR_BOUND_ROUNDINGS) * MCOR_UNIT_ROUNDOFF;

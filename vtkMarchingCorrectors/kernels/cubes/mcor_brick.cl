@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bricks that get slots [III-B]; mcor_virtual_grid.cl has functions of bricks. */
+/* Gives slots to bricks [III-B]. The functions for a brick's number and slot are in
+ * mcor_virtual_grid.cl. */
 
-/* One work-item = one word of 32 bricks. Counts its bricks. */
+/* One work-item = one word, which has a bit for each of 32 bricks. Writes how many bits are set. */
 __kernel void mcor_brick_count(
   const int word_count, __global const uint* brick_bits, __global int* counts)
 {
@@ -11,8 +12,9 @@ __kernel void mcor_brick_count(
   counts[word] = (int)popcount(brick_bits[word]);
 }
 
-/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes each brick's
- * coordinates to its slot, and its seeds: all its cells if the brick is chosen, else none. */
+/* One work-item = one word, which has a bit for each of 32 bricks. Reads the bits and the scanned
+ * counts. If a brick's bit is set, writes to its slot the brick's coordinates, and its seeds: all
+ * its cells if its bit in seed_bits is set, else none. */
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
@@ -59,9 +61,9 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
   need[slot] = known[slot] || idle ? 0 : ~0UL;
 }
 
-/* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
- * one. words: how many 4-byte words the values of a brick's nodes take. Either all values are
- * known, or none. */
+/* One work-item = one brick of the old set. Moves the brick's data to its slot in the new set, if
+ * it has one. words: how many 4-byte words the values of a brick's nodes take. Either all values of
+ * a brick are known, or none. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

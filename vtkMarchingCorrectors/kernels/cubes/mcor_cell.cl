@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cells and edges as masks of a brick, and the way a cell is cut: by its case, and by the field's
- * decisions on its faces and on tunnels in it. The bit of a cell, or of an edge along an axis, is
- * the bit of its lowest node, x + 4 y + 16 z. */
+/* Keeps a brick's cells and edges as masks of 64 bits. Finds how a cell is cut: by its case, and by
+ * the field's decisions on its faces and on tunnels in it. The bit of a cell, or of an edge along
+ * an axis, is the bit of its lowest node, x + 4 y + 16 z. */
 
 /* Makes masks of corners from the node masks of a brick and its upper neighbours: mask c becomes
  * the mask of each cell's corner c (bits x, y, z). */
@@ -31,7 +31,8 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
-/* Returns the cells that are valid at all corners and have corners on both sides. */
+/* Returns the cells that are valid at all corners and have corners on both sides of the iso
+ * value. */
 ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
   ulong some = 0, all = ~0UL, usable = ~0UL;
@@ -52,9 +53,9 @@ void mcor_corners_of(
   mcor_cell_corners(corners);
 }
 
-/* Finds, for the edges of a brick along an axis, the bits of the four cells around each edge. q[0]:
- * of the cell above in both other axes; q[1]: of the cell below in the first; q[2]: below in the
- * second; q[3]: below in both. m: cell masks of the brick and its lower neighbours. */
+/* Finds, for the edges of a brick along an axis, the bits of the four cells around each edge. b and
+ * c are the other two axes. q[0]: the cell above the edge along b and c; q[1]: below along b; q[2]:
+ * below along c; q[3]: below along both. m: cell masks of the brick and its lower neighbours. */
 MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
@@ -64,10 +65,10 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
   q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
-/* The MCOR_EDGE_MASKS masks are three for each axis: crossed edges; crossed edges next to a cell
- * that is not used; pinched edges. Only two cells around a pinched edge are used, opposite to each
- * other. Their triangles form two fans, so the edge has two vertices, the second one for the cell
- * below in the first other axis. */
+/* A brick has MCOR_EDGE_MASKS masks of edges, three for each axis: crossed edges; crossed edges
+ * next to a cell that is not used; pinched edges. Only two cells around a pinched edge are used,
+ * opposite to each other. Their triangles form two fans, so the edge has two vertices. The second
+ * vertex is for the cell that is below the edge along the first of the other two axes. */
 
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
@@ -130,8 +131,9 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns the row of a cell's case that its faces choose: each joined ambiguous face sets a bit in
- * the row's number. corners: see mcor_cell_corners. */
+/* Returns the row that the faces of a cell choose among the rows of its case: each ambiguous face
+ * that joins its nodes above the iso value sets a bit in the row's number. corners: see
+ * mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -160,7 +162,7 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
 #define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
 
 /* Returns how a cell without finer nodes is cut: by the field's decisions if the topology is
- * resolved, else with no regions joined. Adds 1 to *tunnels if the cell has one. */
+ * resolved, else with no regions joined. Adds 1 to *tunnels if the cell has a tunnel. */
 __global const mcor_cell_row* mcor_cell_cut(
   const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {
@@ -186,7 +188,7 @@ int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_
   {
     const int edge = row->edges[i], axis = edge >> 3, x = edge & 1, y = edge >> 1 & 1;
     const int number = numbers[axis][first + x + 5 * y + 25 * (edge >> 2 & 1)];
-    /* The second fan belongs to the cell below in the first other axis. */
+    /* The second fan belongs to the cell below the edge along the first other axis. */
     to[i] = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
   return row->triangles;

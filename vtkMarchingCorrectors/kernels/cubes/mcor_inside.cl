@@ -4,7 +4,8 @@
 /* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that the
  * nodes are above the iso value of the free surface, so that no other particles are read. */
 
-/* Returns roughly the share of the query's box and its reach that the tile's particles fill. */
+/* Returns roughly which share of the query's box, widened on all sides by the query's reach, the
+ * tile's particles fill. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 {
   realv volume = 0, inv_h = 0;
@@ -27,13 +28,13 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries it,
- * else mcor_seed_brick does. */
+ * and with several levels mcor_seed_prove; else mcor_seed_brick tries it. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
 /* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
- * above the iso value. The first point is `at`, the others are `step` apart. The order of the sum
- * differs from that at a node; the margin covers this, too. */
+ * above the iso value. The first point is `at`, the others are `step` apart. The terms are added in
+ * another order than at a node; the margin of 1.0001 covers this, too. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
@@ -61,10 +62,11 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether the close particles lift all nodes of the leaf's level on its far sides above the iso
- * value, too. Finer nodes there belong to finer leaves. A finer leaf's proof covers its own nodes.
- * If the proof fails on the finer leaf's far sides, beside the larger leaf, the finer leaf is
- * chosen, and the march goes on from it. tile: particles close to any of the leaf's nodes. */
+/* Whether the close particles lift the nodes on the leaf's far sides above the iso value, too. Only
+ * nodes of the leaf's own level count: finer nodes on these sides belong to finer leaves, whose own
+ * proofs cover them. If the proof fails on a finer leaf's far sides, beside a larger leaf, the
+ * finer leaf is chosen, and the march goes on from it. tile: particles close to any of the leaf's
+ * nodes. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
@@ -100,13 +102,15 @@ bool mcor_sides_are_inside(
 }
 #endif
 
-/* Returns MCOR_ABOVE if the particles within half their support of a brick's nodes alone lift all
- * its nodes above the iso value, else MCOR_EXAMINE. Such particles are an eighth of all particles
- * in reach, and make up most of the weight sum. Other particles can only add to the sum: w >= 0,
- * rounding is monotone, and the order is the same. The margin allows for a compiler that rounds the
- * same term differently elsewhere. Far inside the fluid, nothing else is evaluated. A leaf `beside`
- * finer or coarser leaves gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide: the
- * close particles of the brick's region, if complete. */
+/* Returns MCOR_ABOVE if close particles alone lift all nodes of a brick above the iso value, else
+ * MCOR_EXAMINE. A particle is close if a node lies within half the particle's support. About an
+ * eighth of all particles in reach are close, and make up most of the weight sum. Other particles
+ * can only add to the sum: w >= 0, rounding is monotone, and terms keep their order. The margin of
+ * 1.0001 allows for a compiler that rounds the same term differently elsewhere.
+ *
+ * beside: the brick is a leaf beside finer or coarser leaves; if the proof fails on its far sides,
+ * the result includes MCOR_OPEN_SIDES. wide: the close particles of the brick's region; used only
+ * if complete. */
 int mcor_seed_proof(
   const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
 {
@@ -146,8 +150,9 @@ int mcor_seed_proof(
 }
 
 #if MCOR_PROVES_INSIDE
-/* One work-item = one slot, of `count` from `first` on. Tries the proof if neither the nodes nor a
- * state is known, and the proof was not tried before. */
+/* One work-item = one of `count` slots from `first` on. If the values of the brick's nodes are not
+ * known, and `proofs` has no state of the brick, tries the proof, and writes its result to
+ * `proofs`. If the proof succeeds, marks all nodes as above and valid. */
 __kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global ulong* above, __global ulong* valid)

@@ -35,8 +35,8 @@ int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
   return ((x | y | z) & 1) == 0 && own.x >= 0 ? own : mcor_leaf_place(leaf, x, y, z, true);
 }
 
-/* Returns the parts of a leaf that have finer nodes, as bits MCOR_DIRECTION: an edge or a face of a
- * cell there has a node in its middle, because a finer leaf touches the part. */
+/* Returns the parts of a leaf that have finer nodes, as bits MCOR_DIRECTION. A finer leaf touches
+ * each such part, so edges or faces of cells in the part have a node in their middle. */
 uint mcor_leaf_hanging(uint finer)
 {
   uint hanging = 0;
@@ -99,7 +99,8 @@ int mcor_leaf_zone(int u)
   return u == 0 ? 0 : u == 8 ? 2 : 1;
 }
 
-/* Nodes of a cell as bits, see mcor_adaptive_cell.h; used: the cell may be used. */
+/* Nodes of a cell as bits, see mcor_adaptive_cell.h. used: the cell is valid at all nodes, and has
+ * nodes on both sides of the iso value. */
 typedef struct
 {
   uint split, above;
@@ -225,7 +226,7 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Returns the vertex of a cell's edge. axis, lower: its slot in mcor_adaptive_cell.h. */
+/* Returns the vertex of a cell's edge. axis, lower: the edge's slot in mcor_adaptive_cell.h. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {
@@ -236,7 +237,7 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
   }
-  /* The second vertex of a pinched edge belongs to the cell below in the first other axis. */
+  /* The second vertex of a pinched edge is for the cell below it along the first other axis. */
   const bool below = (edge.quadrants & 5) == 0;
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }

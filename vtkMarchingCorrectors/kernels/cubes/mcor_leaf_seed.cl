@@ -4,12 +4,13 @@
 /* Adaptive cubes: finds the leaves that may have surface.
  *
  * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of this level, 5 along an
- * edge. Where a finer leaf is beside it, they also have nodes of the finer level on its sides, 9
- * along an edge. If all leaves up from it are of its level, each of these leaves gives the sides
- * of its own nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. If the leaf
- * and the leaves up from it are on the same side, it has no surface. Beside leaves of other levels,
- * the state has to cover all points of the leaf, with its sides. All lengths are in cells of the
- * level. */
+ * edge. Where a finer leaf is beside the leaf, its cells also have nodes of the finer level on the
+ * common side, 9 along an edge. A leaf itself owns 4 nodes along an edge. The fifth belongs to a
+ * leaf up from it, i.e. towards larger x, y or z. If all leaves up from a leaf are of its level,
+ * the states (mcor_seed.cl) or node values of all these leaves tell on which sides of the iso value
+ * the nodes of its cells lie. If all these nodes are on one side, the leaf has no surface. Beside
+ * leaves of other levels, a leaf's state has to cover all points of the leaf, its sides included.
+ * All lengths are in cells of the level. */
 
 /* Returns the bits of the 8 bricks of a row. Rows are numbered through all blocks. */
 #define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)

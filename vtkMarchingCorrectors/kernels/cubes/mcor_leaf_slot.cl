@@ -31,7 +31,7 @@ int4 mcor_leaf_wanted_brick(int4 leaf, int b)
                : (int4)(2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9, leaf.w - 1);
 }
 
-/* One work-item = one leaf. Requests the bricks that it needs. */
+/* One work-item = one leaf. Requests the bricks that the leaf needs. */
 __kernel void mcor_leaf_request(MCOR_BLOCK_PARAMS, const int count, const int plane,
   __global const int4* cells, __global const uint* finer, __global uint* brick_bits)
 {
@@ -43,7 +43,7 @@ __kernel void mcor_leaf_request(MCOR_BLOCK_PARAMS, const int count, const int pl
   }
 }
 
-/* One work-item = one leaf. Writes the slots of the bricks that it needs, and -1 for other
+/* One work-item = one leaf. Writes the slots of the bricks that the leaf needs, and -1 for other
  * bricks. */
 __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int plane,
   __global const int4* cells, __global const uint* finer, __global int* tables)
@@ -74,8 +74,8 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Marks the slots whose node values the crossed cells of a leaf need. Returns whether it has
- * crossed cells. The leaf has no finer leaves around it. */
+/* Marks the slots whose node values the crossed cells of a leaf need. Returns whether the leaf has
+ * crossed cells. No finer leaves may be around the leaf. */
 bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above,
   __global const ulong* valid, __global ulong* need)
 {
@@ -98,9 +98,9 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
   return crossed != 0;
 }
 
-/* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, it has no
- * surface. If so, marks the slots whose values its cells need, even slots whose sides are certain.
- * Several leaves may mark one slot. */
+/* One work-item = one leaf. Writes to `mixed` whether the leaf's cells have nodes on both sides of
+ * the iso value; a leaf that is not mixed has no surface. Marks the slots whose values the cells of
+ * a mixed leaf need, even slots whose sides are certain. Several leaves may mark one slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global ulong* need)

@@ -8,10 +8,10 @@
  * of its level. With several levels, mcor_march_hanging finds which other cells are used, and which
  * edges they use. */
 
-/* One work-item = one leaf. Reads its nodes' masks. Removes from `used` those of its cells that are
- * neither plain nor used. Marks the edges of its used cells that are not plain, and writes the
- * number of their triangles, or lines, to its slot. Adds to flat_loops the number of loops of owned
- * cells that lie in one face. */
+/* One work-item = one leaf. Reads its nodes' masks. Treats the cells of `used` that are not plain:
+ * removes a cell from `used` if it is not valid at all nodes, or has no nodes on both sides. Marks
+ * the edges of the other cells, and writes the number of their triangles, or lines, to the leaf's
+ * slot. Adds to flat_loops the number of polygons of owned cells that lie in one face. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)

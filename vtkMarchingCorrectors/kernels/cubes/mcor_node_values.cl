@@ -1,10 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values and sides of nodes; the functions for them are in mcor_node.cl. */
+/* Evaluates nodes, and finds their sides of the iso value. The functions for nodes are in
+ * mcor_node.cl. */
 
-/* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. If they are
- * needed, reads the particles that reach them, and writes their values and weights. */
+/* One work-item = MCOR_ITEM_NODES nodes of one of the `count` bricks from slot `first` on. If the
+ * nodes are needed, reads the particles that reach them, and writes the nodes' values and
+ * weights. */
 __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)

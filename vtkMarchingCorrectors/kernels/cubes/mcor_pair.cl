@@ -2,11 +2,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The paper's seed selection [III-C] finds pairs of particles that are closer than the smoothing
- * length and have values on both sides, and marks all cells on the straight line between them.
- * Cells without a block are not marked, because they certainly have no surface. */
+ * length and have values on both sides of the iso value, and marks all cells on the straight line
+ * between them. Cells without a block are not marked, because they certainly have no surface. */
 
-/* Adds a cell to the cells of its brick, if the brick exists. `reached` is indexed by the
- * bricks' numbers. Returns whether the cell is new. */
+/* Adds a cell to the reached cells of its brick, if the brick's block exists. `reached` is indexed
+ * by the bricks' numbers. Returns whether the cell is new. */
 bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
   const int number = mcor_brick_number(MCOR_BLOCK_ARGS, (int4)(x >> 2, y >> 2, z >> 2, 0));
@@ -115,10 +115,10 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
     MCOR_TILE(tile, weight, i) != 0 && (above || (r2 + slack) * other * other >= (real)1);
 }
 
-/* Marks the cells between particle j and the particles k of the tile that pair with it: on the
- * other side of the iso value, and closer than j's smoothing length. If they are also closer than
- * k's, only the particle above marks the cells. Differences are exact, so the result does not
- * depend on which particles share a tile. */
+/* Marks the cells between particle j and each of its partners: particles k of the tile that are on
+ * the other side of the iso value, and closer than j's smoothing length. If they are also closer
+ * than k's smoothing length, only the particle above the iso value marks the cells. Differences of
+ * positions are exact, so the result does not depend on which particles share a tile. */
 void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int j, real iso, real h_scale, MCOR_MARK_PARAMS)
 {
@@ -143,8 +143,8 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
   }
 }
 
-/* Fits the query, with the reach of pairs, to the first particles of [begin, end), as many as are
- * in one row. Returns their number. */
+/* Fits the query, with the reach of pairs, to the particles from `begin` on, until `end` or until x
+ * descends, see mcor_query_particles. Returns the number of these particles. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -185,10 +185,10 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
   }
 }
 
-/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles; it tests
- * them together first, because most particles are far from the surface. Reads the particles within
- * the smoothing length of each. Marks the cells between pairs that have the iso value between their
- * values. */
+/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. All
+ * groups are tested together first, because most particles are far from the surface. Reads the
+ * particles within the smoothing length of each particle. Marks the cells on the line between the
+ * two particles of each pair, whose values have the iso value between them. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

@@ -76,9 +76,10 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   }
 }
 
-/* One work-item = one brick of a block. Adds the periodic images of its reached cells that are in
- * the first period or in the ring around it. Periods are in cells; 0: open. Sets flags[0] if a cell
- * is new. */
+/* One work-item = one brick of a block. Adds the periodic images of its reached cells, by one
+ * period along each axis, that are in the first period or at most `ring` cells outside of it.
+ * first, period: in cells; a period of 0: not periodic along this axis. Sets flags[0] if a cell is
+ * new. */
 __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_x,
   const int first_y, const int first_z, const int period_x, const int period_y, const int period_z,
   __global uint* reached, __global int* flags)

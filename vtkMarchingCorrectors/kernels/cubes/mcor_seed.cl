@@ -55,8 +55,8 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Returns, as a state, the sides of all particles that may reach a query's box, and maybe of
- * others. */
+/* Returns, as a state, the sides of all particles that may reach a query's box, and maybe of a few
+ * more particles. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -88,12 +88,12 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* If more particles reach a coarse cube, it is divided without a bound. */
+/* A coarse cube that more particles reach is divided, without computing a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
- * particles, and may be used afterwards. If part of a `coarse` cube is void, the cube may still
- * count as certain. It may count as undecided though a bound could decide. */
+ * particles, and may be used afterwards. coarse: the result may be a certain side though part of
+ * the cube is void, and MCOR_EXAMINE though a bound could decide. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
@@ -157,12 +157,12 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
   return has_leaves ? found : 0xff;
 }
 
-/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and
- * the states of blocks. In a plane (depth 0) or with several levels, it first tries the range of
- * the particles' values. Writes the states of its bricks, or leaves, and requests those that are
- * uncertain. Appends a region with uncertain bricks to the list, from entry `first` on, in any
- * order; list_count: the list's length for each level. With several levels, a region includes the
- * nodes on its far sides. Bricks above a plane are void. */
+/* One work-item = one of `count` regions from `first` on. Reads the particles that reach the
+ * region, and the states of blocks. In a plane (depth 0) or with several levels, it first tries the
+ * range of the particles' values. Writes the states of the region's bricks, or leaves, and requests
+ * each uncertain one. Appends a region with uncertain bricks to the list, from entry `first` on, in
+ * any order; list_count: the list's length for each level. With several levels, a region includes
+ * the nodes on its far sides. Bricks above a plane are void. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
@@ -226,10 +226,11 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
 }
 
-/* Finds the state of a brick in an uncertain region. The state covers its nodes; for a leaf beside
- * other levels also the nodes on its far sides. wide: the particles of the region, if complete. If
- * a work-item evaluates whole bricks, it also evaluates the nodes of an uncertain brick, whose
- * particles are already gathered. Returns the nodes that are known now. */
+/* Writes the state of a brick in an uncertain region. The state covers the brick's nodes, and for a
+ * leaf beside other levels also the nodes on its far sides. wide: the particles of the region; used
+ * only if complete. If a work-item evaluates whole bricks, also evaluates the nodes of an uncertain
+ * brick, whose particles are already gathered. Returns a mask of the nodes whose values are known
+ * now. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
@@ -263,9 +264,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
 /* Number of bricks of a region that a work-item treats. */
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
-/* One work-item = MCOR_ITEM_BRICKS bricks of a region; the list has `count` regions from `first`
- * on. Reads the particles that reach them. Writes the states of bricks that are not known yet, and
- * the values and signs of nodes that it evaluates. */
+/* One work-item = MCOR_ITEM_BRICKS bricks of one region; the list has `count` regions from entry
+ * `first` on. Reads the particles that reach the bricks. Writes the states of bricks whose nodes
+ * are not known yet, and the values and signs of nodes that it evaluates. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int count,
   MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS,
   __global uchar* states, __global ulong* known, __global real* node_value,
@@ -330,7 +331,7 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick to examine,
+/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each uncertain brick,
  * and each brick that is certain of another side than a brick next to it. */
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)

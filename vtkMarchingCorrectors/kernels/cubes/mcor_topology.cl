@@ -3,9 +3,10 @@
 
 /* Topology by the field. On an ambiguous face, two nodes at opposite corners are above the iso
  * value, and the other two below. The field at the saddle of the face's bilinear interpolant
- * decides which nodes are connected. The brick that owns the face's lowest node evaluates it once,
- * so both cells read the same answer. Then cells with two loops follow: the field at the saddles of
- * the trilinear interpolant decides whether the loops make a tunnel.
+ * decides which nodes are connected. The brick that owns the face's lowest node evaluates the
+ * saddle once, so the cells on both sides of the face read the same answer. Cells whose surface has
+ * two loops come next: the field at the saddles of the trilinear interpolant decides whether a
+ * tunnel joins the loops.
  *
  * With adaptive cubes, the field decides on faces between two plain cells of one level, and on
  * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
@@ -108,7 +109,7 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
 }
 
 /* One work-item = one brick. Reads the field at its faces' saddles. Keeps only the joined faces,
- * and writes their number. */
+ * whose saddles are above the iso value, and writes their number. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
   __global const real* value, __global ulong* decisions, __global int* joined_count)
 {
@@ -163,8 +164,8 @@ real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, re
 }
 
 /* Finds the saddles, within the cell, of the trilinear interpolant of corner values f, and returns
- * their number. All three derivatives are 0 there: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z +
- * xy this means Q R = -a, P R = -b, P Q = -c. */
+ * their number. At a saddle all three derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R =
+ * xyz Z + xy this means Q R = -a, P R = -b, P Q = -c. */
 int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
   const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];
@@ -191,8 +192,8 @@ int mcor_topology_find_saddles(const real* f, real4 saddle[2])
   return count;
 }
 
-/* Returns the mean of the points where linear interpolation along the cell's edges is 0; it lies
- * between two loops. */
+/* Returns the mean of the points where linear interpolation along the cell's edges is 0. If the
+ * surface in the cell has two loops, this point lies between them. */
 real4 mcor_topology_middle(const real* f)
 {
   real4 sum = 0;
@@ -213,8 +214,8 @@ real4 mcor_topology_middle(const real* f)
 }
 
 /* One work-item = one brick. Reads the cells that may have a tunnel, and node values. Writes two
- * samples for each cell: the two saddles in it; if it has one, this saddle twice; if none, the
- * middle twice. */
+ * samples for each cell: its two saddles; its only saddle twice; or, without a saddle, twice the
+ * point of mcor_topology_middle. */
 __kernel void mcor_topology_middles(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
   __global const int* base, const real iso, __global int4* sample_node,

@@ -47,7 +47,8 @@
 #endif
 #endif
 
-/* Defines the number of this work-item. Surplus work-items return at once. */
+/* Defines `item`, the number of this work-item. Surplus work-items, for which `condition` does not
+ * hold, return at once. */
 #define MCOR_ITEM(item, condition)                                                                 \
   const int item = get_global_id(0);                                                               \
   if (!(condition))                                                                                \
@@ -130,8 +131,8 @@ real mcor_lane_sum(realv v)
 #define MCOR_CLUSTER MCOR_CLUSTER_OF(MCOR_LANES)
 #define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
 
-/* Least distance of a vertex from the ends of its edge. Vertices of edges that meet in a node at
- * the iso value then stay apart, and no triangle loses its area. */
+/* Least distance of a vertex from the ends of its edge, as a share of the edge. It keeps vertices
+ * apart whose edges meet in a node at the iso value, so that no triangle loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */
@@ -154,8 +155,8 @@ ulong mcor_from_next(int axis, ulong m, ulong next)
   return (m >> step & ~(low << 3 * step)) | (next & low) << 3 * step;
 }
 
-/* Returns the mask in which each node has the bit of the last node along an axis. last: the mask of
- * the last brick. */
+/* Returns the mask in which each node has the bit of the previous node along an axis. last: the
+ * mask of the previous brick. */
 ulong mcor_from_last(int axis, ulong m, ulong last)
 {
   const ulong low = mcor_lowest(axis);

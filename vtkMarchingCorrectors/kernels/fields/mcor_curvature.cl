@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature at a point: of the iso surface of a field f that goes through the point. It is computed
- * from the gradient g and the Hessian H of the SPH sum there. With the normal n = -g / |g|, which
- * points to lower values,
+/* Curvature at a point: the curvature of the iso surface of a field f that goes through the point.
+ * It is computed from the gradient g and the Hessian H of the SPH sum at the point. With the normal
+ * n = -g / |g|, which points to lower values,
  *
  *   2 mean = div n = (g . H g - |g|^2 tr H) / |g|^3        Gaussian = g . adj(H) g / |g|^4
  *
  * For a sphere of radius R around higher values, the mean is 1 / R, the Gaussian 1 / R^2. */
 
-/* A sum and its derivatives, per cube. Elements of the Hessian: xx, yy, zz, xy, yz, zx. */
+/* A sum and its derivatives; the unit of length is a cube. Elements of the Hessian: xx, yy, zz, xy,
+ * yz, zx. */
 typedef struct
 {
   realv value, gradient[3], hessian[6];

@@ -6,9 +6,9 @@
  * Arrays are fixed-point numbers, like positions, so a difference of two values is exact. The
  * gradient of a linear array is then exact up to the rounding of the sums. */
 
-/* One work-item = one sorted particle, of `count` from `first` on. Writes its position as node and
- * offset, and whether it is in the box; without a box, every particle is. Particles outside get
- * node -1. */
+/* One work-item = one of `count` sorted particles from `first` on. Writes its position as node and
+ * offset, and whether it is in the box; without a box, every particle counts as inside. Particles
+ * outside get node -1. */
 __kernel void mcor_derive_place(const int first, const int count, const real units,
   const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
   __global const fix* py, __global const fix* pz, const int has_box, const int first_x,
@@ -29,7 +29,7 @@ __kernel void mcor_derive_place(const int first, const int count, const real uni
     (real)(z % step_z) / (real)step_z, 0);
 }
 
-/* Sums over the neighbours j of the particles i in the lanes, per cube. */
+/* Sums over the neighbours j of the particles i in the lanes; the unit of length is a cube. */
 typedef struct
 {
   realv moments[3][3];              /* sum V_j grad_a W_ij (x_j - x_i)_b */
@@ -81,7 +81,7 @@ fixv mcor_derive_own(
 }
 
 /* One work-item = one group of particles. Reads arrays of fixed-point numbers, `stride` long each.
- * Writes the sums of arrays `first_array` and following, MCOR_ARRAY_STEP at most. Point i is sorted
+ * Writes the sums of at most MCOR_ARRAY_STEP arrays from `first_array` on. Point i is sorted
  * particle first + order[i]. */
 __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first, __global const int* order, const int first_array, const int array_count,

@@ -5,9 +5,9 @@
  * gradients. Every sum adds its particles in the order of the search grid, so a point's bits do not
  * depend on other points. */
 
-/* One work-item = one point. Reads its node, which is below 0 if no particle reaches it. Writes a
- * sort key that puts points of a cell, and cells of a brick, next to each other. first_x, ...: the
- * first brick. */
+/* One work-item = one point. Reads the point's node; node x is below 0 if no particle reaches the
+ * point. Writes a sort key that puts points of a cell, and cells of a brick, next to each other.
+ * first_x, ...: the first brick. */
 __kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
   __global const int4* node, __global ulong* keys)
@@ -53,7 +53,7 @@ void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
   }
 }
 
-/* Evaluates a group of points with particles that it gathers for itself. */
+/* Writes the sums at a group of points, from particles that are gathered for this group alone. */
 void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   mcor_reach* reach, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
@@ -70,9 +70,9 @@ void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_point
 /* mcor_probe_sums, the kernel that calls these functions, is in mcor_probe_lanes.cl and
  * mcor_probe_point.cl. */
 
-/* One work-item = one group of points. Writes the gradients, per cube, of the weight sums, and of
- * the sums of weight times array for arrays `first_array` and following, MCOR_ARRAY_STEP at
- * most. */
+/* One work-item = one group of points. Writes the gradients of the weight sums, and of the sums of
+ * weight times array for at most MCOR_ARRAY_STEP arrays from `first_array` on. The unit of length
+ * is a cube. */
 __kernel void mcor_probe_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first_array, __global real* weight_gradient, const int attribute_count,
   const int stride, __global const real* attributes, __global real* gradients)

@@ -12,8 +12,8 @@ typedef struct
   realv weight[MCOR_CLUSTER], sums[MCOR_CLUSTER][MCOR_ATTRIBUTE_LIMIT];
 } mcor_cluster;
 
-/* Whether the parts are so close together that packing their lists of particles takes longer than
- * reading the whole tile. The limit was measured at planes of points. */
+/* Whether the parts of a group are so close together that packing their lists of particles takes
+ * longer than reading the whole tile. The limit was measured at planes of points. */
 #define MCOR_TILE_SHARE 0.8f
 bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
 {
@@ -31,7 +31,8 @@ bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mc
 }
 
 /* Returns how many groups from `begin` on, before `end`, fit into one cluster, at least 1. Fits a
- * query to the box around their points; its origin is a node in the middle. */
+ * query to the box around the points of these groups; the query's origin is a node in the middle of
+ * the box. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
   __global const int4* node, __global const real4* offset, mcor_query* query)
 {
@@ -181,7 +182,7 @@ void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor
   }
 }
 
-/* Evaluates a cluster whose points are loaded. */
+/* Writes the sums at all points of a cluster. The points are loaded already. */
 void mcor_cluster_sums(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   mcor_cluster* cluster, MCOR_ATTRIBUTE_PARAMS)
 {

@@ -266,8 +266,8 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor. In nearly all
- * groups they have, because the groups are deep inside; the mean is then known. */
+/* Whether all particles that may reach the query's box have the widest factor. Nearly all groups
+ * are so deep inside the fluid that they do, and the mean is then the widest factor. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -342,8 +342,9 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
- * mcor_widen_solve wrote for the listed ones. Writes whether c(1) is at least the iso value while
- * c(factor) is below it. */
+ * mcor_widen_solve wrote for the listed ones. Writes to `outside` whether a particle is inside with
+ * its own length, but outside with the factor: c(1) is at least the iso value, and c(factor) is
+ * below it. */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)

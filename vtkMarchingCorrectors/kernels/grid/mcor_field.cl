@@ -52,9 +52,9 @@ realv mcor_square(realv x, realv y, realv z)
   return MCOR_FMA(z, z, MCOR_FMA(y, y, x * x));
 }
 
-/* W / norm * h^3 at offset (dx, dy, dz) is made in two steps, mcor_distance and mcor_weight.
- * MCOR_STEP particles make the first step, then all make the second, because a CPU cannot look
- * ahead over both. */
+/* W / norm * h^3 at offset (dx, dy, dz) is made in two steps, mcor_distance and mcor_weight. A loop
+ * makes the first step for MCOR_STEP particles, then another loop makes the second step for all of
+ * them, because a CPU cannot look ahead over both steps. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
 /* Returns the distance; for a tensor kernel, the weight itself. */

@@ -366,9 +366,9 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds w_i A_i over the particles of a reach to `step` sums, of which the first `count` have
- * attributes. One loop makes all sums, because each sum alone would wait for its last addition.
- * weight: w_i in each lane; if `make`, computes it, and adds it to *weight_sum. `step` and `make`
+/* Adds w_i A_i over the particles of a reach to `step` sums. Only the first `count` sums have an
+ * attribute A. One loop makes all sums, because each sum alone would wait for its last addition.
+ * weight: w_i in each lane; if `make`, computes w_i, and adds it to *weight_sum. `step` and `make`
  * are constants. */
 #define MCOR_ATTRIBUTE_STEP 4
 __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,

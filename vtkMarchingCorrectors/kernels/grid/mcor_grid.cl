@@ -39,8 +39,9 @@ __kernel void mcor_grid_key(const int count, const int is_simple, __global const
   __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
     __global const real *size
 
-/* Compares two particles of one search cell by position, smoothing length, size and kind; then by
- * number, because the particles differ at most in their scalar, see mcor_grid_order_value. */
+/* Whether particle i of a search cell goes before particle j: by position, smoothing length, size
+ * and kind. Particles for which all these are equal differ at most in their scalar, and are ordered
+ * by number, see mcor_grid_order_value. */
 bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
   return x[i] != x[j]                ? x[i] < x[j]
@@ -52,7 +53,8 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
                                      : i < j;
 }
 
-/* Compares two particles by their values, then by number; if `value` is 0, by mcor_grid_before. */
+/* Whether particle i goes before particle j: by value, then by number; if `value` is NULL, as in
+ * mcor_grid_before. */
 bool mcor_grid_value_before(MCOR_PARTICLES, __global const real* value, int i, int j)
 {
   return !value            ? mcor_grid_before(x, y, z, inv_h, size, i, j)
@@ -60,7 +62,7 @@ bool mcor_grid_value_before(MCOR_PARTICLES, __global const real* value, int i, i
                            : i < j;
 }
 
-/* Sorts particles by a heap, which needs no memory beside them. */
+/* Sorts particles by a heap, which needs no further memory. */
 void mcor_grid_heap_sort(
   MCOR_PARTICLES, __global const real* value, __global int* order, int count)
 {
@@ -125,9 +127,9 @@ bool mcor_grid_rank(
 }
 #endif
 
-/* Sorts the particles within each of several whole cells, which takes less time than cell by cell.
- * keys, order and px point to the first particle of the first cell. Returns the largest number of
- * particles in a cell. */
+/* Sorts the particles of several whole cells, each cell for itself. One call for several cells
+ * takes less time than a call for each cell. keys, order and px point to the first particle of the
+ * first cell. Returns the largest number of particles in a cell. */
 int mcor_grid_insert(
   __global const ulong* keys, MCOR_PARTICLES, __global int* order, __global fix* px, int count)
 {
@@ -333,9 +335,10 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 #endif
 }
 
-/* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up for a
- * side without neighbours. one_sided: 5/3 variance. Solids may fill that side, but not overfill it:
- * their part of g is multiplied by the share, from 0 to 1, that makes |g| least. */
+/* Returns the factor that makes up for a side without neighbours in the density of a particle: 1 +
+ * 5/3 D^2 with D^2 = variance |g|^2 / n^2, where g and n are the sums `fluid` and `size`.
+ * one_sided: 5/3 variance. Solids may fill the empty side, but not overfill it: g gets the share of
+ * the sum `solids`, from 0 to 1, that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;
@@ -359,7 +362,7 @@ realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (all 1 for a number
  * density). Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j;
- * for fluid, times mcor_density_factor. */
+ * for fluid, unless the kernel is a tensor kernel, times mcor_density_factor. */
 __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int plane,
   const real one_sided, __global const real* mass, __global real* density)
 {

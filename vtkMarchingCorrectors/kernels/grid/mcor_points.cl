@@ -67,8 +67,8 @@ mcor_grouping mcor_group_start(int4 node)
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = MCOR_GROUPED_POINTS points, of `count` from `first` on. Writes 1 where a group
- * starts. */
+/* One work-item = MCOR_GROUPED_POINTS of the `count` points from `first` on. Writes to `flags` 1
+ * for a point at which a group starts, else 0. */
 __kernel void mcor_group_count(
   const int first, const int count, __global const int4* all_nodes, __global int* flags)
 {
@@ -121,7 +121,7 @@ void mcor_points_load(const mcor_grid* grid, __global const int4* node, int begi
 }
 
 /* Fits the query, and the boxes of the parts, to points with offsets between low and high. The
- * query's origin is a node in their middle. */
+ * query's origin is a node in the middle of these points. */
 void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv high[3],
   mcor_points* points, mcor_query* query)
 {
@@ -168,8 +168,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* Turns an offset in edges into cubes. If edges differ along the axes, an offset close to a
- * fixed-point number is rounded to it, so that a particle's distance from itself is 0. */
+/* Returns an offset in cubes; `offset` is in edges. If edges differ along the axes, an offset close
+ * to a fixed-point number is rounded to it, so that a particle's distance from itself is 0. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
   const real at = offset * grid->edge[axis], units = at * grid->units,
@@ -193,7 +193,7 @@ void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const
   }
 }
 
-/* Loads a group of points, and fits the query to them, with `margin` added. */
+/* Loads a group of points, and fits the query to a box that reaches `margin` cubes beyond them. */
 void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, real margin, mcor_points* points, mcor_query* query)
 {
@@ -215,7 +215,7 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, margin, &points, &query); \
   mcor_tile_init(&reach.tile)
 
-/* Finds the points' nodes relative to the query's origin, which is also the origin of a tile's
+/* Finds the points' nodes, in cubes from the query's origin, which is also the origin of a tile's
  * particles. */
 void mcor_points_relative(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])

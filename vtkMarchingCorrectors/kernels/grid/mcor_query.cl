@@ -74,8 +74,8 @@ typedef struct
   mcor_span box; /* the same box */
   float radius; /* cubes; -s: s times each particle's own support */
   /* Of the current level, in fixed-point units. cell_size: edges of a cell; first_cell: where cell
-   * 0 begins; slack: its rounding error; reach2: squared reach; z2: squared distance of rows at
-   * z. */
+   * 0 begins; slack: how far rounding may move a particle across a cell's face; reach2: squared
+   * reach; z2: squared distance of rows at z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
   bool has_many_rows; /* more rows are in reach than MCOR_MANY_ROWS */
@@ -139,7 +139,7 @@ bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int next)
   return false;
 }
 
-/* Completes a query whose box is set. */
+/* Sets the origin of a query whose `low` and `high` are set, and makes `box` of them. */
 void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin[3])
 {
   for (int a = 0; a < 3; ++a)
@@ -241,8 +241,9 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to sorted particles from `begin` on, up to `end` or to where x descends, as
- * it may at the end of a row. Returns their number, and in *coarsest the least of their inv_h. */
+/* Fits the query's box to sorted particles from `begin` on, until `end`, or until x descends, which
+ * happens only at the end of a row. Returns the number of these particles, and in *coarsest the
+ * least of their inv_h. */
 int mcor_query_particles(
   const mcor_grid* grid, mcor_query* query, int begin, int end, real* coarsest)
 {

@@ -92,7 +92,8 @@ __kernel void mcor_scan_fill(
   }
 }
 
-/* One work-item = one segment. Reads the segment's keys. Writes how often each digit occurs. */
+/* One work-item = one segment. Reads the segment's keys. Writes how often each value of the digit
+ * occurs. The digit of a key has `bits` bits, from bit `shift` on. */
 __kernel void mcor_sort_count(__global const ulong* keys, const int count, const int segments,
   const int shift, const int bits, __global int* histogram)
 {
@@ -167,7 +168,7 @@ __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* v
 }
 
 /* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
- * the index of its first occurrence; then the count. */
+ * to `begins` the index of its first occurrence. The last entry of `begins` is `count`. */
 __kernel void mcor_run_fill(__global const ulong* keys, const int count,
   __global const int* scanned, __global ulong* distinct, __global int* begins)
 {

@@ -47,9 +47,9 @@ __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_ru
   }
 }
 
-/* One work-item = one brick, of any level. Writes which of its cells are in the box, or in the ring
- * around it. The ring has the cells that would be in the box if they were larger by `ring` of their
- * edges on all sides. */
+/* One work-item = one brick, of any level. Keeps in `clipped` the cells that are in the box, or in
+ * the ring around it. The ring has the cells whose distance from the box along each axis is at most
+ * `ring` of their own edges. */
 __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
   const int ring, __global const ulong* cells, __global ulong* clipped)
 {

@@ -101,10 +101,10 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
 }
 
 /* Writes the lines of a square as triangles whose last two corners are the same, and returns their
- * number. Nodes above are on a line's left. A line begins where the square's border, with the
- * square on its left, goes from above to below. It ends at the crossing before its beginning, or,
- * if the nodes above are joined, at the crossing after its beginning. leaf: the square's leaf; not
- * read for a plain square. upper: see mcor_plane_vertex. */
+ * number. Nodes above the iso value are on the left of a line. The square's border runs around it
+ * with the square on the left. A line begins where the border goes from above to below. It ends at
+ * the border's previous crossing, or, if the nodes above are joined, at the next crossing. leaf:
+ * the square's leaf; not read for a plain square. upper: see mcor_plane_vertex. */
 MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mcor_leaf* leaf,
   int cell, bool joined, __global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, __global int* to)

@@ -9,8 +9,8 @@
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 
-/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. If they are needed,
- * evaluates them, and writes their values and weights, also to the nodes above them, see
+/* One work-item = MCOR_LANES nodes of one of the `count` bricks from slot `first` on. If the nodes
+ * are needed, writes their values and weights, also to the same nodes one layer up in z, see
  * mcor_plane_spread. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,

@@ -139,8 +139,8 @@ void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int grou
   lines->slope = mcor_edges_slope(lines, at);
 }
 
-/* Returns how close to the iso value a vertex must be, because with a small gradient it may
- * otherwise be far from the surface. */
+/* Returns how far the value at a vertex may be from the iso value. The limit is lower where the
+ * slope is small, because there a small difference may mean a long way to the surface. */
 realv mcor_correct_near(realv slope, real iso)
 {
   return fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso)));
@@ -180,9 +180,9 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    /* side: the sign of the sum of terms relative to the iso value. This sum passes 0 between nodes
-     * of a positive weight. Its sign differs from the sign of `value` only at a mean's pole, where
-     * a kernel with negative lobes lets the weight pass 0. */
+    /* side: has the sign of the sum of terms relative to the iso value. This sum passes 0 between
+     * nodes of a positive weight. It has another sign than `value` only where a kernel with
+     * negative lobes makes the weight negative, beyond a pole of the mean. */
     const realv side =
       MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
@@ -211,10 +211,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
 }
 
 /* One work-item = one group of vertices. Reads edges and the values less iso at their ends, or,
- * with `lines`, starts (offset). Writes the vertices' offsets; to `linear`, the linear less the
- * final position along the edge; value, gradient and trimming weight; number of evaluations;
- * attributes. On lines, `linear` becomes 1 if the surface is not reached. limit 0: no correction
- * (preview). */
+ * with `lines`, starts (offset). Writes the vertices' offsets; to `linear`, the linear position
+ * along the edge less the final position, as a share of the edge; value, gradient and trimming
+ * weight; number of evaluations; attributes. On lines, `linear` becomes 1 if the surface is not
+ * reached. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

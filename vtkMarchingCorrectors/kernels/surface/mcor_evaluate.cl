@@ -3,13 +3,13 @@
 
 /* Field and gradient at MCOR_LANES points at a time. */
 
-/* A quantity at points, and its gradient; per cube. */
+/* A quantity at points, and its gradient; the unit of length is a cube. */
 typedef struct
 {
   realv value, gradient[3];
 } mcor_quantity;
 
-/* Field minus iso value, the trimming weight, and the fluid's part of it. */
+/* Field minus iso value, the trimming weight, and the fluid's part of this weight. */
 typedef struct
 {
   mcor_quantity field, weight, fluid;
@@ -61,8 +61,8 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
     }
   }
 #if MCOR_FIELD == MCOR_SHEPARD
-  /* A void between fluid particles, which solids keep valid, has no value. The huge value makes the
-   * iteration search for the void's border. */
+  /* In a void between fluid particles, where solids alone make the weight, the field has no value.
+   * The huge value makes the iteration search for the void's border. */
   const fixv none = fabs(w.value) < (real)1e-12f;
   const realv inv_w = (real)1 / (none ? (realv)1 : w.value);
   at->field.value = none ? (realv)1e30f : s.value * inv_w;

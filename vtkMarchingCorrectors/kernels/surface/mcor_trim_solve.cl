@@ -14,10 +14,11 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes the quantity by which it is trimmed: `quantity`, unless the
- * fluid needs a share of the weight. Then it is the smaller of quantity - threshold and the excess
- * of the fluid's weight over its share (for the weight sum, this excess alone), and is trimmed at
- * 0. A vertex without a mean gets at most the threshold, and so is outside. */
+/* One work-item = one vertex. Writes the quantity by which the vertex is trimmed. With a
+ * fluid_share of 0 (or less), this is `quantity`, and the limit is `threshold`. Else it is the
+ * smaller of quantity - threshold and the excess of the fluid's weight over its share of the weight
+ * (for the weight sum, this excess alone), and the limit is 0. A vertex without a mean gets at most
+ * the limit, and so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -43,10 +44,10 @@ real mcor_trim_fraction(real wa, real wb, real w)
 
 /* One work-item = one cut vertex. Writes its position, as the nearer end's node and an offset:
  * where the weight, taken as linear along the mesh edge, equals the threshold, or where the fluid's
- * weight equals the least for a mean, whichever is nearer to the end inside. It stays away from the
- * ends, because cut vertices of several edges would meet there. Its bits do not depend on the order
- * of vertices. In place of its gradient, writes the vector to the end inside, and whether the
- * fluid's weight decided. */
+ * weight equals the least for a mean, whichever is nearer to the end inside. The position stays
+ * away from the ends, because cut vertices of several edges would meet at an end. Its bits do not
+ * depend on the order of vertices. In place of the gradient, writes the vector to the end inside,
+ * and whether the fluid's weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -143,7 +144,7 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   }
 }
 
-/* Divides a quantity by the length of its gradient, in any unit. Returns the lanes without a
+/* Divides a quantity and its gradient by the gradient's length. Returns the lanes without a
  * gradient. */
 fixv mcor_trim_normalize(mcor_quantity* q)
 {
@@ -264,10 +265,10 @@ void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const 
   mcor_evaluate(grid, query, reach, points, iso, at);
 }
 
-/* Moves a group of points to where field = iso and weight = threshold. If this fails nearby, a
- * point goes back to its start. If it has no Shepard mean there, it moves on to where it has one,
- * and seeks once more from there, because where the weight is nearly 0, the field has no slope to
- * follow. Returns the points that failed in the end. */
+/* Moves a group of points to where field = iso and weight = threshold. A point for which this fails
+ * nearby goes back to its start. If the start has no Shepard mean, the point moves on to where the
+ * mean exists, and seeks once more from this place: where the weight is nearly 0, the field has no
+ * slope to follow. Returns the points that failed in the end. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
   mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -293,10 +294,10 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
   return linear;
 }
 
-/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
- * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 1, or 2
- * if the search fails, because the two surfaces are tangent or too far away, or the boundary
- * eigenvalue has no gradient. */
+/* One work-item = one group of cut vertices at their linear cuts. Moves them to where field = iso
+ * and weight = threshold. Writes position, value, gradient, weight and attributes. Writes the flag
+ * 1, or 2 if the search fails, because the two surfaces are tangent or too far away, or the
+ * boundary eigenvalue has no gradient. */
 __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
   const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
   const int plane, __global real4* offset, __global real* value, __global real4* gradient,

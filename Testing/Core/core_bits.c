@@ -53,7 +53,8 @@ static const bits_case cases[] = {
   { "smooth", .field = MCOR_WEIGHT_SUM, .iso = 0.5, .smooth = 3 },
 };
 
-/* Gives some particles a far larger support, and as much weight as all other particles. */
+/* Gives every third particle a larger support, up to 64 times, and a volume that grows as its cube.
+ * */
 static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)
@@ -189,7 +190,8 @@ static int run_device(int device, uint64_t expected[])
   return good;
 }
 
-/* Runs the cases on all devices that the loader knows, each with the form of the kernels that it gets by default. */
+/* Runs the cases on all devices that the OpenCL loader lists, each with the form of the kernels (cpu or gpu) that is
+ * its default. */
 static int run_devices(void)
 {
   uint64_t expected[sizeof cases / sizeof cases[0]];

@@ -8,7 +8,8 @@
 #include <stdatomic.h>
 #include <threads.h>
 
-/* The number of the call that fails, from 0; -1: no call fails. */
+/* fail_at: the number of the call that fails, from 0; -1: no call fails. call_count: the calls so
+ * far. */
 static int fail_at = -1, call_count;
 
 /* The kinds of calls that may fail: setting an argument of a launch, any other OpenCL call, an
@@ -48,7 +49,8 @@ static int fails(const char* name, int kind)
     return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
-/* Writes once more to a buffer that the host has written to, if CORE_SHADOWS is set. */
+/* If CORE_SHADOWS is set, writes once more to the whole buffer that the host has written to (see
+ * core_fault.h). */
 static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
 
 #define FAULT_WRITE(name, mem, parameters, arguments)                                              \
@@ -86,7 +88,7 @@ FAULT_WRITE(mcor_clEnqueueCopyBuffer, to,
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
 FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
 
-/* Reports a failure but unmaps all the same; otherwise this test would leave the buffer mapped. */
+/* Unmaps even if it reports a failure: otherwise this test would leave the buffer mapped. */
 WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
   (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
     cl_event* event))
@@ -154,7 +156,7 @@ WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
   return getenv("CORE_SHADOWS") ? CL_SUCCESS : __real_mcor_clReleaseMemObject(mem);
 }
 
-/* Decides whether a call that returns a new object fails. */
+/* Decides whether a call that returns a new object fails. Sets *error if it fails. */
 static int fails_to_make(const char* name, cl_int* error)
 {
   const int failed = fails(name, COMMAND);
@@ -232,7 +234,8 @@ FAULT_ALLOCATION(malloc, (size_t size), (size))
 FAULT_ALLOCATION(calloc, (size_t count, size_t size), (count, size))
 FAULT_ALLOCATION(realloc, (void* memory, size_t size), (memory, size))
 
-/* OpenCL's threads may release a buffer a little after the last command that uses it. */
+/* Waits until no more than `buffers` buffers live: OpenCL's threads may release a buffer a little
+ * after the last command that uses it. */
 static void wait_for_release(mcor_context* context, int buffers)
 {
   const double begin = mcor_seconds();

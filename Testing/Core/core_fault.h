@@ -11,11 +11,12 @@
 
 #include "core_fixture.h"
 
-/* The n-th call from now on, counted from 0, fails with this error; -1: no call fails. */
+/* Makes the n-th OpenCL call from now on, counted from 0, fail with this error; -1: no call fails.
+ * */
 void core_fail_call(int n, cl_int error);
-/* Does the same, but arguments of launches, which are most calls, are not counted and never fail. */
+/* Like core_fail_call, but calls that set a launch's argument, which are most calls, are not counted and never fail. */
 void core_fail_command(int n, cl_int error);
-/* Does the same for malloc, calloc and realloc. */
+/* Makes the n-th call of malloc, calloc or realloc from now on return NULL. */
 void core_fail_allocation(int n);
 void core_fail_nothing(void);
 /* Returns the name of the call that has failed, or "". */

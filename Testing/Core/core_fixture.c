@@ -317,7 +317,8 @@ uint64_t core_hash(const mcor_surface* surface)
   hash = core_hash_bytes(hash, &s.attribute_count, sizeof s.attribute_count);
   for (int a = 0; a < s.attribute_count; ++a)
   {
-    /* these bytes are hashed even where an array has fewer components */
+    /* An attribute has at least n numbers. Only its first n are hashed, however many components it
+     * has. */
     hash = core_hash_bytes(hash, s.attributes[a], n * sizeof(double));
   }
   return hash;
@@ -338,7 +339,8 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* Functions for masks of cells and for topology by the field are in the lattice's programs. */
+  /* Kernels that use functions for masks of cells or for topology by the field are compiled with
+   * the sources of the lattice's programs, all others with the sources of the field's. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
   const cl_uint count =
     (cl_uint)mcor_program_sources(cl, of_lattice ? MCOR_PARTS_LATTICE : MCOR_PARTS_FIELD, sources);

@@ -58,7 +58,8 @@
 bool core_tells(const mcor_message* message, const char* words);
 bool core_told(const mcor_context* context, const char* words);
 
-/* The call fails with this status, and with a message that core_told finds. */
+/* Fails the test unless the call returns this status, and a message in which core_told finds the
+ * words. */
 #define CORE_FAILS(context, expected, call, words)                                                 \
   do                                                                                               \
   {                                                                                                \
@@ -134,7 +135,8 @@ uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor
 
 /* Fails unless the surface is an oriented manifold without degenerate triangles. */
 mesh_report core_check_mesh(const mcor_surface* surface);
-/* Does the same, but an edge around which only two opposite cells are valid may have two vertices in one place. */
+/* Like core_check_mesh, but allows two vertices in one place on an edge around which only two opposite cells are valid.
+ * */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
 /* Does what core_check_mesh does, and fails unless exactly the points of the mesh's boundary are flagged. */
 void core_check_flags(const mcor_surface* surface);
@@ -144,7 +146,8 @@ uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
 /* Hashes the number of points, points, triangles and every optional array. */
 uint64_t core_hash(const mcor_surface* surface);
 
-/* Compiles more kernels together with all sources, for mcor_launch. */
+/* Compiles the kernels in `source` together with the library's sources, so that mcor_launch can
+ * start them. */
 void core_extend_program(mcor_context* context, const char* source);
 /* Builds the kernels for this SPH kernel, field and precision. */
 void core_build(

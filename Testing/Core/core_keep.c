@@ -27,7 +27,7 @@ void core_keep_size(const char* name, int64_t points, int64_t cells)
   core_keep(name, "size", text, (size_t)length);
 }
 
-/* Triangles or pieces of lines; the bytes of their corners, one after the other. */
+/* Collects triangles or pieces of lines: the bytes of their corners, one after the other. */
 typedef struct keep_cells
 {
   int corners;  /* corners of each cell */
@@ -36,7 +36,7 @@ typedef struct keep_cells
   unsigned char* bytes;
 } keep_cells;
 
-/* Adds a cell. Its corners begin with the least corner and keep their cyclic order. */
+/* Adds a cell. The corner with the least bytes becomes the first; the cyclic order stays. */
 static void add_cell(
   keep_cells* cells, const mcor_input* input, mcor_surface* s, const int32_t* points)
 {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Has the smallest runs that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
+/* Runs the smallest cases that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
  * and a tank with all options in turn. Prints a hash of all result bits for same_bits.cmake, and writes the results for
- * bits.cmake; other tests check that they are right. Words on the command line choose runs by name. */
+ * bits.cmake. Other tests check that the results are right. Words on the command line choose cases by name. */
 
 #include "core_keep.h"
 #include "core_parts.h"
@@ -40,7 +40,7 @@ static void modules_print(
   fflush(stdout);
 }
 
-/* Collects the hash of a result that is not a surface. */
+/* The hash of a result that is not a surface, while parts of the result are added. */
 typedef struct modules_hash
 {
   const char* name;
@@ -129,7 +129,8 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   return modules_surface(context, "uniform_period_caps", &fine, &options) && good;
 }
 
-/* Runs the lowest layer of the fine particles in a plane, then the coarse particles' lowest layer, too. */
+/* Extracts lines of particles in a plane: first of the lowest layer of fine particles alone, then of this layer and the
+ * lowest layer of coarse particles. */
 static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;

@@ -38,8 +38,8 @@ unsigned char* core_put_point(
   return to;
 }
 
-/* Writes a triangle's key, and how many earlier triangles have the same key. Sorted by these two numbers, triangles
- * are in the whole surface's order. */
+/* Writes a triangle's key, and how many earlier triangles have the same key. Sorted by these two numbers, the triangles
+ * of all boxes have the order of the whole surface. Returns where the next bytes go. */
 static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_t i, uint64_t* nth)
 {
   const uint64_t* key = s->triangle_keys + MCOR_TRIANGLE_KEY * i;
@@ -119,8 +119,8 @@ static void check_points(const mcor_surface* s)
   }
 }
 
-/* Checks that points have different, ascending keys, and that triangles' keys never descend. The comparison of records
- * shows that boxes have the whole surface's keys. */
+/* Checks that points' keys ascend and differ, and that triangles' keys never descend. That boxes have the same keys as
+ * the whole surface is checked where their triangles are compared. */
 static void check_keys(const mcor_surface* s)
 {
   for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
@@ -136,7 +136,7 @@ static void check_keys(const mcor_surface* s)
   }
 }
 
-/* These cuts are for sets around the origin, about 10 across. */
+/* Cuts for sets of particles around the origin, about 10 across. */
 const core_cut core_cuts[CORE_CUTS] = {
   { "2 boxes", { 1, 0, 0 }, { { 0.37 } } },
   { "3, one thinner than a support", { 0, 0, 2 }, { { 0 }, { 0 }, { 1.1, 1.9 } } },

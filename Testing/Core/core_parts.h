@@ -3,7 +3,7 @@
 #ifndef core_parts_h
 #define core_parts_h
 
-/* Compares the surfaces of boxes that part the lattice with the whole surface. */
+/* Compares the surfaces of boxes that divide the lattice with the whole surface. */
 
 #include "core_fixture.h"
 
@@ -18,7 +18,7 @@ typedef struct core_triangles
 
 /* Sorts records by their bytes. */
 void core_sort_records(void* records, int64_t count, size_t width);
-/* Writes all that a point carries, and returns where the next point goes. keys: writes its key, too. */
+/* Writes all arrays of a point, with its key if `keys` is set, and returns where the next point goes. */
 unsigned char* core_put_point(
   unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys);
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
@@ -37,19 +37,20 @@ typedef struct core_cut
 extern const core_cut core_cuts[CORE_CUTS];
 /* Sets options->box to one box of a cut. */
 void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
-/* Extracts each cut's boxes, and fails unless the boxes' surfaces make up the whole surface, with all that its points
- * carry. */
+/* Extracts the boxes of each of core_cuts, and fails unless the boxes' surfaces make up the whole surface, bit for bit,
+ * with all arrays of points. */
 void core_check_cuts(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
 
-/* Does the same with other cuts. */
+/* Like core_check_cuts, with other cuts. */
 void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
   const mcor_options* options, const core_cut* cuts, int count);
 
 /* Asks for keys and all arrays of points. */
 void core_ask_for_all(mcor_options* options);
 
-/* Appends particle i of the set to `near`, which has room, unless it is farther than `margin` from the box. */
+/* Appends particle i of the set to `near` unless the particle is farther than `margin` from the box. The caller has
+ * made `near` large enough. */
 void core_add_near(
   particle_set* near, const particle_set* set, int64_t i, const double box[6], double margin);
 /* Returns all particles within `margin` of the box, in another order. */

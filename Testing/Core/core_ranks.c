@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_ranks.h"
 
-/* Ends the round if all ranks have come. The caller holds the lock. */
+/* Ends the round if all ranks that have not left have come. The caller holds the lock. */
 static void end_round_where_all_came(core_world* world)
 {
   if (world->came > 0 && world->came >= world->count - world->left)
@@ -39,7 +39,8 @@ static void leave(core_world* world)
   pthread_mutex_unlock(&world->lock);
 }
 
-/* Shows a value to all ranks until the next call of wait_for_all. */
+/* Lets all ranks read a value of this rank until the next call of wait_for_all. Returns nonzero if
+ * a rank has left. */
 static int show(core_rank* rank, const void* value, int64_t size)
 {
   rank->world->value[rank->number] = value;
@@ -47,7 +48,8 @@ static int show(core_rank* rank, const void* value, int64_t size)
   return wait_for_all(rank->world);
 }
 
-/* Makes a function that reduces numbers of a type. Sums must not depend on the order, so each rank adds in another order. */
+/* Defines a function that reduces numbers of one type over all ranks. Each rank adds in another order, because the
+ * library's results must not depend on the order. */
 #define RANKS_REDUCE(name, type)                                                                   \
   static int name(void* user, mcor_reduction reduction, type* values, int count)                   \
   {                                                                                                \

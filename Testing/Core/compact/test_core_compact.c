@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours. The mesh is as sound as before, with fewer and better triangles and the same
- * residual; boxes together make the whole surface. */
+/* Tests compact contours. The mesh is as sound as without `compact`, with fewer and better
+ * triangles and residuals that are hardly larger. The surfaces of boxes together make the whole
+ * surface. */
 
 #include "core_parts.h"
 #include "core_period.h"
@@ -130,8 +131,8 @@ static mcor_options options_of(const compact_case* at)
   return options;
 }
 
-/* Counts the triangles with an angle below 20 degrees, and the triangles that do not face along the
- * mean of their points' normals. */
+/* Counts the triangles with an angle below 20 degrees, and the triangles whose normal points away
+ * from the mean normal of their points. */
 static void measure(const mcor_surface* s, int64_t* sharp, int64_t* turned)
 {
   *sharp = *turned = 0;
@@ -180,7 +181,7 @@ static int64_t count_drops(const mcor_surface* s)
   return closed;
 }
 
-/* Hashes the coordinates of all flagged points, whatever their order. */
+/* Hashes the coordinates of all flagged points. Their order does not change the hash. */
 static uint64_t hash_border(const mcor_surface* s)
 {
   uint64_t sum = 0;
@@ -271,8 +272,8 @@ static int has_point(const mcor_surface* s, const double* point)
   return has;
 }
 
-/* Nearly all points at least four cubes away from caps are also points of the contour without
- * caps. */
+/* Checks that nearly all points of the contour without caps that lie at least four cubes inside the
+ * period are also points of the contour with caps. */
 static void away_from_caps(void** state)
 {
   const compact_case* at = cases;
@@ -303,8 +304,8 @@ static void away_from_caps(void** state)
   CORE_CHECK(far > 100 && same > 0.95 * far, same, far);
 }
 
-/* In a period, images must be kept from farther away if cubes have several levels than if they have
- * one size. */
+/* Checks boxes with cubes of several levels in a period: images of particles must be kept from
+ * farther away than with cubes of one size. */
 static void boxes_in_period(void** state)
 {
   const double iso = 0.5, period[6] = { 0, 14, 0, 14, 0, 14 };

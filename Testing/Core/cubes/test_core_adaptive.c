@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and few nodes are evaluated. The oracle
- * checks their edges and triangles, core_adaptive_parts their bits in boxes, core_warning groups of sizes that are far
- * apart. */
+/* Tests surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and few nodes are evaluated.
+ * Other tests: the oracle checks their edges and triangles, core_adaptive_parts their bits in boxes, core_warning
+ * particles of very different sizes. */
 
 #include "core_fixture.h"
 
@@ -26,8 +26,9 @@ static void one_level_is_uniform(void** state)
   assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
 }
 
-/* Half of the lattice has values above, the other half below. Nodes are evaluated only between the halves and where the
- * weight is low. In leaves that lie on one side for certain, only nodes next to a crossed edge are evaluated. */
+/* The upper half of the lattice has values above iso, the lower half below. Nodes are evaluated only between the halves
+ * and where the weight is low. In leaves that certainly lie on one side, only nodes next to a crossed edge are
+ * evaluated. */
 static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;

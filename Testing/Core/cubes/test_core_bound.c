@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the bound on the field, which complete seeds use, with samples of the field, and the
- * bricks that are proved to be inside with their nodes. */
+/* Compares the bound on the field, which complete seeds use, with samples of the field. Checks all
+ * nodes of the bricks that are proved to be inside. */
 
 #include "core_fixture.h"
 
-/* The first kernel returns for each box (first brick, and edge in cubes) the low and high value,
- * their rounding, the weight, its rounding, the count and the state; the second returns which
- * bricks are inside. */
+/* The first kernel writes for each box (its first brick, and its edge in cubes) bounds of the
+ * field: low, high and their rounding; weight and its rounding; count of particles, state. The
+ * second kernel writes which bricks are proved to be inside. */
 static const char source[] =
   "__kernel void test_bound(MCOR_GRID_PARAMS, const int box_count, const real iso,\n"
   "  const real node_threshold, __global const int4* boxes, __global real* out)\n"
@@ -93,7 +93,7 @@ static void free_particles(particles* p)
   free(p->value);
 }
 
-/* Computes F + level (*field) and the trimming weight at a point, in double precision. */
+/* Computes F + iso (*field) and the trimming weight at a point, in double precision. */
 static void evaluate(const particles* p, const mcor_options* options, double iso,
   const double at[3], double* field, double* weight)
 {
@@ -149,8 +149,8 @@ static void check_box(const particles* p, const mcor_options* options, double is
   }
 }
 
-/* Returns box b. Boxes have several sizes and lie all over the lattice; the first boxes hold a
- * particle, or the place where the particle's kernel is lowest. */
+/* Returns box b. Boxes have several sizes and lie all over the lattice. The first 32 boxes hold a
+ * particle, or a place where a particle's kernel is lowest. */
 static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, uint64_t* seed)
 {
   static const int sizes[] = { 3, 7, 3, 31 };
@@ -171,8 +171,8 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
   return box;
 }
 
-/* Extracts an empty surface, so that the grid stays on the device and the program has the kernels
- * above. */
+/* Extracts an empty surface, which leaves the grid on the device, and adds the kernels in `source`
+ * to the program. */
 static void make_grid(mcor_context* context, const particle_set* set, const mcor_options* options)
 {
   const mcor_input input = core_input_to_keep(set);
@@ -237,8 +237,8 @@ static void test_bound(void** state)
     { MCOR_SINC_6, MCOR_SHEPARD, 0 }, { MCOR_SINC_6, MCOR_WEIGHT_SUM, 0 } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
-    /* The first set has few particles, to show a fault in the bound of a single particle; the
-     * second has many particles of mixed sizes; the last has one particle. */
+    /* Few particles show a fault in the bound of a single particle. The second set has many
+     * particles of mixed sizes, the last set one particle. */
     static const int counts[] = { 6, 150, 1 };
     for (int s = 0; s < 3; ++s)
     {
@@ -260,8 +260,8 @@ static void test_bound(void** state)
   }
 }
 
-/* So many particles lie in one place that rounding adds up: equal terms are rounded in the same
- * direction at each step. */
+/* So many equal particles lie in one place that rounding errors add up: each step rounds in the
+ * same direction. */
 static void test_many_particles(void** state)
 {
   static const struct
@@ -306,8 +306,9 @@ static int count_above(
   return above;
 }
 
-/* Checks all nodes of the bricks that are proved to be inside. The proof looks at particles within half their support.
- * At some iso values that the test uses, these particles suffice for some nodes of a brick, but not for all. */
+/* Checks that the weight sum is at least iso at all nodes of the bricks that are proved to be inside. The proof looks
+ * only at particles within half their support. At some iso values that the test uses, these particles suffice for some
+ * nodes of a brick, but not for all. */
 static void check_inside(mcor_context* context, const particles* p, const mcor_options* options,
   const cl_int4* bricks, int count, double iso)
 {

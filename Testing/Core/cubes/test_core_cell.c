@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the triangles of cells: by the case table with all decisions, and beside finer cells. Cells with random nodes,
- * side by side, must make a closed surface. */
+/* Tests the triangles of cells: those of the case table with all its decisions, and those of cells beside finer cells.
+ * Cells with random nodes, side by side, must make a closed surface. */
 
 #include "core_fixture.h"
 #include "mcor_adaptive_cell.h"
 
-/* A lattice with `ends` nodes along an axis; nodes on its border are below. A vertex is named by its edge's lower node
- * and axis. */
+/* A lattice with `ends` nodes along an axis. above: which nodes are above iso; nodes on the lattice's border are below.
+ * A vertex is named by the lower node of its edge, and the edge's axis. */
 typedef struct lattice
 {
   int ends;
@@ -24,8 +24,8 @@ static int node_at(const lattice* l, int x, int y, int z)
   return (z * l->ends + y) * l->ends + x;
 }
 
-/* The sign changes every `pitch` nodes near z = 0, and less regularly farther away. So cells of all cases occur, many
- * of them ambiguous. */
+/* Makes a lattice whose nodes change side every `pitch` nodes near z = 0, and less regularly at greater z. So cells of
+ * all cases occur, many of them ambiguous. */
 static lattice make_lattice(int ends, int pitch, uint64_t seed)
 {
   const size_t nodes = (size_t)ends * (size_t)ends * (size_t)ends, cells = 12 * nodes;
@@ -47,7 +47,8 @@ static lattice make_lattice(int ends, int pitch, uint64_t seed)
   return l;
 }
 
-/* Returns the vertex on the edge from a node along an axis, at a random place. */
+/* Returns the vertex on the edge from a node along an axis. A new vertex gets a random place on the
+ * edge. */
 static int32_t vertex_on(lattice* l, int node, int axis, int length)
 {
   int32_t* vertex = l->vertex + 3 * (size_t)node + axis;
@@ -65,8 +66,8 @@ static int32_t vertex_on(lattice* l, int node, int axis, int length)
   return *vertex;
 }
 
-/* Fails unless the triangles are an oriented manifold that encloses the nodes above. A lone node above has less volume
- * than a cell. */
+/* Fails unless the triangles are an oriented closed manifold that encloses the nodes above iso. volume_above: one
+ * cell's volume for each of these nodes. The surface encloses less, at least 0.4 of it. Frees the lattice. */
 static void check_closed(lattice* l, double volume_above)
 {
   const mcor_surface surface = { .points = l->points,
@@ -110,8 +111,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* Checks ambiguous faces: one side of a triangle goes around each corner above or, if the corners above are joined,
- * around each corner below. */
+/* Checks ambiguous faces: one side of a triangle cuts off each corner above iso or, if the corners above are joined,
+ * each corner below. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };
@@ -131,8 +132,8 @@ static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
   }
 }
 
-/* Chooses a row of the table for a case, with a tunnel or without, at random. Two loops of a and b sides have a + b -
- * 4 triangles, and 4 more with a tunnel. */
+/* Chooses a row of the table for a case, at random with a tunnel or without. Two loops with a and b sides have a + b -
+ * 4 triangles without a tunnel, and a + b with one. */
 static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed)
 {
   const mcor_cell_row* first = table.rows + (table.cases[cube_case] >> 6);
@@ -175,7 +176,8 @@ static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS
     }
     for (int face = 0; face < 6; ++face)
     {
-      /* The decision depends on the face's lowest node, so that both of its cells take the same. */
+      /* The random decision depends on the face's lowest node, so that both cells at the face make
+       * the same decision. */
       uint64_t chance = of_round + (uint64_t)(3 * node[(face & 1) << face / 2] + face / 2);
       joined |= (int)(random_bits(&chance) & (uint64_t)table.cases[cube_case] >> face & 1) << face;
     }
@@ -191,7 +193,7 @@ static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS
   check_closed(l, volume);
 }
 
-/* Random lattices use all rows of the table. */
+/* Checks that the cells of random lattices make closed surfaces, and use all rows of the table. */
 static void test_whole_table(void** state)
 {
   static uint8_t used[MCOR_CASE_ROWS];
@@ -206,15 +208,16 @@ static void test_whole_table(void** state)
   }
 }
 
-/* A cell without finer cells around it has the triangles of the case's first row: no nodes are joined, and there is no
- * tunnel. If two opposite corners alone are above, the case has one tunnel, which joins them. */
+/* A cell without finer cells around it must get the triangles of its case's first row: no nodes are joined across a
+ * face, and there is no tunnel. If only two opposite corners are above, the case has one more row, with a tunnel that
+ * joins them. */
 static void test_first_rows(void** state)
 {
   for (int c = 0; c < 256; ++c)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-    /* These bits of nodes that do not exist are set to test that they do not matter. */
+    /* Bits of middle nodes, which do not exist here, are set to test that they do not matter. */
     uint32_t above = 0x2aaaaaa;
     int flat = 0;
     for (int k = 0; k < 8; ++k)
@@ -236,8 +239,8 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
-/* Checks a side that two triangles of a cell share. The side may not lie within one part of a face, because the cell
- * beyond could have the same side, unless both triangles lie flat in the face. Places are in half cells. */
+/* Checks a side that two triangles of a cell share. It may not lie within one part of a face, because the cell beyond
+ * the face could have the same side; it may if both triangles lie flat in the face. Places are in half cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {
@@ -276,7 +279,8 @@ static void check_inner_sides(
   }
 }
 
-/* Adds a cell whose nodes are `step` apart; `split` says which middles are nodes. */
+/* Adds a cell whose nodes are `step` apart. `split` says which middles of its edges and faces are
+ * nodes. */
 static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
 {
   static const int stride[3] = { 1, 3, 9 };
@@ -302,7 +306,7 @@ static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
   l->triangle_count += count;
 }
 
-/* Finds which middles of a cell's edges and faces are nodes: the ones that a divided cell touches. */
+/* Returns which middles of a cell's edges and faces are nodes: the ones that a divided cell touches. */
 static uint32_t find_split(const uint8_t* divided, int cells, const int cell[3])
 {
   uint32_t split = 0;
@@ -325,7 +329,8 @@ static uint32_t find_split(const uint8_t* divided, int cells, const int cell[3])
   return split;
 }
 
-/* Few or many cells are divided into eight, so that the other cells have all kinds of split faces and edges. */
+/* Checks closed surfaces on lattices where few or many cells are divided into eight, so that the other cells have all
+ * kinds of split faces and edges. */
 static void test_beside_finer(void** state)
 {
   enum

@@ -32,8 +32,8 @@ static void test_outlier(void** state)
   }
 }
 
-/* Makes a block of particles, some with a far larger support. twice: copies the particles of ordinary support to a
- * place far away on the left, where the lattice then begins. */
+/* Makes a block of particles, some with a far larger support. twice: also copies the particles of ordinary support to a
+ * place far away at smaller x, so that the lattice begins there. */
 static particle_set make_mixed(int twice)
 {
   particle_set block = core_make_block(10, 0.3, 5, core_ball),
@@ -84,8 +84,8 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   assert_true(i > 100 && i < b.point_count);
 }
 
-/* ---- Node by node. Each particle lies on a node and reaches no other one, so the value there is its own, and nodes
- * without a particle have no weight. Cells are then valid, or not, in any pattern. ---- */
+/* ---- Node by node. Each particle lies on a node and reaches no other node, so the field at a node is the value of its
+ * particle, and nodes without a particle have no weight. Thus cells are valid, or not, in any pattern. ---- */
 
 #define NODES 8
 
@@ -93,7 +93,7 @@ typedef struct node_pattern
 {
   int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
   int64_t points, triangles;       /* of the surface that the pattern must give */
-  /* [axis][which two opposite cells are valid]: edges that have two vertices. */
+  /* How many edges have two vertices: [axis][which two opposite cells are valid]. */
   int64_t pinched[3][2];
 } node_pattern;
 
@@ -126,8 +126,8 @@ static int pattern_case(const node_pattern* p, const int cell[3])
   return result;
 }
 
-/* Counts the vertices on the edge from a node: 0, 1, or 2 if only two cells around it are valid and they touch only in
- * this edge. */
+/* Adds to the pattern's counts the vertices on the edge from a node: 0, 1, or 2 if only two cells around the edge are
+ * valid and they touch only in this edge. */
 static void count_edge(node_pattern* p, const int node[3], int axis)
 {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Seeds: bricks between particles on both sides are requested, and the digital line marks every cell between a pair.
- * The oracle checks that complete seeds miss no edge. */
+/* Tests seeds: bricks between two particles on different sides of iso become seeds, and the line between them marks
+ * every cell that it crosses. The oracle checks that complete seeds miss no edge. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
 
 #define NO_BRICK 4
 
-/* The cells that the last call with pairs marked: one byte per cell of a box of the lattice. Bricks that are certainly
- * on one side have no marked cells. */
+/* The cells that the last extraction with pairs marked: one byte per cell of a box of the lattice. Bricks that are
+ * certainly on one side of iso have no marked cells. */
 typedef struct marked_cells
 {
   int low[3], size[3];
@@ -67,8 +67,8 @@ static marked_cells read_cells(mcor_context* context)
   return m;
 }
 
-/* Walks along a segment in small steps. Every cell on it must be marked, to within rounding; cells within
- * rounding of it get the value 2. */
+/* Walks along a segment in small steps. Every cell on the segment must be marked, apart from rounding. Cells that
+ * rounding may add get the value 2. */
 static void check_line(marked_cells* m, const double p[3], const double q[3], double cube)
 {
   enum
@@ -98,8 +98,8 @@ static void check_line(marked_cells* m, const double p[3], const double q[3], do
   }
 }
 
-/* Extracts with pair seeds. Checks the lines of all pairs on both sides of 0 that are closer than the smoothing length
- * of one of them. */
+/* Extracts with pair seeds. Checks the lines of all pairs of particles with values above and below 0 that are closer
+ * than the smoothing length of one of the two. */
 static void check_pairs(mcor_context* context, const particle_set* set, double cube)
 {
   const double iso = 0;
@@ -138,7 +138,7 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   free(m.cell);
 }
 
-/* Lines of one pair: along axes, through edges and corners of cells, within one cell, and at random. */
+/* Checks the line of a single pair: along axes, through edges and corners of cells, within one cell, and at random. */
 static void test_line(void** state)
 {
   static const double ends[][6] = { { 0.5, 0.5, 0.5, 17.5, 0.5, 0.5 },
@@ -166,7 +166,8 @@ static void test_line(void** state)
   }
 }
 
-/* A pair counts if the smoothing length of either particle reaches the other. */
+/* Checks random sets: two particles are a pair if the smoothing length of either reaches the other.
+ * */
 static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)
@@ -177,8 +178,9 @@ static void test_pairs(void** state)
   }
 }
 
-/* The pairs are as far apart as a pair may be, to within rounding, and far apart in the order of particles. Which pairs
- * count does not depend on which particles are looked at together. */
+/* The two particles of a pair are as far apart as a pair may be, to within rounding, and far apart in the order of
+ * particles. The two forms of the kernels look at different groups of particles, and must find the same number of
+ * cells. */
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;
@@ -210,8 +212,8 @@ static void test_pairs_in_each_form(void** state)
   assert_int_equal(cells[0], cells[1]);
 }
 
-/* The mean of values that all equal the iso value may round to either side. Cells there are seeds, and stay seeds if
- * their nodes are known from another iso value. */
+/* Where all particles have the iso value, rounding may put the mean on either side. Cells there must be seeds, and stay
+ * seeds if their nodes are known from another iso value. */
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };

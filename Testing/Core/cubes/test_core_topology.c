@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field, tested with bridges and gaps of known shape; the oracle tests it with noise. */
+/* Tests topology by the field with bridges and gaps of known shape; the oracle tests it with noise. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -31,7 +31,8 @@ static particle_set make_particles(
   return set;
 }
 
-/* Returns the scalar of a straight thread from the origin to `end`, thinner than a cube. */
+/* Returns a scalar that is above 0 in a straight thread from the origin to `end`, thinner than a
+ * cube. */
 static double thread(const double x[3], const double end[3])
 {
   const double along = fmin(fmax(mcor_dot(x, end) / mcor_dot(end, end), 0), 1);
@@ -39,7 +40,7 @@ static double thread(const double x[3], const double end[3])
   return 1.2 * 1.2 - mcor_dot(d, d);
 }
 
-/* Returns the scalar of two balls around the thread's ends, which do not touch. */
+/* Returns a scalar that is above 0 in two balls, around the origin and `end`, that do not touch. */
 static double balls(const double x[3], const double end[3])
 {
   double d[3];
@@ -69,10 +70,10 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
 static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
-/* By the field a thread stays whole and balls that do not touch stay apart, above or below the iso value, as on a fine
- * lattice. The table joins nodes below across a face, and keeps all others apart. The expected numbers are counted by
- * hand: the face that the diagonal crosses, between two cells; whether the nodes above are joined there; cells with
- * two loops; tunnels. */
+/* With topology by the field, a thread stays whole and balls that do not touch stay apart, above or below iso, as on a
+ * fine lattice. The case table always joins nodes below across a face, and keeps nodes above apart. The expected
+ * numbers are counted by hand: ambiguous faces (the face that the diagonal crosses, between two cells); faces whose
+ * nodes above are joined; cells with two loops; tunnels. */
 static void test_diagonals(void** state)
 {
   for (int i = 0; i < 40; ++i)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests how the leaves of adaptive cubes are made: levels, limits, cancelling. The oracle checks which leaves there
- * are. */
+/* Tests how the leaves of adaptive cubes are made: levels, limits, cancelling. The oracle checks that the leaves are
+ * the right ones. */
 
 #include "core_fixture.h"
 #include "mcor_tree.h"
@@ -38,7 +38,8 @@ static void level_limit(void** state)
   context->run.options = NULL;
 }
 
-/* Level L begins at exactly 2^L times the smallest h. */
+/* Checks the level of cubes for a smoothing length: level L begins at exactly 2^L times the
+ * smallest h. */
 static void levels_of_particles(void** state)
 {
   assert_int_equal(mcor_tree_level_of(1, 1, 24), 0);
@@ -51,7 +52,8 @@ static void levels_of_particles(void** state)
   assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0);
 }
 
-/* There are so many levels that bricks of the lowest one have numbers too large for an int. */
+/* Checks the error of too many levels: bricks of the lowest level would have numbers too large for
+ * an int. */
 static void more_bricks_than_numbers(void** state)
 {
   mcor_context* context = *state;
@@ -59,14 +61,15 @@ static void more_bricks_than_numbers(void** state)
   mcor_input input;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
-  /* An h from 1 to 10^7 gives this many levels, with a cube size that the lattice allows. */
+  /* Smoothing lengths from 1 to 10^7 give this many levels, with a cube size that the lattice
+   * allows. */
   context->lattice.levels = 24;
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), mcor_last_error(context));
   context->run.options = NULL;
 }
 
-/* Particles reach far beyond their volume. The run notices that there are too many leaves before the sets of bricks
+/* Particles reach far beyond their volume. The run must notice that there are too many leaves before the sets of bricks
  * grow large. */
 static void more_leaves_than_the_limit(void** state)
 {
@@ -90,8 +93,8 @@ static void more_leaves_than_the_limit(void** state)
   context->run.options = NULL;
 }
 
-/* Each level alone is within the limit, but all together are not. Where leaves are sparse, most bricks are divided
- * because of other bricks, few because of particles. */
+/* The leaves of each level alone are within the limit, but those of all levels together are not. Where leaves are
+ * sparse, most bricks are divided because of neighbouring bricks, few because of particles. */
 static void more_leaves_of_all_levels(void** state)
 {
   mcor_context* context = *state;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Has a kernel for each built-in function and type: r[i] = f(a[i], b[i], c[i]). It is compiled ahead with
- * mcor_native.cl, and by a driver with the driver's own functions; test_core_native.c compares. */
+/* Has a kernel for each built-in function and type: r[i] = f(a[i], b[i], c[i]). These kernels are compiled ahead with
+ * mcor_native.cl, and by a driver with the driver's own functions; test_core_native.c compares the results. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 
 #define TRY(name, RESULT, A, B, value)                                                             \
@@ -74,7 +74,7 @@ TRY_VECTOR(8, double8, double, long8, long)
 TRY(uchar8_convert, int8, uchar8, int, convert_int8(a[i]))
 TRY(int4_double, double4, int4, int, convert_double4(a[i]))
 
-/* All work-items on one number. */
+/* All work-items change one number with the atomic functions. */
 #define TRY_ATOMIC(T)                                                                              \
   __kernel void try_##T##_atomic(                                                                  \
     __global const T* a, __global const T* b, __global const T* c, __global T* r)                  \

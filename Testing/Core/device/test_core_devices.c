@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Processes of one machine take devices in turn, and a share of the CPU each. PoCL shows one device twice. */
+/* Processes of one machine take devices in turn, and each takes a share of the CPU. In this test PoCL shows one device
+ * twice. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -37,7 +38,7 @@ static void test_turns_and_shares(void** state)
   }
 }
 
-/* A device that is named by number is taken; devices that share a name are taken in turn. */
+/* A device named by its number is always taken. Devices that share a name are taken in turn. */
 static void test_named_device(void** state)
 {
   mcor_context* context = *state;
@@ -79,8 +80,8 @@ static int on_progress(void* user, double fraction, const char* phase)
   return is_building && b->cancels;
 }
 
-/* Extracts in a new context, which then must have exactly the programs that would have been built ahead. Only the
- * program for trimming may be missing, because the surface may have no border. */
+/* Extracts in a new context, and checks that the run has built exactly the programs that mcor_list_programs names. Only
+ * the program for trimming may be missing, because the surface may have no border. */
 static void check_programs(const mcor_input* input, const mcor_options* options)
 {
   CORE_CONTEXT context = NULL;
@@ -122,7 +123,8 @@ static void test_programs_of_runs(void** state)
   unsetenv("MCOR_THREADS");
 }
 
-/* Programs that are built ahead serve the run. A call may be cancelled while they are built; no thread outlives it. */
+/* Checks that the run uses programs that are built ahead. A call may be cancelled while programs are built, and no
+ * building thread may outlive the call. */
 static void test_building_ahead(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
@@ -148,7 +150,8 @@ static void test_building_ahead(void** state)
   unsetenv("MCOR_THREADS");
 }
 
-/* A part without solids needs the programs of the whole, which has some. */
+/* A part of the particles without solids needs the same programs as the whole set, which has
+ * solids. */
 static void test_solids_of_parts(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);

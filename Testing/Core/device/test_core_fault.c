@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL calls, allocations of the host and callbacks of ranks fail one after the other. Each time there are a status,
- * a sentence, an empty result and no buffer left over, and the next call on the same context is right. */
+/* Lets OpenCL calls, allocations of the host and callbacks of ranks fail one after the other. Each failure must give a
+ * status, a message and an empty result, and leave no buffer. The next call on the same context must be right. */
 
 #include "core_fault.h"
 
 /* A call of the library in which every step is made to fail once. */
 typedef struct sweep
 {
-  /* Makes the call; if it succeeds, *hash becomes its result's hash. If it fails, the result must be empty. */
+  /* Makes the call. If the call succeeds, *hash becomes the hash of its result. If it fails, the result must be empty.
+   * */
   mcor_status (*call)(
     mcor_context* context, const struct sweep* s, const mcor_input* input, uint64_t* hash);
   mcor_input input;
@@ -105,7 +106,8 @@ static mcor_status flux(
   return status;
 }
 
-/* How many callbacks of the only rank were called, and the number of the one that fails; -1: none. */
+/* callbacks: how many callbacks of the only rank were called. fail_callback: the number of the one that fails; -1:
+ * none. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -133,7 +135,8 @@ static const mcor_ranks alone = { .reduce_doubles = reduce_doubles,
   .reduce_counts = reduce_counts,
   .gather = gather };
 
-/* Does a rank's work: it measures with all others, then extracts its box, and seeds grow from box to box. */
+/* Does one rank's work: measures together with all ranks, then extracts the rank's box, with seeds that grow from box
+ * to box. */
 static mcor_status extract_as_rank(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
@@ -161,8 +164,8 @@ static void expect_right(mcor_context* context, const sweep* s)
   CORE_CHECK(hash == s->expected, core_failed_call());
 }
 
-/* Checks, after a fault that made the call fail, that there is a sentence and nothing is left over, and that the next
- * call is right. */
+/* Checks, after a fault that made the call fail, that the message has `words` or tells of an allocation, that nothing
+ * is left over, and that the next call is right. */
 static void expect_sound(mcor_context* context, const sweep* s, const char* words)
 {
   const char* sentence = mcor_last_error(context);
@@ -172,7 +175,8 @@ static void expect_sound(mcor_context* context, const sweep* s, const char* word
   expect_right(context, s);
 }
 
-/* Gives the input new versions, so that what the device holds is not used again, but can be given back. */
+/* Returns the input with new versions, so that arrays kept on the device are not used again, but may be released for
+ * room. */
 static mcor_input with_other_versions(const sweep* s, int n)
 {
   mcor_input input = s->input;
@@ -181,8 +185,8 @@ static mcor_input with_other_versions(const sweep* s, int n)
   return input;
 }
 
-/* Lets every step-th OpenCL call fail. kept: the device holds something that can be given back, so that a call that
- * finds no memory succeeds at its second attempt. */
+/* Lets every step-th OpenCL call fail, one in each run, and returns the number of calls. kept: the device holds buffers
+ * that may be released, so that a call that finds no memory must succeed at its second attempt. */
 static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int kept)
 {
   const mcor_status expected = error == CL_INVALID_COMMAND_QUEUE ? MCOR_DEVICE_ERROR
@@ -216,7 +220,8 @@ static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int 
   return n;
 }
 
-/* Lets every allocation of the host fail. Some calls succeed without it. */
+/* Lets each allocation of the host fail, one in each run, and returns the number of allocations.
+ * The library may succeed without some of them. */
 static int sweep_allocations(mcor_context* context, const sweep* s)
 {
   int n = 0;
@@ -246,7 +251,7 @@ static int sweep_allocations(mcor_context* context, const sweep* s)
   return n;
 }
 
-/* Keeps the right result, and the number of bytes and buffers that a context holds after a release. */
+/* Keeps in `s` the hash of the right result, and how many bytes and buffers a context holds after a release. */
 static void begin_sweep(mcor_context* context, sweep* s)
 {
   s->input.particles_version = s->input.scalar_version = 1000000;
@@ -255,8 +260,8 @@ static void begin_sweep(mcor_context* context, sweep* s)
   s->bytes = context->cl.bytes;
 }
 
-/* Does what test_every_call_fails_once does, for a smaller run: each OpenCL call fails once with a device error, and
- * each step-th call for lack of memory. */
+/* Does what test_every_call_fails_once does, for a smaller run: each OpenCL call fails once with a device error, every
+ * step-th call fails for lack of memory, and each allocation of the host fails. */
 static void sweep_room(mcor_context* context, sweep* s, int step, int least_calls)
 {
   begin_sweep(context, s);
@@ -279,8 +284,8 @@ static double flat(const double x[3])
   return x[2];
 }
 
-/* The run does all that a run may do on the device: attributes, topology by the field, both trimming quantities, pairs
- * that grow. */
+/* Lets calls fail in a run that uses all that the device does: attributes, topology by the field, both trimming
+ * quantities, pairs that grow. */
 static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;
@@ -354,7 +359,8 @@ static void test_filled(void** state)
   sweep_room(*state, &filled, 23, 100);
 }
 
-/* Lets calls fail with a box, a period and walls, each with the steps that only it has. */
+/* Lets calls fail in runs with a box, a period and walls; each run has steps that the others lack.
+ * */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;
@@ -431,7 +437,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* A large buffer is mapped to reserve its pages, which may fail. */
+/* Tests a large buffer, which is mapped so that its pages are reserved; the mapping may fail. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;
@@ -459,7 +465,8 @@ static void test_extend(void** state)
   assert_int_equal(n, 4); /* the calls are create, map, unmap and copy */
 }
 
-/* When a program does not build, the sentence says so and begins the log, however long the log is. */
+/* When a program does not build, the message says so and quotes the beginning of the build log, however long the log
+ * is. */
 static void test_build_fails(void** state)
 {
   mcor_context* context = *state;
@@ -510,7 +517,7 @@ static void test_error_names(void** state)
   mcor_release(context, &buffer);
 }
 
-/* When a context cannot be made, its sentence says why, and a run on it fails. */
+/* When a context cannot be made, its message says why, and a run on it fails. */
 static void test_no_context(void** state)
 {
   static const double iso = 0;
@@ -538,7 +545,7 @@ static void test_no_context(void** state)
   }
 }
 
-/* Where a call needs another device, which does not start, a profile does no harm. */
+/* A call needs another device, which does not start: a profile (MCOR_PROFILE) does no harm. */
 static void test_profile_without_device(void** state)
 {
   const char* path = "core_fault_profile.csv";
@@ -559,7 +566,8 @@ static void test_profile_without_device(void** state)
   core_fail_command(0, CL_DEVICE_NOT_AVAILABLE);
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   core_fail_nothing();
-  /* Without this call, the built-in device has all kernels. */
+  /* If the failed call is not clCreateContext, the built-in device has all kernels, and no other
+   * device was needed. */
   const bool is_replaced = strcmp(core_failed_call(), "clCreateContext") == 0;
   CORE_CHECK(!is_replaced || (status == MCOR_DEVICE_ERROR && core_told(context, "clCreateContext")),
     mcor_status_name(status), mcor_last_error(context));

@@ -64,7 +64,8 @@ static cl_mem make_memory(const own_opencl* own, const void* data, size_t size)
   return memory;
 }
 
-/* Moves an array of doubles to a buffer: packed, or in rows with other bytes between them. */
+/* Moves an array of doubles to a buffer: packed, or in rows of STRIDE bytes that begin OFFSET bytes
+ * into the buffer. */
 static void move_array(
   const own_opencl* own, mcor_array* array, int components, int64_t count, bool in_rows)
 {

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* native_functions.cl, compiled for the built-in device. */
+/* The kernels of native_functions.cl, compiled for the built-in device. */
 void test_native(unsigned number, void* const* arguments, size_t first, size_t last);
 extern const char test_native_kernels[];
 
@@ -28,7 +28,7 @@ static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2
   -1e-45f, 1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f,
   -0.49999997f, 0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
 
-/* Fills with bits of numbers of `size` bytes: extreme ones, infinities, NaN, small integers, and random ones. */
+/* Fills `bytes` with numbers of `size` bytes each: extreme ones, infinities, NaN, small integers, and random ones. */
 static void fill(unsigned char* bytes, size_t size, uint64_t seed)
 {
   const size_t many = sizeof extremes / sizeof extremes[0];
@@ -101,7 +101,7 @@ static cl_program build(mcor_context* context)
   return program;
 }
 
-/* Returns the number of bytes of a number that a kernel returns. */
+/* Returns the size in bytes of one result of a kernel. */
 static size_t result_size(const char* name)
 {
   const int wide = strstr(name, "_double") || strncmp(name, "try_double", 10) == 0 ||
@@ -245,8 +245,9 @@ static void test_fork(void** state)
   assert_true(extract(context) == hash);
 }
 
-/* Some drivers would end the process here. The built-in device works, named or by default, and a driver's device is
- * refused in a sentence. Only threads are limited, where the test may start any number, as root may. */
+/* Limits the process's address space or threads, where some drivers would end the process. The built-in device must
+ * work, named or by default, and a driver's device must be refused with a message. If the test may start any number of
+ * threads, as root may, the limit of threads has no effect. */
 static void test_little_room_for_drivers(void** state)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -322,7 +323,7 @@ static void test_threads_of_environment(void** state)
   mcor_free_context(context);
 }
 
-/* Processes that share a machine have fewer threads each. */
+/* Checks that processes that share a machine have fewer threads each, and the same result. */
 static void test_shares(void** state)
 {
   uint64_t hash = 0;
@@ -338,7 +339,8 @@ static void test_shares(void** state)
   }
 }
 
-/* Memory that is locked for mappings, as with a GPU, stays within what a driver allows. */
+/* Memory of the host that is locked for mappings, as with a GPU, must not exceed the largest buffer
+ * that a driver allows. */
 static void test_locked(void** state)
 {
   enum

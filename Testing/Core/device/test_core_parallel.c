@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Loops in several threads visit every element once, and their results do not depend on the number of threads. */
+/* Checks that loops in several threads visit every element once, and that their results do not depend on the number of
+ * threads. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -94,8 +95,8 @@ static int ask(void* user, double fraction, const char* phase)
   return loop->asked++ == loop->asked_most;
 }
 
-/* A loop asks after each slice whether to go on, and when cancelled leaves out the slices that no thread has begun:
- * with one thread, all later ones. */
+/* After each slice a loop asks whether to go on. A cancelled loop leaves out the slices that no thread has begun: with
+ * one thread, all later slices. */
 static void test_cancelled(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -147,7 +148,8 @@ static void test_several_at_once(void** state)
   }
 }
 
-/* Of several bad particles the first is named, whichever thread finds one first. */
+/* If several particles are bad, the message names the first one, whichever thread finds one first.
+ * */
 static void test_first_bad_particle(void** state)
 {
   CORE_SET set = core_make_block(40, 0.2, 3, core_ball);
@@ -173,7 +175,8 @@ static void test_first_bad_particle(void** state)
   }
 }
 
-/* Ranges cover the fluid alone; where all particles are solids they are empty. Slices may have no fluid. */
+/* Ranges cover the values of the fluid alone. If all particles are solids, the range is empty. Some slices may have no
+ * fluid. */
 static void test_ranges(void** state)
 {
   const int64_t count = 4 * MCOR_MEMORY_GRAIN;

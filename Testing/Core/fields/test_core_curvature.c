@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests curvatures. Those of balls and cylinders are worked out by hand; others are compared with differences of the
- * oracle's gradients. */
+/* Tests curvatures. The curvatures of balls and cylinders are worked out by hand; all others are compared with
+ * differences of the oracle's gradients. */
 
 #include "core_fixture.h"
 
@@ -38,8 +38,8 @@ static double share_of_ball(double x[3], double radius)
   return in / 8000.0;
 }
 
-/* A ball or cylinder on a lattice has the curvature 1 / R, or 1 / R^2, to within 1e-3. axes: 3 for a ball, 2 for a
- * cylinder. */
+/* A ball or cylinder of lattice particles must have the mean curvature and Gaussian curvature of its radius R to within
+ * 1e-3. axes: 3 for a ball, 2 for a cylinder. */
 static void test_ball_and_cylinder(void** state)
 {
   static const struct
@@ -93,7 +93,8 @@ static void test_ball_and_cylinder(void** state)
   }
 }
 
-/* In a plane the mean curvature is the line's curvature, and there is no Gaussian one. */
+/* For particles in a plane, the mean curvature is the line's curvature, and there is no Gaussian
+ * curvature. */
 static void test_circle(void** state)
 {
   const double iso = 0;
@@ -162,8 +163,8 @@ static void reference(
   curvature[1] = gauss / g2 / g2;
 }
 
-/* Compares curvatures of each field, also with solids among the fluid, and with the kernel that is a product of
- * axes. Points where W'' jumps are left out, because differences do not work there. */
+/* Compares curvatures of each field with the reference, also with solids among the fluid, and with the kernel that is a
+ * product of one-dimensional kernels. Points where W'' jumps are left out, because differences are wrong there. */
 static void test_any_field(void** state)
 {
   CORE_SET set = core_make_block(9, 0.5, 3, core_slope);

@@ -22,11 +22,11 @@ static mcor_derivatives derive(mcor_context* context, const particle_set* set, c
   return derivatives;
 }
 
-/* The velocity is v = J x, where J is a rotation, a shear and a strain, far from 0. */
+/* J of the velocity v = J x: a rotation, a shear and a strain, none of them near 0. */
 static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, { 0, 0.7, 0.4 } };
 
-/* Makes disordered particles with one h, or with h that varies by a factor of 2. The corrected gradient of a linear
- * field must be exact. */
+/* Checks that the corrected gradient of a linear field is exact, with disordered particles that have one h, or h that
+ * varies by a factor of 2. */
 static void test_linear_is_exact(void** state)
 {
   for (int run = 0; run < 3; ++run)
@@ -72,7 +72,8 @@ static void derive_standard(const particle_set* set, int64_t i, double gradient[
   }
 }
 
-/* The standard form equals the test's sum, with solids, too, whose values play no part. */
+/* Checks that the standard form equals derive_standard's sum, also with solids, whose values play
+ * no part. */
 static void test_standard_form(void** state)
 {
   CORE_SET set = core_make_random(2500, 9, 0.7, 2, 4);
@@ -100,8 +101,8 @@ static void test_standard_form(void** state)
   }
 }
 
-/* One particle, two, three in a plane, and four that are nearly in a plane: no matrix can be inverted. The four span
- * a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
+/* Checks groups of one particle, two, three in a plane, and four nearly in a plane: no matrix can be inverted. The four
+ * span a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
 static void test_too_few_neighbours(void** state)
 {
   CORE_SET set = particle_set_make(10);
@@ -127,7 +128,7 @@ static void test_too_few_neighbours(void** state)
   }
 }
 
-/* Decomposes matrices whose parts are known. */
+/* Checks the decomposition of gradients whose parts are known: rotation, shear, strain. */
 static void test_decomposition(void** state)
 {
   const double gradients[5][9] = { { 0, -1, 0, 1, 0, 0, 0, 0, 0 }, /* rotation about z */

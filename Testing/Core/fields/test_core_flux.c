@@ -1,13 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests fluxes: of uniform flow by hand, of other flow by integrals over the values of mcor_probe and mcor_gauge. */
+/* Tests fluxes. The flux of uniform flow is worked out by hand; the flux of other flow is compared with integrals over
+ * values of mcor_probe and mcor_gauge. */
 
 #include "core_fixture.h"
 
 #define PI 3.14159265358979323846
 
-/* Makes a pool of spacing 1 with sides of 24, 16 and 12 along x, y and z, from 0 on; its top slopes. */
+/* Makes a pool of particles at spacing 1. Its sides along x, y and z begin at 0 and are 24, 16 and 12 long; its top
+ * slopes. */
 static particle_set make_pool(double jitter)
 {
   particle_set set = particle_set_make(24 * 16 * 14);
@@ -30,7 +32,8 @@ static particle_set make_pool(double jitter)
   return set;
 }
 
-/* Makes the middle slice of the pool, in a plane of constant x, y or z; the other coordinates keep their order. */
+/* Makes the middle slice of the pool as particles in a plane of constant x, y or z (axis). The slice's two coordinates
+ * keep their order. */
 static particle_set make_slice(int axis)
 {
   particle_set set = make_pool(0);
@@ -139,7 +142,8 @@ static void check_reading(
   assert_true(fabs(r->velocity - r->volume_flux / r->area) < 1e-12);
 }
 
-/* A uniform flow v = (1, -2, 3) of density 1000, in sections within the fluid. */
+/* Checks the flux of a uniform flow v = (1, -2, 3) of density 1000 through sections within the
+ * fluid. */
 static void test_uniform(void** state)
 {
   const struct
@@ -172,7 +176,8 @@ static void test_uniform(void** state)
   assert_true(isnan(r.mass_flux) && fabs(r.volume_flux - 30) < 1e-4);
 }
 
-/* In a plane a section is a line. u and v are the two axes of the plane, in their order. */
+/* If particles lie in a plane, a section is a line. Checks uniform flow in planes of constant x, y
+ * and z. u and v are the plane's two axes, in their order. */
 static void test_uniform_in_a_plane(void** state)
 {
   const struct
@@ -214,7 +219,7 @@ static void test_uniform_in_a_plane(void** state)
       check_reading(
         &r, cases[i].area, sign * cases[i].flux, "1 of 3 axes, case", 10 * (size_t)axis + i);
     }
-    /* Velocities of two components will do. */
+    /* In a plane, velocities may have only two components. */
     for (int64_t i = 0; i < made.set.count; ++i)
     {
       memcpy(made.velocity + 2 * i, (double[2]){ 1, -2 }, 2 * sizeof(double));
@@ -247,8 +252,8 @@ static double gauss_point(double low, double high, int i, int n, double* share)
 #define COLUMNS 360
 #define ROWS 120
 
-/* A wall stands across the pool, from below the top to above it. The flux is compared with columns of samples up to the
- * top that gauges find. */
+/* A section stands across the pool, from below the top to above it. The flux is compared with integrals over columns of
+ * samples, up to the top that gauges find. */
 static void test_half_out_of_the_water(void** state)
 {
   const double x = 8.2, low = 5, y0 = 2, y1 = 14;
@@ -292,8 +297,8 @@ static void test_half_out_of_the_water(void** state)
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), r.mass_flux, flux);
 }
 
-/* A wall through the whole pool has the same flux where it goes on far beyond the pool: what is dry plays no part in how
- * exact the flux must be. */
+/* A section through the whole pool must have the same flux if it extends far beyond the pool: its dry parts do not
+ * change how exact the flux is. */
 static void test_far_beyond_the_water(void** state)
 {
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
@@ -312,7 +317,7 @@ static void test_far_beyond_the_water(void** state)
     fabs(r[1].mass_flux - r[0].mass_flux) < 1e-2 * r[0].area, r[0].mass_flux, r[1].mass_flux);
 }
 
-/* A disc that dips a little into the water has the same flux as many triangles from its centre to its rim. */
+/* A disc that dips a little into the water must have the same flux as many triangles from its centre to its rim. */
 static void test_disc_at_the_surface(void** state)
 {
   enum
@@ -388,7 +393,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Beyond a period's side a section measures the fluid's image. */
+/* A section beyond a side of the period must measure the fluid's image there. */
 static void test_period(void** state)
 {
   shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };
@@ -404,7 +409,8 @@ static void test_period(void** state)
   const mcor_flux_reading there = flux_of(*state, &input, &options, &wall);
   CORE_CHECK(fabs(here.area - 7 * sqrt(32)) < 1e-4 && here.mass_flux == there.mass_flux, here.area,
     here.mass_flux, there.mass_flux);
-  /* So far away, doubles do not tell the corners of cells apart. */
+  /* At 1e18, the corners of a cell are the same number in double precision. The call must still
+   * succeed. */
   for (int p = 0; p < 9; p += 3)
   {
     wall.points[p] = p == 3 ? 1e18 : 1e18 + 256;
@@ -412,9 +418,9 @@ static void test_period(void** state)
   flux_of(*state, &input, &options, &wall);
 }
 
-/* A channel has walls of solids beyond y = 0 and y = 12, and the fluid begins a spacing inside of the walls. With
- * solids the fluid ends where fluid and solids weigh the same, a quarter of a spacing inside; without solids it ends
- * half a spacing beyond its last particles. The solids have no velocities. */
+/* A channel has walls of solids beyond y = 0 and y = 12, and the fluid begins one spacing away from the walls. With
+ * solids the fluid ends where fluid and solids weigh the same, a quarter of a spacing inside the channel's sides;
+ * without solids it ends half a spacing beyond its last particles. The solids have no velocities. */
 static void test_walls(void** state)
 {
   const shape across = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 0, 5, 8.2, 12, 5, 8.2, 0, 9 }, 0 };
@@ -455,7 +461,7 @@ static void test_walls(void** state)
   }
 }
 
-/* Fails with a message that core_told finds. */
+/* Checks that the call fails with a message in which core_told finds the words. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const shape* of, const char* words)
 {
@@ -506,7 +512,7 @@ static void test_weird(void** state)
   made.density[7] = NAN;
   refuse(*state, &input, &options, &good, "FLUX_NOT_FINITE|density|particle 7.");
   made.density[7] = 1000;
-  /* This is told before any cell is measured, which would take minutes. */
+  /* The error comes before any cell is measured, because measuring would take minutes. */
   made.set.smoothing_length[7] = 1e-3;
   refuse(*state, &input, &options, &good, "SECTION_CELLS|number 0");
   made.set.smoothing_length[7] = 1.3;

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges find every crossing of the level. They are compared with sums in double precision at ten times as many points. */
+/* Tests that gauges find every crossing of the level. The crossings are compared with sums in double precision at ten
+ * times as many points. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -9,7 +10,8 @@
 #define LEVEL 0.5
 #define ERROR_OF_WEIGHT 1e-4
 
-/* Returns whether a point of a lattice of spacing 1 is fluid: in a pool with waves and a bubble, or in a droplet above. */
+/* Returns whether there is a particle at a point of a lattice of spacing 1: in a pool with waves and a bubble, or in a
+ * droplet above the pool. */
 static int pool_has(const double x[3])
 {
   const double dx = x[0] - 12, dy = x[1] - 8, bubble = x[2] - 5, drop = x[2] - 15;
@@ -72,7 +74,8 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
     const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
     CORE_CHECK(error <= ERROR_OF_WEIGHT, number, error);
     CORE_CHECK(i == 0 || at[i] >= at[i - 1], number);
-    /* Samples are 10 steps apart; a close pair is less than 5 steps apart. */
+    /* The gauge's samples are 10 steps apart. Crossings less than 5 steps apart are a close pair.
+     * */
     counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step;
   }
   double before = weight_at(field, line, 0), depth = 0;
@@ -171,7 +174,7 @@ static void test_pool_with_waves(void** state)
   }
 }
 
-/* Sparse random particles: the weight sum is near the level everywhere, and crosses it often and by little. */
+/* Checks sparse random particles: the weight sum is near the level everywhere, and crosses it often and by little. */
 static void test_noise(void** state)
 {
   CORE_SET set = core_make_random(1500, 10, 0.6, 1.0, 3);
@@ -191,8 +194,8 @@ static void test_noise(void** state)
   }
 }
 
-/* With computed volumes the level is right, too, though particles of upper layers lack half of their neighbours: with
- * any kernel and usual smoothing length, with masses or without, in space and in a plane. */
+/* Checks that computed volumes give the right water level too, though particles near the top lack half of their
+ * neighbours: with any kernel and usual smoothing length, with masses or without, in space and in a plane. */
 static void test_still_pool_of_computed_volumes(void** state)
 {
   static const struct
@@ -231,7 +234,7 @@ static void test_still_pool_of_computed_volumes(void** state)
   }
 }
 
-/* Beyond a period's side a gauge reads the fluid's image, with the same bits where rounding allows. */
+/* A gauge beyond a side of the period must read the fluid's image there; with these numbers no bit differs. */
 static void test_period(void** state)
 {
   CORE_SET set = make_pool(1);
@@ -247,7 +250,8 @@ static void test_period(void** state)
   assert_true(memcmp(gauges.crossings, gauges.crossings + 2, 2 * sizeof(double)) == 0);
 }
 
-/* Readings are the same for a line alone and among others, and for particles that stay on the device or not. */
+/* A line's readings must have the same bits if it is measured alone or among others, and if particles stay on the
+ * device or not. */
 static void test_same_bits(void** state)
 {
   CORE_SET set = make_pool(1);
@@ -269,7 +273,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Fails with a message that core_told finds. */
+/* Checks that the call fails with a message in which core_told finds the words. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_gauge_line* line, const char* words)
 {

@@ -38,8 +38,8 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
   return samples;
 }
 
-/* Compares everything at one point with the oracle, and returns the largest component of the expected gradient. scale:
- * the size of the array's values. steep: errors of gradients are relative to the expected gradient. */
+/* Compares all samples at one point with the oracle, and returns the largest component of the expected gradient. scale:
+ * the size of the array's values. steep: allowed errors of gradients are relative to the expected gradient. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
   double scale, bool steep, double tolerance, const mcor_samples* samples, int64_t i)
 {
@@ -126,8 +126,8 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* With smoothing lengths from 1 to 1000, errors of values, weights and gradients are small relative to the terms that
- * are summed. */
+/* With smoothing lengths that differ by a factor of 1000, errors of values, weights and gradients must be small
+ * relative to the terms that are summed. */
 static void test_wide_range_against_oracle(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);
@@ -166,8 +166,8 @@ static void test_wide_range_against_oracle(void** state)
   }
 }
 
-/* Probes two arrays, 12 components in all, so that there is more than one round, in another order of particles in a
- * cube of edge `size`. */
+/* Probes two arrays at points in a cube of edge `size`, then at half of the points in another order. The bits at each
+ * point must be the same. The 12 components make more than one round of sums. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
   CORE_SET set = core_make_random(2000, size, h_min, h_max, 3);
@@ -302,7 +302,7 @@ static void test_odd_points(void** state)
   assert_null(samples.values[0]);
 }
 
-/* A weight that equals the threshold is enough. */
+/* A point whose weight exactly equals the threshold must be valid. */
 static void test_threshold_itself(void** state)
 {
   mcor_context* context = *state;
@@ -337,8 +337,8 @@ typedef struct kept_call
 
 #define KEPT_POINTS 200
 
-/* Probes, and checks that a new context gives the same bits. reused: whether the attributes of the call before must be
- * used again. */
+/* Probes, and checks that a new context gives the same bits. reused: the call must use the attributes that the last
+ * call left on the device. */
 static void kept_probe(mcor_context* context, const kept_call* call, bool reused, const char* step)
 {
   const mcor_array at = core_array(call->points, 3);
@@ -346,7 +346,7 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
   CORE_CONTEXT fresh = NULL;
   CORE_SAMPLES got, expected;
   alone.particles_version = alone.scalar_version = alone.attributes_version = 0;
-  /* Where kept values are used, the array itself is not read, so it may hold NaN. */
+  /* If kept values are used, the array itself is not read, so NaN in it does no harm. */
   double* const values = (double*)call->attributes[0].data;
   const double value = values[0];
   values[0] = reused ? NAN : value;
@@ -421,7 +421,8 @@ static void test_kept_attributes(void** state)
   particle_set_free(&call.set);
 }
 
-/* Probes exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
+/* Probes exactly at particles, where the quadratic kernel's gradient has no direction and must be
+ * 0. */
 static void test_at_particles(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.6, 6, 11);
@@ -440,7 +441,7 @@ static void test_at_particles(void** state)
   }
 }
 
-/* A mean lies between the least and the greatest value, even with rounding. */
+/* Checks that a mean lies between the least and the greatest value, even with rounding. */
 static void test_means_are_between(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.6, 1.8, 11);

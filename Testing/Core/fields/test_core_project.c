@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Projections are compared with quadrature of the oracle's kernels, along the line of sight and then over each pixel. */
+/* Tests projections. They are compared with the oracle's kernels, integrated numerically along the line of sight and
+ * over each pixel. */
 
 #include "core_ranks.h"
 #include "mcor_plane.h"
@@ -16,7 +17,7 @@ static const double gauss_at[5] = { -0.9061798459386640, -0.5384693101056831, 0,
 static const double gauss_weight[5] = { 0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
   0.2393143352496832, 0.1184634425280945 };
 
-/* The column density of a kernel with h = 1 as a function of the distance from the line of sight. */
+/* The column density of a kernel with h = 1, tabulated over the distance from the line of sight. */
 typedef struct column
 {
   oracle_kernel kernel;
@@ -32,7 +33,7 @@ static double line_integral(const column* c, double x, double y, double reach, i
   {
     for (int g = 0; g < 5; ++g)
     {
-      /* Points are denser in the middle, where w may have a cusp. */
+      /* Points of integration are denser near the particle, where w may have a cusp. */
       const double at_end = (i + 0.5 + 0.5 * gauss_at[g]) / panels;
       const double t = c->kernel == ORACLE_M_PRIME_4 ? cbrt(at_end) : at_end, z = reach * t * t * t;
       for (int sign = -1; sign <= 1; sign += 2)
@@ -92,7 +93,7 @@ static column make_column(mcor_sph_kernel kernel, int is_plane, const mcor_proje
   return c;
 }
 
-/* Adds what a particle contributes to each pixel of every `step`-th row from `first` on. Returns the largest
+/* Adds what a particle contributes to each pixel of every `step`-th row, beginning at row `first`. Returns the largest
  * contribution. */
 static double add_particle(const column* c, const mcor_projection* view, const double x[3],
   double h, double amount, double cells_per_h, int step, double* image)
@@ -175,7 +176,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
                reach = (kernel == MCOR_M_PRIME_4 ? 3.5 : oracle_support((oracle_kernel)kernel)) * h;
   CORE_SET set = particle_set_make(is_plane ? 3 : 1);
   const double x[3] = { 3.1, -2.3, 1.7 };
-  /* The other particles lie beyond the image, and make it a plane. */
+  /* The other particles lie beyond the image; with them, all particles lie in a plane. */
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i] = x[0] + (i == 1) * 1e4;
@@ -187,7 +188,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
   const mcor_input input = input_of(&set);
   mcor_options options = project_options(kernel);
   options.precision = pixels_per_h > 1 ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  /* The particle lies within the image, at no special place of a pixel. */
+  /* The particle lies within the image, neither at a pixel's centre nor on its border. */
   mcor_view view = { .resolution = (int)ceil(2 * reach * pixels_per_h / h) + 2 };
   memcpy(view.direction, direction, sizeof view.direction);
   const double side = view.resolution * h / pixels_per_h;
@@ -221,7 +222,8 @@ static void test_single(void** state)
   {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i)
     {
-      /* In a plane the quadratic kernel is a cone. */
+      /* In a plane the quadratic kernel has a pointed tip, so the integral over pixels needs more
+       * cells. */
       const double fine = k != MCOR_QUADRATIC ? 16 : sizes[i] > 10 ? 256 : 32;
       check_single(*state, k, z, sizes[i], 0, k == MCOR_QUADRATIC ? 32 : 16);
       check_single(*state, k, z, sizes[i], 1, fine);
@@ -234,9 +236,9 @@ static void test_single(void** state)
   check_single(*state, MCOR_M_PRIME_4, oblique, 2.9, 0, 8);
 }
 
-/* ---- many ---- */
+/* ---- many particles ---- */
 
-/* Makes Evrard's sphere, whose density falls as 1 / r and whose h follows it, in random order. */
+/* Makes Evrard's sphere in random order: density falls as 1 / r, and h follows the density. */
 static particle_set make_evrard(int64_t count)
 {
   particle_set set = particle_set_make(count);
@@ -309,8 +311,8 @@ static void test_brute_force(void** state)
   }
 }
 
-/* A box gives the image's frame, and chooses particles along the line of sight. Images of a period count like copies of
- * the particles. */
+/* Checks that a box sets the image's frame and chooses particles along the line of sight, and that images of a period
+ * count like copies of the particles. */
 static void test_box(void** state)
 {
   CORE_SET set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);
@@ -352,7 +354,7 @@ static void test_box(void** state)
     error_of(&found, expected.values, 1) / most);
 }
 
-/* Sums and means of a scalar, weighted by volumes, by an array, by masses, and by computed volumes. */
+/* Checks sums and means of a scalar, weighted by volumes, by an array, by masses, and by computed volumes. */
 static void test_weights(void** state)
 {
   CORE_SET set = make_evrard(300);
@@ -419,7 +421,7 @@ static mcor_view view_of_bits(void)
   return (mcor_view){ .direction = { 1, 2, 3 }, .resolution = 100 };
 }
 
-/* Projects the particles that belong to one rank, one of every `count`. */
+/* Projects the particles of one rank: every count-th particle. */
 static mcor_status project_part(core_rank* rank, void* data)
 {
   rank_job* job = data;
@@ -481,7 +483,7 @@ static void test_same_bits(void** state)
   mcor_free_projection(&alone);
 }
 
-/* ---- what is refused, or empty ---- */
+/* ---- calls that are refused, or give an empty image ---- */
 
 static void test_bad_input(void** state)
 {
@@ -533,7 +535,8 @@ static void test_bad_input(void** state)
     CORE_CHECK(status == cases[i].status && *mcor_last_error(*state), i, mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
   }
-  /* The image is empty: without particles, in an empty box, of solids, and of absent particles. */
+  /* The image must be empty: without particles, in an empty box, of solids, and of absent
+   * particles. */
   CORE_SET set = core_make_block(3, 0.1, 2, core_slope);
   mcor_input input = input_of(&set);
   mcor_options options = project_options(MCOR_CUBIC_SPLINE);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widened smoothing lengths are compared with plain sums in double precision, and the surface with the surface of an
- * ordinary call with these lengths. */
+/* Tests widened smoothing lengths. They are compared with plain sums in double precision, and the surface with the
+ * surface of an ordinary call that gets these lengths as its input. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -27,7 +27,7 @@ static double distance(const particle_set* set, int64_t i, int64_t j)
   return sqrt(mcor_dot(way, way));
 }
 
-/* Returns the weight of particle k at particle j for a smoothing length. */
+/* Returns the weight of particle k at particle j for smoothing length h. */
 static double weight_of(const particle_set* set, int64_t j, int64_t k, double h)
 {
   const double offset[3] = { distance(set, j, k), 0, 0 };
@@ -50,9 +50,9 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* Computes the factor: the widest step whose sum is high enough, and a part of the way to the next step. The sum must
- * exceed the iso value by a margin. With few neighbours, all on one side, the margin is larger; with many on one side,
- * the sum may stay below the iso value. */
+/* Returns the factor of particle j's smoothing length: the widest step whose sum is high enough, plus a part of the way
+ * to the next step. The sum must exceed iso by a margin. With few neighbours, all on one side, the margin is larger;
+ * with many on one side, the sum may stay below iso. *one_sided: how much many neighbours lie on one side, 0 to 1. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -136,8 +136,8 @@ static void test_factors(void** state)
   }
 }
 
-/* Compares the surface with the surface of an ordinary call with the widened lengths, in uniform cubes of the same
- * size. */
+/* Compares the surface with the surface of an ordinary call whose input has the widened lengths, in uniform cubes of
+ * the same size. */
 static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
 {
   mcor_input input = *asked;
@@ -167,8 +167,8 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
   assert_true(core_hash(&plain) == core_hash(&widened));
 }
 
-/* Each bit of the case adds a property: a scalar, computed volumes, periods, lengths that differ, solids. The last
- * cases are in a plane. */
+/* Checks the surface in 64 cases. Each bit of a case's number adds a property: a scalar, computed volumes, periods,
+ * lengths that differ, solids. In the last cases particles lie in a plane. */
 static void test_surface(void** state)
 {
   CORE_SET set = make_scene(8, 0.24, 5);
@@ -195,7 +195,8 @@ static void test_surface(void** state)
   }
 }
 
-/* Boxes have the factors of the whole, and the factors do not depend on where a period begins. */
+/* Checks that the call for a box gives particles in the box the same factors as the call for all
+ * particles, and that factors do not depend on where a period begins. */
 static void test_parts(void** state)
 {
   mcor_context* context = *state;
@@ -245,7 +246,8 @@ static void test_parts(void** state)
   }
 }
 
-/* Cubes follow the unwidened lengths; and a second call with the same particles has the same result, whatever is kept. */
+/* Checks that cube sizes follow the unwidened lengths, and that a second call with the same particles has the same
+ * result, whatever the device has kept. */
 static void test_levels_and_reuse(void** state)
 {
   mcor_context* context = *state;
@@ -278,7 +280,7 @@ static void test_levels_and_reuse(void** state)
   }
 }
 
-/* The first call of a context has no particle, so no kernels are chosen. */
+/* Checks a context whose first call has no particle, so that no kernels are chosen. */
 static void test_no_particle(void** state)
 {
   (void)state;
@@ -325,7 +327,7 @@ static void test_refused(void** state)
   mcor_spell_out(&options);
   assert_true(options.widen == 1.5 && options.compact == 0);
   options.filled = 0;
-  /* A period is too short for the widened lengths; the sentence says which widening fits. */
+  /* A period is too short for the widened lengths. The message must say which widening fits. */
   options.smooth = 0;
   options.widen = WIDEST;
   options.level_limit = 0;

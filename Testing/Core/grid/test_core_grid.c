@@ -8,7 +8,8 @@
 
 #include <float.h>
 
-/* Roots of cubes are exact, other roots are within two units of rounding, and all have the same bits on every machine. */
+/* Cube roots of cubes must be exact, other cube roots right to within two units of rounding, and all must have the same
+ * bits on every machine. */
 static void test_cube_root(void** state)
 {
   uint64_t seed = 34;
@@ -25,7 +26,7 @@ static void test_cube_root(void** state)
   assert_true(mcor_cube_root(volume / 2) == 0x1.47894e24991b8p+0);
 }
 
-/* The estimate is 1.3 times the spacing of a lattice, most of whose particles are far from its faces. */
+/* The estimated smoothing length must be 1.3 times the spacing of a lattice: most particles are far from its faces. */
 static void test_estimate(void** state)
 {
   const double spacings[] = { 1, 1e-3, 250 };
@@ -60,8 +61,8 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   return core_hash(&surface);
 }
 
-/* Makes `count` particles in few cells, `coincident` of them at one place, and checks that two orders give the same
- * bits. */
+/* Makes `count` particles in few cells, `coincident` of them at one place, and 40 others. Checks that two orders of the
+ * particles, in both forms of the kernels, give the same bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
   CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
@@ -87,7 +88,7 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
     count, coincident);
 }
 
-/* Cells hold more particles than one work-item sorts, and more coincident ones. */
+/* Checks cells that hold more particles than one work-item sorts, and more coincident ones. */
 static void test_crowds(void** state)
 {
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prefix sums, sort, distinct keys and the key index are each compared with a naive version. */
+/* Compares prefix sums, sort, distinct keys and the key index with plain versions on the host. */
 
 #include "core_fixture.h"
 
@@ -88,7 +88,7 @@ static void test_scan(void** state)
 static void test_scan_overflow(void** state)
 {
   mcor_context* context = *state;
-  /* A count that was rounded up must be an int as well. */
+  /* The total must fit an int even after it is rounded up. */
   const int most[] = { INT_MAX, INT_MAX - 1024, INT_MAX - 5000 };
   for (int k = 0; k < 3; ++k)
   {
@@ -105,7 +105,8 @@ static void test_scan_overflow(void** state)
   }
 }
 
-/* Arguments are counted, because a missing one would keep its value from an earlier launch. */
+/* A launch must count its arguments, because a missing one would keep its value from an earlier
+ * launch. */
 static void test_argument_count(void** state)
 {
   mcor_context* context = *state;
@@ -121,8 +122,8 @@ static void test_argument_count(void** state)
   mcor_release(context, &buffer);
 }
 
-/* Checks the sorted keys with their old places, the buckets of the sorted keys, and the distinct keys with the runs of
- * each. */
+/* Checks the sorted keys and where each was before, the index that finds keys by bucket, the distinct keys, and where
+ * each key's run begins. */
 static void check_keys(mcor_context* context, int kind, int count)
 {
   const uint64_t limit = kinds[kind].limit;
@@ -201,7 +202,7 @@ static void test_keys(void** state)
   }
 }
 
-/* In a launch that is cut into parts, each work-item runs once. */
+/* Checks a launch that is cut into parts: each work-item must run once. */
 static void test_parts(void** state)
 {
   enum

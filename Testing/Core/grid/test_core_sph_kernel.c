@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The SPH kernels as the device evaluates them: values and slopes equal the oracle's, whose integrals
+/* Tests the SPH kernels as the device evaluates them: values and slopes must equal the oracle's, whose integrals
  * oracle_self checks. */
 
 #include "core_fixture.h"
 
-/* Computes W h^3 and its gradient at offsets in both ways: as sums at nodes do, and as the correction does. */
+/* Computes W h^3 and its gradient at offsets in two ways: as sums at nodes do, and as the correction does. */
 static const char source[] =
   "__kernel void test_kernel(const int count, const real inv_h, __global const real* offset,\n"
   "  __global real* out)\n"
@@ -28,7 +28,8 @@ static const char source[] =
   "  out[5 * i + 4] = MCOR_GET(gradient[2], MCOR_LANES - 1) * MCOR_NORM;\n"
   "}\n";
 
-/* Evaluates W (h = 1 / inv_h, without the factor 1 / h^3) at offsets of the precision's type. Free the result. */
+/* Evaluates the kernel above for h = 1 / inv_h at `offsets`, which are floats or doubles as the precision says. Free
+ * the result. */
 static void* evaluate(mcor_context* context, mcor_sph_kernel kernel, mcor_type precision,
   const void* offsets, int count, double inv_h)
 {
@@ -82,7 +83,8 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
   }
 }
 
-/* W is exactly 0 from the support radius on, and not 0 just inside; at 0 its slope is 0. */
+/* Checks that W is exactly 0 from the support radius on, not 0 just inside, and has slope 0 at 0.
+ * */
 static void check_support(mcor_context* context, mcor_sph_kernel kernel)
 {
   const double support = mcor_support_factor(kernel);
@@ -103,8 +105,8 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   }
 }
 
-/* Checks single precision, where some formulas differ: within 1.5e-6 of the greatest W, and of its steepest slope; near
- * the support radius within 1e-5 of W itself. */
+/* Checks single precision, where some formulas differ. Allowed errors: 1.5e-6 of the greatest W and of its steepest
+ * slope; near the support radius 1e-5 of W itself. */
 static void check_single(mcor_context* context, mcor_sph_kernel kernel)
 {
   enum

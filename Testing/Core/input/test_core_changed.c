@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Other code writes to the arrays during a call. The call returns, with a sentence if it noticed the change, and the
- * next call is as if nothing had happened. */
+/* Tests calls during which other code writes to the input's arrays. The call must return, with a message if it noticed
+ * the change, and the next call must work as if nothing had happened. */
 
 #include "core_fixture.h"
 

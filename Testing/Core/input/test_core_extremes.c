@@ -5,7 +5,8 @@
 
 #include "core_fixture.h"
 
-/* Drops that are far apart are all found: keys of search cells must not overflow. */
+/* Checks that drops far apart from each other are all found: keys of search cells must not
+ * overflow. */
 static void test_far_apart(void** state)
 {
   enum
@@ -19,7 +20,7 @@ static void test_far_apart(void** state)
   {
     for (int a = 0; a < 3; ++a)
     {
-      /* Drops lie on nodes; the first and the last span the whole lattice. */
+      /* Drops lie on nodes of the lattice. The first and the last lie in its opposite corners. */
       const double at = i == 0 ? 0 : i == DROPS - 1 ? 1 : random_unit(&seed);
       set.position[3 * i + a] = floor(1000000 * at);
     }
@@ -35,7 +36,8 @@ static void test_far_apart(void** state)
   assert_int_equal(surface.triangle_count, 8 * DROPS);
 }
 
-/* Smoothing lengths before scaling reach far beyond the lattice; pairs and computed volumes use the lengths before scaling. */
+/* Before scaling (h_scale), smoothing lengths reach far beyond the lattice. Pairs and computed volumes use the lengths
+ * before scaling. Both precisions must give the same number of triangles. */
 static void test_far_reach(void** state)
 {
   const double iso = 0;
@@ -66,7 +68,8 @@ static void test_far_reach(void** state)
   }
 }
 
-/* The unit of the scalar changes neither the mesh nor which cut vertices are exact. */
+/* Checks that the unit of the scalar does not change the mesh, and that all cut vertices are exact
+ * in any unit. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
@@ -97,7 +100,7 @@ static void test_magnitude(void** state)
   }
 }
 
-/* The threshold equals some vertex's own weight. */
+/* Checks thresholds that exactly equal the weight of a vertex. */
 static void test_exact_threshold(void** state)
 {
   const double iso = 0;
@@ -119,7 +122,8 @@ static void test_exact_threshold(void** state)
   CORE_CHECK(thresholds > 50, thresholds);
 }
 
-/* Many coincident particles are sorted in no time, and an earlier scalar leaves no trace. */
+/* Checks that many coincident particles are sorted fast, and that an earlier scalar leaves no
+ * trace. */
 static void test_coincident(void** state)
 {
   enum
@@ -132,7 +136,8 @@ static void test_coincident(void** state)
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* The block's particles are twins; all other particles lie at one place, where a simulation leaves unused particles. */
+    /* Each two particles of the block lie in one place. All other particles lie together at another place, where a
+     * simulation parks unused particles. */
     const int64_t twin = i < block.count ? i / 2 * 2 : 0;
     for (int a = 0; a < 3; ++a)
     {
@@ -160,8 +165,8 @@ static void test_coincident(void** state)
   assert_int_equal(core_hash(&reused), core_hash(&fresh));
 }
 
-/* Values equal the iso value over a whole region, to within rounding. Nodes that were evaluated for another iso value
- * do not change the result. */
+/* Values equal iso over a whole region, to within rounding. Nodes that were evaluated for another iso value must not
+ * change the result. */
 static void test_plateau(void** state)
 {
   const double plateau = (double)0.3f;
@@ -189,7 +194,7 @@ static void test_plateau(void** state)
   }
 }
 
-/* With a kernel that has negative lobes the sum of weights may be 0 or less, so that there is no mean. */
+/* If a kernel has negative lobes, the sum of weights may be 0 or less, so that there is no mean. */
 static void test_no_density(void** state)
 {
   const double iso = 0.5;
@@ -201,7 +206,7 @@ static void test_no_density(void** state)
     set.scalar[i] = i % 2;
     if (i > 0)
     {
-      /* Here the kernel is -1/16. */
+      /* At this distance from particle 0 the kernel is -1/16. */
       set.position[3 * i + (i - 1) % 3] = (i - 1) / 3 % 2 ? 1.5 : -1.5;
     }
   }
@@ -216,8 +221,8 @@ static void test_no_density(void** state)
   surface = core_extract(*state, &input, &options);
 }
 
-/* Smoothing lengths from 1 to 1024 with cubes for the smallest make a lattice of 10^12 cells. The surface is closed and
- * all vertices are on it. */
+/* Smoothing lengths from 1 to 1024 with cubes for the smallest make a lattice of 10^12 cells. The surface must be
+ * closed, and all vertices must lie on it. */
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");

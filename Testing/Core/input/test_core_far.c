@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are absent or ignored play no part, whatever they hold. Particles too far away for the virtual grid do
- * not stop a run: with a box, or at points, they do not matter; otherwise a few are left out, with a warning. */
+/* Tests particles that must play no part. Absent or ignored particles may hold anything. Particles too far away for the
+ * virtual grid do not stop a run: with a box, or at points, they do not matter; otherwise a few are left out, with a
+ * warning. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -10,7 +11,7 @@
 #define SIDE 10
 #define BLOCK (SIDE * SIDE * SIDE)
 
-/* Returns the block, and behind it `more` particles whose arrays hold nothing valid. */
+/* Returns the block's particles, followed by `more` particles whose arrays hold nothing valid. */
 static particle_set add_particles(const particle_set* block, int more)
 {
   particle_set set = particle_set_make(block->count + more);
@@ -35,7 +36,7 @@ static particle_set add_particles(const particle_set* block, int more)
   return set;
 }
 
-/* Checks that the set's surface is, to the last bit, the block's. */
+/* Checks that the set's surface equals the block's surface to the last bit. */
 static void check_same(mcor_context* context, const particle_set* block, const particle_set* set,
   mcor_input (*input_of)(const particle_set*), const mcor_options* options)
 {
@@ -104,7 +105,8 @@ static void test_absent(void** state)
   assert_true(core_told(*state, "ARRAY_VALUE|position of particle 1000"));
   particle_set_free(&set);
   particle_set_free(&block);
-  /* There are many particles, read in several slices; the ones that count stay in order. */
+  /* So many particles are read in several slices. Particles that are not ignored must keep their
+   * order. */
   set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   block = particle_set_make(set.count);
@@ -114,7 +116,8 @@ static void test_absent(void** state)
     set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
     set.solid[i] ? (void)0 : particle_set_append(&block, &set, i);
   }
-  /* The numbers of particles would differ. */
+  /* Particles have other numbers in the two sets, so the nearest particle's number is not compared.
+   * */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   check_same(*state, &block, &set, input_without_solids, &options);
 }
@@ -125,7 +128,8 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Medians are taken over the 32 fluid particles with the least hashes; absent particles are not sampled. */
+/* Checks medians, which are taken over the 32 fluid particles with the least hashes; absent particles are not sampled.
+ * */
 static void test_measures(void** state)
 {
   enum
@@ -196,7 +200,8 @@ static void test_measures(void** state)
   }
 }
 
-/* Returns the block, and behind it `far` particles at great distances that are otherwise like its first one. */
+/* Returns the block's particles, followed by `far` particles at great distances that are otherwise like the block's
+ * first one. */
 static particle_set add_far(const particle_set* block, int far)
 {
   particle_set set = add_particles(block, far);
@@ -212,7 +217,8 @@ static particle_set add_far(const particle_set* block, int far)
   return set;
 }
 
-/* A scalar that is not a number does not matter at a particle that is left out, but mcor_check_input refuses it. */
+/* Checks that a few far particles are left out. At such a particle a scalar of NaN does not matter, but
+ * mcor_check_input refuses it. */
 static void test_few(void** state)
 {
   const double iso = 0.5;
@@ -245,7 +251,7 @@ static void test_few(void** state)
   assert_non_null(strstr(mcor_last_error(*state), "far away"));
 }
 
-/* Nine far particles are too many, but not with a box or at points. */
+/* Nine far particles are too many to be left out, but do not matter with a box or at points. */
 static void test_region(void** state)
 {
   const double iso = 0.5, box[6] = { -3, 20, -2.5, 30, -40, 3 };
@@ -300,7 +306,8 @@ static void test_region(void** state)
   }
 }
 
-/* In a zoom, small particles lie in a lattice of large ones whose supports reach them all. */
+/* Checks a zoom: small particles lie in a lattice of large ones whose supports reach all of them.
+ * */
 static void test_zoom(void** state)
 {
   const double iso = 0.5;
@@ -337,7 +344,8 @@ static void test_zoom(void** state)
     mesh_report report = core_check_mesh(&surface);
     mesh_free_report(&report);
     assert_true(surface.statistics.is_closed);
-    /* The sum of densities 1 is the small particles' weight sum. */
+    /* The small particles' scalars are 1 and the large ones' nearly 0, so the sum is the small
+     * particles' weight sum. */
     CORE_CHECK(fabs(surface.statistics.volume / expected.statistics.volume - 1) < 0.005,
       surface.statistics.volume, expected.statistics.volume);
     mcor_free_surface(&surface);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests what the core finds among named arrays, and what it does with values given by hand: volumes, types of
- * elements, the fluid, the scalar, attributes, and sentences. */
+/* Tests what the core finds among named arrays and values given by hand: volumes, types of elements, the fluid, the
+ * scalar, attributes, and error messages. */
 
 #include "core_fixture.h"
 #include "mcor_find.h"
@@ -34,7 +34,7 @@ static mcor_request request_of(unsigned wants)
     mcor_request){ .wants = wants, .find = 1, .active = -1, .scalar_component = MCOR_MAGNITUDE };
 }
 
-/* Frees what was found before, and finds anew, which must succeed. */
+/* Frees the last result and finds anew, which must succeed. */
 static void find(
   const mcor_request* request, const mcor_named* arrays, int count, mcor_found* found)
 {
@@ -42,7 +42,8 @@ static void find(
   assert_int_equal(mcor_find_input(request, &positions, arrays, count, NULL, found), MCOR_OK);
 }
 
-/* Frees what was found before, and fails with a message that core_tells finds. */
+/* Frees the last result, and checks that finding anew fails with a message in which core_tells
+ * finds the words. */
 static void refuse(const mcor_request* request, const mcor_named* arrays, int count,
   mcor_found* found, const char* words)
 {
@@ -52,13 +53,14 @@ static void refuse(const mcor_request* request, const mcor_named* arrays, int co
   CORE_CHECK(core_tells(&found->error, words), found->error.text, words);
 }
 
-/* The rule of precedence is tested for all combinations of what the file has and what is given by hand. */
+/* Checks which arrays or values make the volumes, for combinations of the file's arrays and what is given by hand. */
 static void test_volumes(void** state)
 {
   const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
-  /* file: the file has the arrays of these letters (v, m, d). given: v, m, d by name, M, D by value, c computed, p one
-   * volume. used: what makes the volumes. unused: what core_tells of the sentence; NULL: there is none. */
+  /* file: letters of the arrays that the file has (v volume, m mass, d density). given: v, m, d: an array by name; M,
+   * D: a value; c: computed volumes; p: one volume. used: what makes the volumes. unused: what core_tells finds in the
+   * message on unused values; NULL: there is no message. */
   const struct
   {
     const char *file, *given, *used, *unused;
@@ -111,14 +113,14 @@ static void test_volumes(void** state)
     CORE_CHECK(strcmp(used, cases[c].used) == 0, cases[c].file, cases[c].given, used);
     CORE_CHECK(cases[c].unused ? core_tells(&found.unused, cases[c].unused) : !found.unused.text,
       cases[c].file, cases[c].given, found.unused.text);
-    /* Masses and densities are known even if volumes are given. */
+    /* Masses and densities are found even if volumes are given. */
     assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
       strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
   }
 }
 
-/* Elements of any type and with gaps between them are read alike; floats and doubles without gaps stay where
- * they are. */
+/* Elements of any type, also with gaps between them, must be read alike. Floats and doubles without gaps are not
+ * copied. */
 static void test_elements(void** state)
 {
   const float gaps[2 * COUNT] = { 1, 0, 2, 0, 3, 0, 4, 0 };
@@ -151,7 +153,8 @@ static void test_elements(void** state)
   }
 }
 
-/* Fluid is found by the codes of DualSPHysics, by 0 and 1, and by hand; then particles are left out. */
+/* Checks that the fluid is found by the codes of DualSPHysics, by 0 and 1, and by a value given by hand. Then particles
+ * outside a range of an array are left out. */
 static void test_fluid(void** state)
 {
   const uint8_t codes[COUNT] = { 0, 1, 3, 3 }, wall[COUNT] = { 1, 0, 0, 0 };
@@ -230,8 +233,8 @@ static void test_fluid(void** state)
   refuse(&request, arrays, 4, &found, "NO_SUCH_ARRAY|'Typo'|: Type, IsWall, ptype, WallBlock.");
 }
 
-/* The scalar may be named, or chosen as the most suitable of three arrays, or summed. Attributes, and the arrays that
- * a flow needs, are tested, too. */
+/* The scalar may be named, chosen as the most suitable of three arrays, or summed. Attributes and the arrays that a
+ * flow needs are checked, too. */
 static void test_scalar_and_attributes(void** state)
 {
   const int32_t id[COUNT] = { 3, 1, 2, 0 };
@@ -292,7 +295,7 @@ static void test_scalar_and_attributes(void** state)
   assert_true(found.input.volume.data == volume && !found.input.scalar.data);
 }
 
-/* Each sentence about what is missing, or not usable. */
+/* Checks each message about arrays that are missing or not usable. */
 static void test_errors(void** state)
 {
   const double dp[COUNT] = { 0.5, 0.5, 0.5, 0.5 };

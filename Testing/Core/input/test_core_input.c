@@ -1,11 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bad input of every kind gives its status, its sentence and an empty surface, and the context goes on working. */
+/* Checks that bad input of every kind gives its status, its message and an empty surface, and that the context goes on
+ * working. */
 
 #include "core_fixture.h"
 
-/* A good call, which a test spoils. */
+/* A good call. A test makes one thing in it bad. */
 typedef struct bad_call
 {
   particle_set set;
@@ -31,7 +32,7 @@ static void free_call(bad_call* call)
   free(call->vector);
 }
 
-/* The call must fail with the status and a message that core_told finds. */
+/* Checks that the call fails with the status and a message in which core_told finds the words. */
 static void expect(
   mcor_context* context, const bad_call* call, mcor_status status, const char* words)
 {
@@ -90,7 +91,7 @@ static void test_types(void** state)
   }
 #include "mcor_options.def"
 
-/* Each sentence names its option. */
+/* Checks that each illegal value is refused with a message that names the option. */
 static void test_options(void** state)
 {
   static const struct
@@ -150,7 +151,7 @@ static int reduce_none(void* user, mcor_reduction reduction, double* values, int
   return 0;
 }
 
-/* Pairs are only for comparisons with the paper, so other features refuse them. */
+/* Seeds by pairs are only for comparisons with the paper, so other features refuse them. */
 static void test_pairs(void** state)
 {
   const mcor_ranks ranks = { .reduce_doubles = reduce_none };
@@ -194,7 +195,7 @@ static void test_components(void** state)
   expect_good(*state);
 }
 
-/* With one bad element, the sentence names the array and the particle. */
+/* Checks that the message on a bad element names the array and the particle. */
 static void test_bad_elements(void** state)
 {
   const double bad[] = { NAN, INFINITY, -INFINITY, 0, -1 };
@@ -252,7 +253,7 @@ static void move_far(bad_call* call, int axis, double to)
   }
 }
 
-/* Lattices that do not fit are refused, and the sentence says what to do. */
+/* Checks that lattices that do not fit are refused, with a message that says what to do. */
 static void test_lattice_limits(void** state)
 {
   CAPACITY("GRID_TOO_LONG|along x;", move_far(&call, 0, 1e9));
@@ -289,7 +290,8 @@ static void test_null_arguments(void** state)
   expect_good(context);
 }
 
-/* No particles, no iso value, an iso value outside of the range and one particle are no errors. */
+/* Checks that no particles, no iso value, an iso value outside the range, or one particle give an
+ * empty surface and no error. */
 static void test_empty_results(void** state)
 {
   for (int kind = 0; kind < 5; ++kind)
@@ -306,7 +308,7 @@ static void test_empty_results(void** state)
   expect_good(*state);
 }
 
-/* The scalar's range is greater than the precision allows. */
+/* Checks scalars whose range is greater than the precision allows. */
 static void test_endless_range(void** state)
 {
   static const struct
@@ -340,7 +342,8 @@ static void test_endless_range(void** state)
   expect_good(*state);
 }
 
-/* An attribute that is not finite is left out with a warning, and the other attributes do not change. */
+/* Checks that an attribute with a value that is not finite is left out with a warning, and that the other attributes do
+ * not change. */
 static void test_bad_attributes(void** state)
 {
   const double bad[] = { NAN, INFINITY, -INFINITY };
@@ -370,7 +373,7 @@ static void test_bad_attributes(void** state)
   expect_good(*state);
 }
 
-/* Values of the scalar and of attributes at solids play no part. */
+/* Checks that values of the scalar and of attributes at solids do not matter. */
 static void test_values_of_solids(void** state)
 {
   const double values[] = { 0.5, NAN, INFINITY, -1e300 };
@@ -396,7 +399,7 @@ static void test_values_of_solids(void** state)
   }
 }
 
-/* Makes a vector of each particle's scalar; its magnitude is unit * (scalar + 10). */
+/* Sets a vector for each particle, whose magnitude is unit * (scalar + 10). */
 static void make_vectors(bad_call* call, double unit)
 {
   for (int64_t i = 0; i < call->set.count; ++i)
@@ -414,7 +417,7 @@ static void make_vectors(bad_call* call, double unit)
   call->options.precision = MCOR_FLOAT64;
 }
 
-/* Magnitudes are found even where their squares overflow or vanish. */
+/* Checks magnitudes whose squares overflow or vanish. */
 static void test_magnitudes(void** state)
 {
   const double units[] = { 1, 0x1p530, 0x1p-560, 0x1p-900 };
@@ -431,7 +434,7 @@ static void test_magnitudes(void** state)
   }
 }
 
-/* The components are finite, but the magnitude or the dot product is not. */
+/* Checks vectors whose components are finite, but not their magnitude or dot product. */
 static void test_bad_products(void** state)
 {
   const double far = 1.7e308;
@@ -441,7 +444,7 @@ static void test_bad_products(void** state)
        call.input.scalar_dot = call.input.scalar; call.input.scalar_dot.name = "force");
   DATA("DOT_TOO_LARGE|particle 1", make_vectors(&call, 1); call.options.precision = MCOR_FLOAT32;
        call.vector[3] = 1e250; call.vector[4] = 1e249; call.input.scalar_dot = call.input.scalar);
-  /* The sum meets inf - inf on the way, but the result is finite. */
+  /* A plain sum of the products would be inf - inf, but the result is finite. */
   CORE_OWNED(free_call) bad_call call = make_call();
   make_vectors(&call, 1);
   CORE_FREED double* other = core_copy(call.vector, (size_t)call.set.count * 3 * sizeof(double));
@@ -459,7 +462,7 @@ static void test_bad_products(void** state)
   expect_good(*state);
 }
 
-/* Values that are too small for a computed volume are not blamed on the kernel. */
+/* Checks that the message on values too small for a computed volume does not blame the kernel. */
 static void test_computed_volumes(void** state)
 {
   DATA("MASS_TOO_SMALL|particle 5", call.input.volume = (mcor_array){ 0 };
@@ -471,7 +474,8 @@ static void test_computed_volumes(void** state)
   expect_good(*state);
 }
 
-/* Lengths in any unit give the same surface, with estimated smoothing lengths and normals, too. */
+/* Checks that lengths in any unit give the same surface, also with estimated smoothing lengths and
+ * normals. */
 static void test_units_of_length(void** state)
 {
   const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };
@@ -504,7 +508,8 @@ static void test_units_of_length(void** state)
   expect_good(*state);
 }
 
-/* Iso values and thresholds lie beyond the device's precision. */
+/* Checks that iso values and thresholds too large for the device's numbers give an empty surface
+ * and no error. */
 static void test_far_options(void** state)
 {
   const double far[] = { 1e36, 1e39, 1e308 };
@@ -536,7 +541,7 @@ static void repeat(bad_call* call, double length, double from)
   }
 }
 
-/* The sentence names the particle that is to blame. */
+/* Checks that the message names the particle with the extreme value that is the cause. */
 static void test_outliers(void** state)
 {
   CAPACITY("GRID_TOO_LONG|along x;|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",
@@ -553,7 +558,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* There are enough particles for several threads. They fill a cube, until a part of one octant is taken out. */
+/* Checks whether a free surface is suggested, for particles that fill a cube, and at the end lack a part of one octant.
+ * There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

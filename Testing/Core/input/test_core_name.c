@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays are recognised by their names; and values suggest a period, the fluid, an iso value. */
+/* Tests how arrays are recognised by their names, and how values suggest a period, the fluid and an
+ * iso value. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -42,7 +43,8 @@ static void test_names(void** state)
   }
 }
 
-/* The first array in the core's order gives the period; an array that is no period gives none. */
+/* Checks that the first array in the core's order gives the period, and that an array that is no
+ * period gives none. */
 static void test_period_of_field_data(void** state)
 {
   const double bounds[6] = { -1, 1, 0, 0, 0, 0 }, cube = 2, edges[3] = { 2, 0, 4 };
@@ -118,8 +120,8 @@ static void test_view_ranks(void** state)
   assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
 }
 
-/* The iso value is the median of the values, however they are distributed. Solids and values that are not finite are
- * left out. */
+/* Checks that the suggested iso value is the median of the values, however they are distributed. Solids and values that
+ * are not finite are left out. */
 static void test_iso_values(void** state)
 {
   enum
@@ -177,8 +179,8 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
   return 0;
 }
 
-/* A scalar whose form mcor_extract refuses is not read, and other ranks are told. Each array is a heap block of its
- * exact size, for sanitizers. */
+/* Checks that a scalar whose form mcor_extract refuses is not read, and that the other ranks learn of it. Each array is
+ * a heap block of its exact size, for sanitizers. */
 static void test_iso_value_of_wrong_scalars(void** state)
 {
   CORE_FREED double* three = oracle_allocate(2 * 3, sizeof *three);

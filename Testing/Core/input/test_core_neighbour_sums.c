@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Smoothing lengths by neighbours and summed densities: compared with sums over all pairs, and with Plummer's sphere. */
+/* Tests smoothing lengths by neighbours, and summed densities. They are compared with sums over all pairs, and with
+ * Plummer's sphere. */
 
 #include "core_fixture.h"
 #include "mcor_plane.h"
 #include "mcor_vector.h"
 
-/* Returns sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
+/* Returns sum_j m_j W h^d over all particles and their images (d: dimension); m_j = 1 if there are no masses. */
 static double sum_of_all(const particle_set* set, const mcor_options* options, int dimension,
   const double* mass, int64_t i, double h)
 {
@@ -127,8 +128,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* A call may ask for sums at some particles, with all particles as neighbours. Particles that play no part change
-   * nothing. */
+  /* A call may ask for sums at the first few particles only, with all particles as neighbours. Ignored particles must
+   * change nothing. */
   input = core_input(&set);
   const int64_t part = count / 3;
   find_lengths(&input, &options, part, some);
@@ -170,7 +171,7 @@ static void test_sums(void** state)
   check_sums(MCOR_QUINTIC_SPLINE, 2, 1);
 }
 
-/* From positions and masses alone, the densities of Plummer's sphere at the radii 1 and 3 are found. */
+/* Checks that the densities of Plummer's sphere at the radii 1 and 3 follow from positions and masses alone. */
 static void test_plummer(void** state)
 {
   const int count = 20000;
@@ -211,7 +212,7 @@ static void test_plummer(void** state)
   }
 }
 
-/* A particle may lie any number of periods away without a change. */
+/* Checks that moving particles by any number of periods changes no smoothing length. */
 static void test_far_beyond_period(void** state)
 {
   double at[3 * 64], lengths[2][64];
@@ -233,7 +234,7 @@ static void test_far_beyond_period(void** state)
   assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
 }
 
-/* A particle far away from all others, too far for a place on their space-filling curve, changes nothing. */
+/* Checks that a particle so far away that it has no place on the others' space-filling curve changes nothing. */
 static void test_far_away(void** state)
 {
   enum
@@ -264,7 +265,8 @@ static void test_far_away(void** state)
   }
 }
 
-/* A body far beyond a corner of all others has the same values as it has alone, in any order of the input. */
+/* Checks that a body far beyond a corner of all other particles has the same values as alone, in any order of the
+ * input. */
 static void test_far_body(void** state)
 {
   enum
@@ -313,7 +315,7 @@ static void test_weird(void** state)
   expect_refusal(&input, &options, 1.3, MCOR_INVALID_DATA, "NEIGHBOURS_AT_ONE_POINT");
   at[0] = 2;
   find_lengths(&input, &options, input.count, out);
-  /* Two particles are too few, so the domain's extent is used. */
+  /* Two particles are too few neighbours, so the length is the extent of the domain. */
   assert_true(out[0] == 1 && out[1] == 1);
   expect_refusal(&input, &options, 0.6, MCOR_INVALID_ARGUMENT, "ETA_ILLEGAL|0.6;|0.683");
   expect_refusal(&input, &options, NAN, MCOR_INVALID_ARGUMENT, "ETA_ILLEGAL");
@@ -327,7 +329,7 @@ static void test_weird(void** state)
   expect_refusal(&input, &options, 1.3, MCOR_INVALID_DATA, "POSITION_NOT_FINITE|particle 1 ");
   input.count = 0;
   find_lengths(&input, &options, input.count, out);
-  /* So many particles lie at one place that the length becomes the least possible. */
+  /* So many particles lie at one place that the smoothing length becomes the least possible. */
   double many[3 * 100] = { 0 }, lengths[100];
   many[0] = 1;
   input = (mcor_input){ .count = 100, .positions = core_array(many, 3) };

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the estimate of a run's length, by hand, and the words for what a run used. */
+/* Tests the estimate of how long a run will be, worked out by hand, and the text on what a run
+ * used. */
 
 #include "core_fixture.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests surfaces that end at solids (mcor_options.wall_share): which share is measured, and when the share acts. The
- * oracle checks where such a surface ends. */
+/* Tests surfaces that end at solids (mcor_options.wall_share): which share is measured, and when it is used. The oracle
+ * checks where such a surface ends. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
 
-/* Makes a block whose particles below a plane, oblique to the lattice, are solid. */
+/* Makes a block of particles. Those below a plane oblique to the lattice are solids. */
 static particle_set make_tank(void)
 {
   particle_set set = core_make_block(10, 0.2, 3, core_slope);
@@ -30,7 +30,7 @@ static mcor_options make_options(double share, mcor_field field)
   return options;
 }
 
-/* Where no solid counts, the surface has nowhere to end, and not a bit changes. */
+/* Without solids that matter the surface has nowhere to end, so the share must not change a bit. */
 static void test_without_solids(void** state)
 {
   CORE_SET set = make_tank();
@@ -63,8 +63,8 @@ static int compare_shares(const void* a, const void* b)
   return (s > t) - (s < t);
 }
 
-/* Returns the solids' share at the solids: the median, weighted by the fluid's weight there. Images lie a period away
- * along y. */
+/* Returns the expected share: at each solid, the solids' share of the weight; of these, the median weighted by the
+ * fluid's weight there. Images lie one period away along y. */
 static double find_share(const particle_set* set, oracle_kernel kernel, double period)
 {
   wall_weight at[1000];
@@ -118,8 +118,8 @@ static particle_set make_small_tank(void)
   return set;
 }
 
-/* The measured share is the solids' share at the solids next to the fluid, with any kernel, and also across a
- * period. */
+/* Checks that the measured share is the solids' share of the weight at the solids next to the fluid, with any kernel,
+ * and also across a period. */
 static void test_share(void** state)
 {
   CORE_SET set = make_small_tank();
@@ -139,8 +139,8 @@ static void test_share(void** state)
   }
 }
 
-/* A measured share gives the same surface as this share set by hand, also where the search grid was made for another
- * share, and with global values. */
+/* Checks that a measured share gives the same surface as the same share set by hand, also if the kept search grid was
+ * made for another share, and with global values. */
 static void test_measured(void** state)
 {
   CORE_SET set = make_tank();
@@ -169,7 +169,8 @@ static void test_measured(void** state)
     hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0], globals.measured.wall_share);
 }
 
-/* By default the wall share is measured for a scalar, and is 0 for the free surface; with global values, too. */
+/* Checks the default: the wall share is measured for a scalar, and is 0 for the free surface, also with global values.
+ * */
 static void test_auto(void** state)
 {
   CORE_SET set = make_tank();
@@ -203,8 +204,8 @@ static void test_auto(void** state)
   }
 }
 
-/* A free surface that ends at walls takes the share one half; global values must have been measured with this
- * share. */
+/* A free surface that ends at walls must take the share one half. Global values measured with another share must be
+ * refused. */
 static void test_measured_elsewhere(void** state)
 {
   CORE_SET set = make_tank();

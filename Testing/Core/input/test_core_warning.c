@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Each fault of the input gives one sentence with figures; a sound input gives none. */
+/* Checks that each fault of the input gives one warning with figures, and that sound input gives
+ * none. */
 
 #include "core_fixture.h"
 
@@ -61,7 +62,7 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
     assert_int_equal(check_call(*state, &call, #statement, kind, MCOR_SAYS_##code, words), 1);     \
   } while (0)
 
-/* Gives words for slots. An unknown slot stays as it is, and a value that is cut off does no harm. */
+/* Writes a word for a slot of a message. Returns whether the slot is known; an unknown slot stays as it is. */
 static int word_of(void* user, const char* name, const char* value, char* word, size_t size)
 {
   (void)user;
@@ -105,7 +106,8 @@ static void test_slots(void** state)
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
                         wide = { .constant = 2.1 }, far_off = { .constant = 0.0013 };
 
-/* Moves every other particle close to the one before it, as near as particles of a gas may be. */
+/* Moves every other particle close to the particle before it, as near as particles of a gas may be.
+ * */
 static void pair_up(particle_set* set)
 {
   for (int64_t i = 3; i + 2 < 3 * set->count; i += 6)
@@ -145,7 +147,7 @@ static void test_neighbours(void** state)
     MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL,
     "1 neighbour within|no other particle|unit of the positions", call.input.smoothing_length = far_off;
     call.options.cube_size = 1; call.options.node_threshold = 0; call.options.vertex_threshold = 0);
-  /* One sentence tells the cause of an empty surface. */
+  /* For an empty surface, one warning must tell the cause. */
   WARNED(MCOR_WARN_NEIGHBOURS, NEIGHBOURS_UNUSUAL, "is 0.0013", call.input.smoothing_length = far_off;
          call.options.cube_size = 1);
   WARNED(MCOR_WARN_NEIGHBOURS, VOLUMES_TOO_LARGE, "{volume}",
@@ -167,7 +169,7 @@ static void test_neighbours(void** state)
   particle_set_free(&alone.set);
 }
 
-/* Flattens the set to this height, measured by the fluid's extent. */
+/* Flattens the set to this height. The unit is the fluid's extent. */
 static void flatten(particle_set* set, double height)
 {
   for (int64_t i = 0; i < set->count; ++i)
@@ -178,7 +180,8 @@ static void flatten(particle_set* set, double height)
   }
 }
 
-/* Tilts the set into a plane through the y axis; the last `off` particles lie a smoothing length beside it. */
+/* Tilts the set into a plane through the y axis. The last `off` particles lie one smoothing length away from this
+ * plane. */
 static void tilt(particle_set* set, double height, int off)
 {
   flatten(set, height);
@@ -243,7 +246,7 @@ static void test_precision(void** state)
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 100);
 }
 
-/* Makes a block of particles with noise, and a smaller one beside it. */
+/* Makes a block of particles with a noisy scalar, and a smaller block beside it. */
 static particle_set far_apart(double smaller)
 {
   uint64_t seed = 3;
@@ -267,7 +270,7 @@ static particle_set far_apart(double smaller)
 }
 
 /* Checks that residual_max is at least the greatest residual, computed in double precision, and at most four times as
- * large, even where positions are coarsely rounded. */
+ * large, even if positions are coarsely rounded. */
 static void check_told_residual(mcor_context* context, const particle_set* set, mcor_field field)
 {
   const double iso = 0.5;
@@ -346,7 +349,8 @@ static void test_trimmed(void** state)
     call.input.volume = (mcor_array){ .constant = 0.001 });
 }
 
-/* With global values the input may be any part of the particles. */
+/* There is no text for a number that is no warning. The input may be NULL: with global values it
+ * may be any part of the particles. */
 static void test_without_input(void** state)
 {
   warning_call call;

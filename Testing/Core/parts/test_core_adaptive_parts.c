@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes in boxes: levels are measured in the whole set, and the boxes' surfaces make up the whole surface to the
- * last bit. */
+/* Tests adaptive cubes in boxes: levels are measured in the whole set, and the boxes' surfaces make up the whole
+ * surface to the last bit. */
 
 #include "core_parts.h"
 
@@ -38,7 +38,8 @@ static void smooth_surfaces(void** state)
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
 }
 
-/* Noise of all sizes lies side by side, so that levels change everywhere and edges are pinched. */
+/* Checks a noisy scalar of particles of all sizes side by side: levels change everywhere and edges
+ * are pinched. */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
@@ -63,7 +64,7 @@ static void rough_surfaces(void** state)
   core_check_cuts(*state, "M'4, preview", &input, &options);
 }
 
-/* Returns the particles of the set whose supports reach the box with six cubes of their level around it. */
+/* Returns the particles whose supports reach the box after it is enlarged by six cubes of the particle's level. */
 static particle_set take_reaching(
   const particle_set* set, const double box[6], const mcor_globals* globals, double cube)
 {
@@ -79,14 +80,16 @@ static particle_set take_reaching(
   return near;
 }
 
-/* Levels are measured once. Each box gets these levels, and only nearby particles. */
+/* Measures levels once, and gives them to the call for each box, with only the particles near the
+ * box. */
 static void given_levels(void** state)
 {
   static const double iso = 0.2;
   CORE_SET set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  /* The box's input numbers particles in another way. */
+  /* Particles have other numbers in the box's input, so the nearest particle's number is not
+   * compared. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
@@ -112,7 +115,7 @@ static void given_levels(void** state)
   core_expect_same("eight boxes", &all, &whole);
   free(whole.bytes);
   free(all.bytes);
-  /* Global values of uniform cubes lack the levels. */
+  /* Global values that were measured for uniform cubes lack the levels, so they must be refused. */
   mcor_free_globals(&globals);
   input = core_input(&set);
   options.globals = NULL;
@@ -125,7 +128,8 @@ static void given_levels(void** state)
   mcor_free_globals(&globals);
 }
 
-/* The cuts go through cubes of high levels, where particles many small cubes away matter. */
+/* Cuts through cubes of high levels, for which particles at a distance of many small cubes matter.
+ * */
 static void cuts_through_large_cubes(void** state)
 {
   static const double half = 0.5;
@@ -135,7 +139,7 @@ static void cuts_through_large_cubes(void** state)
   CORE_SET set = core_make_graded(150, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  /* With this output a box keeps all particles around it, and the test would prove nothing. */
+  /* With this output a box keeps all particles around it, so the test would always pass. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Boxes: the surfaces of boxes that part the lattice are together the whole surface, to the last bit. Triangles are
- * compared by their corners' coordinates and arrays, because each box numbers its points anew. */
+/* Tests boxes: the surfaces of boxes that divide the lattice must together equal the whole surface to the last bit.
+ * Triangles are compared by their corners' coordinates and arrays, because each box numbers its points anew. */
 
 #include "core_parts.h"
 
@@ -45,7 +45,7 @@ static void trimmed_surfaces(void** state)
   core_check_cuts(*state, "eigenvalue, preview", &input, &options);
 }
 
-/* Noise makes ambiguous faces and pinched edges. */
+/* Checks a noisy scalar, which makes ambiguous faces and pinched edges. */
 static void rough_surfaces(void** state)
 {
   const double iso = 0.1;
@@ -90,8 +90,8 @@ static void other_fields(void** state)
   core_check_cuts(*state, "sum, tensor kernel", &input, &options);
 }
 
-/* One large particle makes the surface. The nearest particle is often one of many small ones around it, whose support
- * ends before the box. */
+/* Checks the nearest particle where one large particle makes the surface. The nearest one is often one of many small
+ * particles, whose support ends before the box. */
 static void nearest_particles(void** state)
 {
   const double half = 0.5;
@@ -116,7 +116,7 @@ static void nearest_particles(void** state)
 }
 
 /* Returns an input with masses alone, so that volumes are computed. The first attribute is the position; in some boxes
- * x has one sign only. */
+ * all x have one sign. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);
@@ -130,7 +130,8 @@ static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
   return input;
 }
 
-/* Global values are measured once. Each box gets these values, and only nearby particles. */
+/* Measures global values once, and gives them to the call for each box, with only the particles
+ * near the box. */
 static void given_globals(void** state)
 {
   const double iso = 1;
@@ -145,7 +146,8 @@ static void given_globals(void** state)
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
   core_ask_for_all(&options);
-  /* The box's input numbers particles in another way. */
+  /* Particles have other numbers in the box's input, so the nearest particle's number is not
+   * compared. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
@@ -186,7 +188,8 @@ static void given_globals(void** state)
   free(all.bytes);
 }
 
-/* A small box reads only the particles that reach it; a box beside all particles needs no device memory. */
+/* Checks that a small box reads only the particles that reach it, and that a box away from all particles needs no
+ * device memory. */
 static void small_boxes(void** state)
 {
   const double iso = 0;
@@ -218,7 +221,7 @@ static void small_boxes(void** state)
   assert_true(part.statistics.cube_size == whole.statistics.cube_size);
 }
 
-/* Data kept from one box do not change the next call. */
+/* Checks that data kept from one box do not change the result of the next call. */
 static void kept_particles(void** state)
 {
   const double iso[2] = { 2, 4 };
@@ -245,7 +248,7 @@ static void kept_particles(void** state)
   }
 }
 
-/* Values that measuring never gives are refused. */
+/* Checks that global values that measuring never gives are refused. */
 static void impossible_globals(void** state)
 {
   const double iso = 0;
@@ -284,7 +287,8 @@ static void impossible_globals(void** state)
   mcor_free_globals(&measured);
 }
 
-/* Makes particles of a period around the origin. Some are so light that the surface and its caps are trimmed. */
+/* Makes the particles of one period, centred at the origin. Some are so light that the surface and its caps are
+ * trimmed. */
 static particle_set make_period(void)
 {
   particle_set set = particle_set_make(512);
@@ -306,8 +310,8 @@ static particle_set make_period(void)
   return set;
 }
 
-/* Checks caps: the squares of a cell belong to the box that owns the cell, and points on seams match, even where they
- * are trimmed. */
+/* Checks caps: the cap squares of a cell belong to the box that owns the cell, and points on the seams between boxes
+ * match, even where they are trimmed. */
 static void check_caps(mcor_context* context, const double around[6])
 {
   const double iso[2] = { 0.2, -0.4 }, half = 0.5;

@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges and fluxes of ranks, in threads, read to the last bit what one process reads, whoever owns which part of a
- * line or section. */
+/* Tests gauges and fluxes on several ranks, which are threads: they must equal the values of one process to the last
+ * bit, whichever rank owns which part of a line or section. */
 
 #include "core_ranks.h"
 
 #define LINES 90
 #define SECTIONS 4
 
-/* Makes a block of particles with holes, in random order. If the set has solids, every seventh particle is one. */
+/* Makes a block of particles with holes, in random order. If has_solids is set later, every seventh particle is a
+ * solid. */
 static particle_set make_sparse(void)
 {
   particle_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
@@ -71,8 +72,8 @@ static mcor_status read_all(mcor_context* context, gauge_job* job, const mcor_in
     : mcor_gauge(context, input, options, job->lines, LINES, &job->gauges[rank]);
 }
 
-/* Takes the particles that the box between two sides needs: particles nearer than `reach` to it or to its image a period
- * away. */
+/* Returns the particles that the box between two sides needs: particles nearer than `reach` to the box or to its image
+ * one period away. */
 static particle_set take_near(const gauge_job* job, double low, double high, double reach)
 {
   particle_set part = particle_set_make(job->set->count);
@@ -94,8 +95,8 @@ static particle_set take_near(const gauge_job* job, double low, double high, dou
   return part;
 }
 
-/* Measures one rank's slab. Slabs differ in width, their sides are not at nodes of the lattice, and the outer ones are
- * infinite. */
+/* Measures gauges and fluxes in one rank's slab. Slabs differ in width, their sides lie between nodes of the lattice,
+ * and the two outer slabs are infinite. */
 static mcor_status gauge_part(core_rank* rank, void* data)
 {
   gauge_job* job = data;
@@ -171,7 +172,7 @@ static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
   return same;
 }
 
-/* Checks that any number of ranks reads the same as one process. */
+/* Checks that any number of ranks gets the same gauges and fluxes as one process. */
 static void check_ranks(mcor_context* context, gauge_job* job, int kind)
 {
   const mcor_gauges* gauges = &job->gauges[CORE_MOST_RANKS];
@@ -221,7 +222,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* The sections go through all boxes, beyond a period, in one box alone, and outside. */
+/* Checks sections through all boxes, beyond a period, in one box alone, and outside. */
 static void test_same_fluxes(void** state)
 {
   static const double points[SECTIONS][9] = { { -7, -6.5, 1, 7, -6, 2, -7, 7, -1 },
@@ -246,7 +247,7 @@ static void test_same_fluxes(void** state)
   }
 }
 
-/* Cubes are so small that a box lacks the particles around it. */
+/* Checks the error if cubes are so small that the particles around a box are missing. */
 static void test_small_cubes(void** state)
 {
   CORE_SET set = make_sparse();

@@ -1,15 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Periodic boxes are compared with the same particles and all their images as an input without a period. Opposite sides
- * of the surface are compared with each other. */
+/* Tests periods. Results are compared with the same particles and all their images as an input without a period.
+ * Opposite sides of the surface are compared with each other. */
 
 #include "core_period.h"
 #include "oracle_period.h"
 
 #define PI 3.14159265358979323846
 
-/* Returns the point of the surface that is within 1e-4 of x, or -1. */
+/* Returns the number of the surface's point that is within 1e-4 of x, or -1. */
 static int64_t find_point(const mcor_surface* s, const double x[3])
 {
   for (int64_t i = 0; i < s->point_count; ++i)
@@ -41,7 +41,8 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
   }
 }
 
-/* Checks that opposite sides are equal to the last bit, except where they are trimmed. */
+/* Checks that the surface has the same points on opposite sides, to the last bit, unless they are
+ * trimmed. */
 static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
   CORE_REPORT report = core_check_mesh(s);
@@ -73,8 +74,8 @@ static void check_images(
   check_same(name, &surface, &expected);
 }
 
-/* Pairs are found in one place alone, away from the sides. The rest of the surface is reached by growth around the
- * period. oracle_period tests complete seeds. */
+/* Pairs are found in one place alone, away from the sides. Growth must reach the rest of the surface through the
+ * period's sides. oracle_period tests complete seeds. */
 static void pairs_grow_around(void** state)
 {
   const double iso = 0.2, along[6] = { 0, 12, 0, 8, 0, 0 };
@@ -92,8 +93,7 @@ static void pairs_grow_around(void** state)
   check_images(*state, "pairs", &set, &options);
 }
 
-/* Sets smoothing lengths that grow with the distance from one place: at the height `middle` on the period's edge along
- * z. */
+/* Sets smoothing lengths that grow with the distance from one place: height `middle` on the period's edge along z. */
 static void grade_lengths(particle_set* set, double side, double middle, double most)
 {
   for (int64_t p = 0; p < set->count; ++p)
@@ -104,8 +104,8 @@ static void grade_lengths(particle_set* set, double side, double middle, double 
   }
 }
 
-/* Adaptive cubes: levels match around the period, too, though the finest particles are at a side. Where a side is no
- * whole number of large cubes, fewer levels are used. */
+/* Checks adaptive cubes: levels match across the period's sides, even if the finest particles are at a side. If a side
+ * is no whole number of large cubes, fewer levels are used. */
 static void adaptive_cubes(void** state)
 {
   const double iso = 0.2, half = 0.5;
@@ -139,7 +139,8 @@ static void adaptive_cubes(void** state)
   }
 }
 
-/* Particles that are given some periods away make the same surface. Lengths are short enough that nothing is rounded. */
+/* Checks that particles moved by some periods make the same surface. The coordinates have so few bits that nothing is
+ * rounded. */
 static void particles_elsewhere(void** state)
 {
   const double iso = 0.2, around[6] = { 0, 8, 0, 8, 0, 8 };
@@ -159,7 +160,8 @@ static void particles_elsewhere(void** state)
   assert_true(core_hash_of(*state, &input, &options) == expected);
 }
 
-/* Cubes fit periods of different lengths; impossible periods are refused with a sentence. */
+/* Checks that cubes fit periods of different lengths, and that impossible periods are refused with
+ * a message. */
 static void lengths(void** state)
 {
   const struct
@@ -207,8 +209,8 @@ static void lengths(void** state)
   }
 }
 
-/* Adaptive cubes have a different edge along each axis. The surface is closed except at the sides, where all points
- * have partners; it is as exact as ever, and close to the surface of uniform cubes. */
+/* Checks adaptive cubes that have a different edge along each axis. The surface must be closed except at the sides,
+ * where each point has a partner, as exact as usual, and close to the surface of uniform cubes. */
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;
@@ -243,7 +245,7 @@ static void adaptive_unequal(void** state)
   }
 }
 
-/* The period is 48 cubes, except for rounding in the last digit. */
+/* Checks a period that is 48 cubes long except for rounding in the last digit. */
 static void rounded_length(void** state)
 {
   static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
@@ -258,8 +260,8 @@ static void rounded_length(void** state)
   CORE_CHECK(fabs(surface.statistics.cube_size - 0.1) < 1e-9, surface.statistics.cube_size);
 }
 
-/* Sides have very many nodes. Caps take memory and time only where particles reach a side. A call that would take all
- * memory, or hours, is refused before. */
+/* Checks sides with very many nodes. Caps may take memory and time only where particles reach a side. A call that would
+ * take all memory, or hours, must be refused at its start. */
 static void large_sides(void** state)
 {
   const double iso = 0.5, half = 0.5;
@@ -298,7 +300,8 @@ static void large_sides(void** state)
   assert_int_equal(report.boundary_edges, 0);
 }
 
-/* A box across a side has the same surface as in a period that the caller has moved. */
+/* Checks that a box across a side has the same surface as the same box in a period that the caller
+ * has moved. */
 static void test_box_across(void** state)
 {
   static const double periods[2][6] = { { 0, 12, -3, 7, 0, 11 }, { -6, 6, -5, 5, 0, 11 } };

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Probes and derivatives of periodic particles are compared with the same particles and all their images. */
+/* Tests probes and derivatives of periodic particles: they are compared with those of the same particles and all their
+ * images. */
 
 #include "core_period.h"
 
@@ -95,8 +96,8 @@ static void points_see_images(void** state)
   }
 }
 
-/* Checks the derivatives of the period's halves. A particle on the period's lower side is also on the upper side of the
- * upper half. */
+/* Checks the derivatives in each half of the period. A particle on the period's lower side must also count on the upper
+ * side of the upper half. */
 static void check_halves(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_derivatives* whole)
 {
@@ -131,7 +132,8 @@ static void check_halves(mcor_context* context, const mcor_input* input,
   mcor_free_globals(&globals);
 }
 
-/* Compares gradients at particles, some of which are given periods away, with gradients where all images are particles. */
+/* Compares gradients at particles, some of which are moved by whole periods, with gradients of an input that has all
+ * images as particles. */
 static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };
@@ -168,7 +170,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   assert_memory_equal(
     moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
   mcor_free_derivatives(&moved);
-  /* The particles are shifted to other places of the period, next to its sides, too. */
+  /* Shifts the particles, so that others lie next to the period's sides. */
   for (int shift = 1; shift < 4; ++shift)
   {
     for (int64_t i = 0; i < 3 * set.count; ++i)

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ranks, in threads, measure to the last bit what one process measures, whoever holds which particles. */
+/* Tests that ranks, which are threads, measure the same as one process to the last bit, whichever rank holds which
+ * particles. */
 
 #include "core_parts.h"
 #include "core_ranks.h"
@@ -30,7 +31,7 @@ static int split_slabs(const particle_set* set, int64_t i, int ranks)
   return at < 0 ? 0 : at < ranks ? (int)at : ranks - 1;
 }
 
-/* The first rank has all but a few particles. */
+/* Gives each rank one particle, and the first rank all the others. */
 static int split_uneven(const particle_set* set, int64_t i, int ranks)
 {
   (void)set;

@@ -88,7 +88,8 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   }
 }
 
-// Finds the point that stands for the whole piece, and makes it the point's own root.
+// Returns the point that stands for the whole piece of `point`, and stores it as the root of
+// `point`.
 vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 {
   const auto passOver = [this](vtkIdType one) // makes the way shorter by the next point
@@ -135,7 +136,7 @@ void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
 }
 
 // Lists the edges that triangles do not pass equally often in both directions. Points with the same
-// number in `of` are one.
+// number in `of` count as one point.
 std::vector<vtkSPHPieces::Edge> vtkSPHPieces::ListOpenEdges(const std::vector<vtkIdType>& of) const
 {
   std::vector<std::array<vtkIdType, 5>> edges; // lower and higher point, way, triangle, corner
@@ -168,9 +169,10 @@ std::vector<vtkSPHPieces::Edge> vtkSPHPieces::ListOpenEdges(const std::vector<vt
   return open;
 }
 
-// At open edges in a side, the surface goes on beyond the side, unless a cap was trimmed there.
-// Points of such edges on opposite sides are matched by their other two coordinates. Both get the
-// same number in `twins`. bounds: of the points that triangles use.
+// Joins pieces across the period's sides. An open edge in a side is where the surface goes on
+// beyond the side, or where a cap was trimmed. Points of open edges on opposite sides match if
+// their other two coordinates are equal. Two matching points get one number in `twins`. bounds: of
+// the points that triangles use.
 void vtkSPHPieces::JoinSides(const double bounds[6], std::vector<vtkIdType>& twins)
 {
   std::vector<Edge> open;
@@ -237,7 +239,7 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
   }
 }
 
-// Sorts by area; among equal areas the piece with the first triangle comes first.
+// Numbers the pieces by area, the largest first; among equal areas, by their first triangles.
 void vtkSPHPieces::NumberPieces()
 {
   std::map<vtkIdType, vtkIdType> numbers; // by root

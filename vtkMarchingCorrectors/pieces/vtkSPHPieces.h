@@ -31,13 +31,13 @@ struct vtkSPHPiece
 };
 
 /**
- * Finds the pieces: triangles that share points belong to one piece. So do triangles at opposite
- * sides of a period (bounds; 0 0: no period) if their points there have the same other coordinates,
- * to the last bit. A surface ends at planes of its lattice, up to a cube away from these bounds; if
- * it reaches beyond the bounds, its own bounds are the sides. Caps at the sides end pieces. Pieces
- * are sorted by area, the largest first. Each is placed so that its centre is within the period.
- * Surfaces of several iso values are nested. Each piece encloses particles, and cavities of its own
- * iso value, as if there were no other iso values.
+ * Finds the pieces of a surface. Triangles that share points belong to one piece. A surface that
+ * spans a period (bounds; 0 0: no period along this axis) ends at two sides, which are planes of
+ * the lattice, up to a cube away from the bounds. Triangles at opposite sides belong to one piece,
+ * too, if they have points whose two other coordinates are the same, to the last bit. Caps at the
+ * sides end pieces. Pieces are sorted by area, the largest first. Each piece is placed so that its
+ * centre is within the period. Surfaces of several iso values are nested. Each piece encloses
+ * particles, and cavities of its own iso value, as if there were no other iso values.
  */
 class vtkSPHPieces
 {
@@ -87,7 +87,7 @@ private:
   double Low[3], Length[3]; // where the period begins, and its lengths; 0: no period
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  std::vector<vtkIdType> Root; // the next point on the way to the one that stands for the piece
+  std::vector<vtkIdType> Root; // the next point on the way to the point that stands for the piece
   std::vector<Shift> Shifts;   // moves a point's part of the piece to its root's part
   std::vector<char> Endless;   // by root: whether the piece goes around a period
 };

@@ -37,8 +37,8 @@ bool IsBelow(const double* a, const double* b, double y, double z)
 }
 
 /**
- * Returns 1 if the ray from the point leaves through this face, -1 if it enters, 0 if it passes
- * by. *at: where along x.
+ * Returns 1 if the ray from the point leaves through this face, -1 if it enters, 0 if it misses the
+ * face. *at: the face's x on the line of the ray.
  */
 int Crossing(const Face& face, const Triple& point, double* at)
 {
@@ -210,7 +210,7 @@ std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume, double i
   return faces;
 }
 
-// Moves a point into the period, then by each shift.
+// Returns the images of a point: the point is moved into the period, then by each shift.
 std::vector<Triple> vtkSPHPieces::ListImages(
   const Triple& point, const std::vector<Triple>& shifts) const
 {

@@ -41,9 +41,9 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 }
 
 /**
- * Merges statistics: sums of counts, the longest seconds, and means over all points (one rank
- * counts each point). Bricks, nodes and evaluations count twice if both sides of a seam evaluate
- * them.
+ * Merges statistics: sums of counts, the longest seconds, and means over all points (each point is
+ * counted by one rank only). Bricks, nodes and evaluations count twice if both sides of a seam
+ * evaluate them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
@@ -75,7 +75,7 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
       (one.correction_deviation * one.correction_deviation +
         one.correction_mean * one.correction_mean);
     vertices += corrected;
-    // Rounding makes the product the whole number that it stands for.
+    // The product is a whole number, up to rounding errors.
     evaluations += std::round(corrected * (one.iterations_mean + 1.0));
   }
   points = std::max(points, 1.0);
@@ -90,12 +90,10 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/**
- * How many samples decide on each rank's range of keys. The ranges then differ by about an eighth.
- */
+/** Samples of keys for each rank. With this number, the ranks' ranges of keys differ by about an eighth. */
 constexpr std::size_t SamplesPerRank = 64;
 
-/** Finds where the range of keys of each rank ends; the same on all ranks. */
+/** Returns the keys at which the ranks' ranges of keys end, without the last range. All ranks get the same. */
 Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 {
   const auto count = static_cast<std::size_t>(ranks.GetCount());
@@ -183,7 +181,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   return numbers;
 }
 
-/** The numbers of a rank's points and triangles, and how many the whole surface has. */
+/** The numbers of this rank's points and triangles in the whole surface, and how many points and triangles the whole surface has. */
 struct NumbersInWhole
 {
   vtkSmartPointer<vtkIdTypeArray> OfPoints, OfTriangles;
@@ -192,8 +190,8 @@ struct NumbersInWhole
 
 /**
  * Finds the number of each of this rank's points in the whole surface: the index that the point has
- * if one process makes all. Points with the same key are one. Does the same for this rank's
- * triangles, whose keys ascend. Collective.
+ * if one process makes all. Points with the same key are one. Finds the numbers of this rank's
+ * triangles, too, whose keys ascend. Collective.
  */
 NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
 {
@@ -218,7 +216,7 @@ NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
 
 /**
  * Measures area and volume of the whole surface into `statistics`. numbers: the numbers of this
- * rank's points in the whole. Collective.
+ * rank's points in the whole surface. Collective.
  */
 void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics)
@@ -245,7 +243,8 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
 }
 }
 
-// No rank may return here while another goes on: all agree first on what one of them has found.
+// No rank may return here while another goes on and waits for it: all ranks first agree on any
+// problem.
 void vtkMarchingCorrectors::ContourDistributed(
   vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output)
 {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Finds the pieces of a surface that ranks share. The first rank joins the surface by the numbers
-// of its points and triangles, just as one process would have it. Each rank asks the first one for
-// the pieces of its own points and triangles.
+// Finds the pieces of a surface that ranks share. The first rank joins the parts, in the order of
+// the global numbers of points and triangles, to the surface that one process would make. Each rank
+// asks the first rank for the pieces of its own points and triangles.
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
@@ -27,8 +27,8 @@ namespace
 using Ids = std::vector<vtkIdType>;
 
 /**
- * Joins the parts on the first rank, with all arrays but GlobalPointIds and GlobalCellIds, which
- * give the order; returns null on other ranks. Collective.
+ * Joins the parts on the first rank, in the order of GlobalPointIds and GlobalCellIds, with all
+ * arrays except these two. Returns null on other ranks. Collective.
  */
 vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller, vtkPolyData* part)
 {
@@ -79,10 +79,10 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
 }
 
 /**
- * Returns the piece of each element of this rank; below 0, the element is dropped. pieces: of all
- * elements, on the first rank. Each rank asks the first one for its own elements, so that only one
- * rank must hold all of them. The global ids in `data` become numbers among all elements that stay.
- * Collective.
+ * Returns the piece of each point, or of each triangle, of this rank; below 0, it is dropped.
+ * pieces: on the first rank, the pieces of all ranks' points or triangles. The other ranks ask the
+ * first rank, so that only one rank must hold all pieces. The global ids in `data` become numbers
+ * among all points or triangles that stay. Collective.
  */
 Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
 {
@@ -150,7 +150,8 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();
 }
 
-// Returns the error, the same on all ranks. No rank may return here while another goes on.
+// Returns the error, the same on all ranks. No rank may return here while another goes on and waits
+// for it.
 std::string vtkSPHComponents::SplitDistributed(
   vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const
 {

@@ -9,8 +9,8 @@
  *  2. The core measures the globals, over the particles of all ranks (mcor_measure_globals).
  *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
  *     (vtkSPHRanksSpace.h).
- *  4. A particle is sent to each rank whose box its support, or an image of it, reaches, and a
- *     point to the rank whose box holds the point (vtkSPHSendTuples).
+ *  4. A particle is sent to each rank whose box is reached by the particle's support, or by an
+ *     image of it. A point is sent to the rank whose box holds the point (vtkSPHSendTuples).
  *  5. Each rank calls the core for its box, as one process may for any box; thanks to the globals,
  *     the result is this part of the whole surface, to the last bit.
  *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
@@ -23,7 +23,7 @@
  *  9. The first rank does what needs a whole surface. For pieces or a file it gets all tuples, and
  *     puts them in the order of these numbers (vtkSPHGatherTuples). For lines it gets all
  *     particles, and makes all lines.
- * 10. No rank returns while another goes on: all agree first on what one of them has found.
+ * 10. No rank returns while another goes on and waits for it: all ranks first agree on any problem.
  *
  * All functions except the getters are collective: all ranks call them in the same order. Built
  * where VTK has MPI and DIY, whose serialization turns values into bytes (diy::Serialization).
@@ -86,7 +86,7 @@ public:
     GREATEST = vtkCommunicator::MAX_OP,
     SUM = vtkCommunicator::SUM_OP
   };
-  /** Returns false, and changes nothing, if a rank has stopped. */
+  /** Replaces each value by its least, greatest or sum over all ranks. Returns false, and changes nothing, if a rank has stopped. */
   template <typename T>
   bool Reduce(Operation operation, T* values, int count)
   {
@@ -99,7 +99,7 @@ public:
     return true;
   }
 
-  /** Is called in place of an exchange. If a rank stops, the others' exchange does nothing. */
+  /** Takes the place of a Reduce() or Gather(), which does nothing on other ranks if this rank stops. Returns whether no rank stops. */
   bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
   /**
@@ -108,8 +108,8 @@ public:
    */
   void ReduceRanges(double* ranges, int count)
   {
-    const auto negateGreatest = [ranges, count] // with the sign reversed, one message is enough
-                                                // for both
+    const auto negateGreatest = [ranges, count] // so that the least values are wanted at both
+                                                // ends, by one message
     {
       for (int i = 1; i < 2 * count; i += 2)
       {

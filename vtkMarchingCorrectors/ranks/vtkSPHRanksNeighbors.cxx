@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Sums over neighbours that several ranks have. Each rank gets the particles in its box of space.
-// Smoothing lengths that are found from these particles alone are too long. So spheres with these
-// lengths as radii hold all neighbours: the rank asks the other ranks for the particles in the
-// spheres.
+// Computes sums over neighbours that lie on several ranks. Each rank gets the particles in its box
+// of space. Smoothing lengths that are found from these particles alone are too long. So spheres
+// with these lengths as radii hold all neighbours: the rank asks the other ranks for the particles
+// in the spheres.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIncrementalOctreePointLocator.h"
@@ -23,15 +23,15 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** How many support radii around a particle must be known, see mcor_find_smoothing_lengths. */
+/** All particles within this number of support radii must be known, see mcor_find_smoothing_lengths. */
 constexpr double Around = 1.25;
 /** Allows for the rounding of places in periods. */
 constexpr double Rounding = 1.0001;
 
-/** The arrays of an input that travel. */
+/** The arrays of an input that are sent to other ranks. */
 using Members = std::vector<mcor_array mcor_input::*>;
 
-/** Returns the input with these particles, none of them solid, in place of the rank's own. */
+/** Returns the input `like` with the particles of `arrays` in place of the rank's own. None of them is solid. */
 mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const mcor_input& like)
 {
   mcor_input input = like;
@@ -99,7 +99,7 @@ vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
 /**
  * Gets the particles of other ranks that lie in the spheres around this rank's particles, and
  * appends them to `arrays`. order: the new order of this rank's particles: first the particles whose
- * spheres reach other ranks' boxes. Returns the number of these first ones. Collective.
+ * spheres reach other ranks' boxes. Returns the number of these particles. Collective.
  */
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)

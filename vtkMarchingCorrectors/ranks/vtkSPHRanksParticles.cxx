@@ -25,7 +25,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Returns the bytes of `tuples` tuples; 0 if values do not lie side by side as bytes. */
+/** Returns the bytes of `tuples` tuples; 0 if the values are bits or texts, which cannot be copied as bytes. */
 std::size_t SizeOf(vtkAbstractArray* array, vtkIdType tuples)
 {
   const bool isPlain = vtkArrayDownCast<vtkDataArray>(array) && array->GetDataType() != VTK_BIT;
@@ -155,7 +155,7 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
 
 namespace
 {
-/** Puts tuples, in their order, at these places of arrays of `count` tuples; the rest is 0. */
+/** Returns arrays of `count` tuples: tuple i is put at place i of `places`, and all other tuples are 0. */
 vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count)
 {
   vtkNew<vtkIdList> order;
@@ -319,8 +319,8 @@ std::vector<Form> AgreeOnForms(vtkSPHRanks& ranks, vtkPolyData* particles)
 }
 
 /**
- * Copies these points, with arrays of these forms. Takes an array itself if all of it is wanted, in
- * its own form. Arrays that are not there get no values.
+ * Copies the points `ids`, with arrays of these forms. If all of an array is wanted in its own
+ * form, takes the array itself. An array that `from` lacks gets no values.
  */
 vtkSmartPointer<vtkPolyData> TakePoints(
   vtkPolyData* from, const std::vector<Form>& forms, vtkIdList* ids)

@@ -25,11 +25,11 @@ using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
 vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data);
 /** Lists the positions, then the point arrays. */
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
-/** Makes points of arrays that vtkSPHListArrays() lists, with the same roles as in `like`. */
+/** Makes points of arrays that vtkSPHListArrays() lists, with the same roles (scalars, vectors, ...) as in `like`. */
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 
 /**
- * Sends to each rank the tuples listed for it. The arrays must have the same forms on all ranks.
+ * Sends to each rank the tuples listed for it. The arrays must have the same types on all ranks.
  * Returns arrays of the tuples that came, in the order of ranks; from: how many came from each.
  * Collective.
  */
@@ -38,18 +38,17 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
 
 /**
  * Sends each element's tuple back to the rank from which the element came. Returns arrays of
- * `count` tuples; those that nobody sent are 0. from: how many elements came from each rank; owned:
- * marks elements whose tuples are sent, null: all; to: where, on this rank, each rank's tuples
- * belong. Collective.
+ * `count` tuples; a tuple that nobody sent is 0. from: how many elements came from each rank;
+ * owned: marks the elements whose tuples are sent, null: all; to: for each rank, the places of its
+ * tuples in the result. Collective.
  */
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const std::vector<vtkIdType>& from, const std::uint8_t* owned, const vtkSPHRanksLists& to,
   vtkIdType count);
 
 /**
- * Gathers tuples on the first rank, each at the place that its number says. The other ranks get
- * none. numbers: of this rank's tuples in the whole; if null, tuples stay in the order of ranks.
- * Collective.
+ * Gathers all ranks' tuples on the first rank; the other ranks get none. numbers: the place of each
+ * of this rank's tuples in the result; null: tuples come in the order of ranks. Collective.
  */
 vtkSPHRanksArrays vtkSPHGatherTuples(
   vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers);

@@ -17,10 +17,10 @@ namespace
 /** Cubes along an edge of a brick. Cuts may lie anywhere, but cuts between bricks cost least. */
 constexpr double BrickCubes = 4.0;
 
-/** How many samples decide on each rank's share of the work. Shares then differ by some percent. */
+/** Samples of the work for each rank. With this number, the ranks' shares of the work differ by some percent. */
 constexpr std::int64_t SamplesPerRank = 1024;
 
-/** Cells of the coarse grid. */
+/** The coarse grid has at most this number of cells. */
 constexpr double CellLimit = 1 << 18;
 
 /** Edge of a cell in median smoothing lengths, unless that makes too many cells. */
@@ -50,7 +50,7 @@ vtkSPHRanksSpace::vtkSPHRanksSpace(const mcor_options& options, const mcor_globa
   {
     const double edge = globals.measured.edge[a];
     const double first = options.periodic[2 * a];
-    // A period across the plane of two dimensions means nothing.
+    // If the particles lie in a plane, a period across it means nothing.
     this->Length[a] =
       plane.axis == a + 1 ? 0.0 : std::max(0.0, options.periodic[2 * a + 1] - first);
     this->First[a] = this->IsPeriodic(a) ? edge * std::ceil(first / edge - 0.5) : 0.0;
@@ -60,7 +60,8 @@ vtkSPHRanksSpace::vtkSPHRanksSpace(const mcor_options& options, const mcor_globa
     {
       low = std::min(std::max(low, options.box[2 * a]), high);
       high = std::max(std::min(high, options.box[2 * a + 1]), low);
-      // A flat box in the plane of particles must hold them.
+      // A flat box in the particles' plane must hold them, although its high side does not belong
+      // to it.
       high = plane.axis == a + 1 && low == plane.at ? std::max(high, std::nextafter(low, Infinity))
                                                     : high;
     }
@@ -193,7 +194,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   return radii;
 }
 
-// A sample stands for `step` of the work; if there is little work, all of it is sampled.
+// A sample stands for `step` units of work. If there is little work, `step` is 1.
 void vtkSPHRanksSpace::Divide(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts)
 {
@@ -279,7 +280,8 @@ vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
   return isEmpty ? vtkSPHRanksBox{ 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 } : box;
 }
 
-// The boxes of both halves of a group begin at the same sides, except along the axis of their cut.
+// The k-d tree cuts a group of boxes into two halves. The first boxes of both halves have the same
+// low sides, except along the axis of the cut.
 int vtkSPHRanksSpace::FindOwner(const double at[3]) const
 {
   double place[3] = { at[0], at[1], at[2] };
@@ -310,7 +312,7 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
-// The group's first box has the low sides of all its boxes together; the last box has the high ones.
+// The first box of a group has the low sides of the whole group, the last box has the high sides.
 bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double radius) const
 {
   bool reaches = true;

@@ -36,7 +36,7 @@ class vtkSPHRanksSpace
 {
 public:
   vtkSPHRanksSpace() = default;
-  /** Keeps both arguments, which Share() reads again. The globals are of all ranks' particles. */
+  /** Keeps pointers to both arguments, because Share() reads them again. globals: of all ranks' particles. */
   vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
 
   double First[3] = { 0.0, 0.0, 0.0 }; ///< where the first period begins
@@ -48,7 +48,7 @@ public:
 
   /**
    * Divides the work evenly. input: this rank's particles; work: of each particle; 0: nobody needs
-   * the particle; places: further work of this rank; parts: how many ranks get a box. Lists, for
+   * the particle; places: further work of this rank; parts: how many ranks get a box. Returns, for
    * each rank, the particles whose supports, or images of them, reach its box. Collective.
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
@@ -59,8 +59,8 @@ public:
   void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts);
 
   /**
-   * Finds the ranks whose boxes, or images of them, a sphere around a place in the first period
-   * reaches.
+   * Finds the ranks whose boxes, or images of boxes, are reached by a cube around a place in the
+   * first period. radius: half of the cube's edge.
    */
   void FindReached(const double at[3], double radius, std::vector<int>& found) const;
 
@@ -77,7 +77,7 @@ public:
 
   vtkSPHRanksBox Whole = {};       ///< holds all ranks' boxes
   std::int64_t OwnedParticles = 0; ///< number of all ranks' particles that lie in this rank's box
-  std::int64_t Particles = 0;      ///< the same, with copies of other ranks' particles
+  std::int64_t Particles = 0;      ///< number of particles that this rank gets, owned or not
   std::int64_t Work = 0;           ///< work of the particles in this rank's box
 
 private:
@@ -106,10 +106,10 @@ private:
 /**
  * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on the
  * particle (a solid, if solids are not used), and a share of the surface's cost if a surface is
- * expected there. A surface is expected in a cell of a coarse grid if values in or around the cell
- * are on both sides of an iso value, or, for a free surface, if a cell beside it has far fewer
- * particles. The number of cells does not grow with the particles. The result is the same to the
- * last bit however particles are spread over ranks. Collective.
+ * expected near the particle. A surface is expected in a cell of a coarse grid if values in or
+ * around the cell are on both sides of an iso value, or, for a free surface, if a cell beside it
+ * has far fewer particles. The number of cells does not grow with the particles. The result is the
+ * same to the last bit however particles are spread over ranks. Collective.
  */
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals);

@@ -19,8 +19,8 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 /**
- * Joins the parts of a surface on the first process, without GlobalPointIds and GlobalCellIds,
- * which give the order; returns null on the others. Collective.
+ * Joins the parts of a surface on the first process, in the order of GlobalPointIds and
+ * GlobalCellIds, and without these two arrays. Returns null on other processes. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// No rank may return here while another goes on: all agree first on what one of them has found.
+// No rank may return here while another goes on and waits for it: all ranks first agree on any
+// problem.
 #include "vtkSPHSharedRun.h"
 
 #include "vtkBoundingBox.h"
@@ -324,7 +325,8 @@ void vtkSPHAlgorithm::vtkSharedRun::CallAside(const std::function<bool(const mco
   calls.End(!call(&calls.Core));
 }
 
-// Each point was sent to one rank, its owner; a particle may be on several, and only its owner replies.
+// Each point was sent to one rank, its owner. A particle may be on several ranks; only its owner
+// sends a result.
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)
 {
   vtkSPHRanksLists to =
@@ -381,7 +383,7 @@ void vtkSPHAlgorithm::vtkSharedRun::OfAll(mcor_input& core, mcor_options& option
   options.globals = nullptr;
 }
 
-// A rank without points has called nothing, and has no statistics.
+// A rank without points has not called the core, and has no statistics.
 void vtkSPHAlgorithm::vtkSharedRun::WarnOfParticles(
   const mcor_input& core, const mcor_statistics& statistics)
 {

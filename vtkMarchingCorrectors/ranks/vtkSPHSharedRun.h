@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: a run that many processes (ranks) share. Each hands over the particles
- * that it has. Space is divided among the ranks, particles are sent where they reach, each rank
- * calls the core for its box, and results go back to where points and particles came from.
+ * Private to the module: a run that many processes (ranks) share. Each rank hands over
+ * its particles. Space is divided among the ranks, particles are sent to the ranks whose boxes they
+ * reach, each rank calls the core for its box, and results go back to the ranks that points and
+ * particles came from.
  */
 #ifndef vtkSPHSharedRun_h
 #define vtkSPHSharedRun_h
@@ -54,10 +55,10 @@ public:
   void AddShares() override;
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
-  /** Does the same as Share() if only the first `parts` ranks share the space. */
+  /** Does what Share() does, but divides the space among the first `parts` ranks only. */
   vtkSPHParticles* Send(vtkSPHParticles& mine, int parts);
-  /** Replaces this rank's particles by all ranks' particles, without positions, which warnings do
-   * not read. */
+  /** Makes the input stand for all ranks' particles in warnings: sets their number, and takes away
+   * what warnings do not read. */
   void OfAll(mcor_input& core, mcor_options& options) const;
   /** Adds a statistic with one component for each rank. */
   template <typename T>

@@ -32,7 +32,7 @@ std::string Text(double value)
   return stream.str();
 }
 
-/** The values of an array. */
+/** Reads the values of an array as doubles. */
 struct Values
 {
   explicit Values(vtkDataArray* array)
@@ -50,7 +50,7 @@ struct Values
   const mcor_array View;
 };
 
-/** Makes an array of the wider type of two, with value(tuple, component), in parallel. */
+/** Makes an array like `a` with the values value(tuple, component), in parallel: of floats if `a` and `b` are floats, else of doubles. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
   const Values& a, const Values& b, vtkIdType count, const ValueT& value)

@@ -32,8 +32,8 @@ class vtkSPHTemporalPair
 {
 public:
   /**
-   * Matches the particles of two steps; keeps the match if the steps are the same. Returns false
-   * if they cannot be matched; Error then says why.
+   * Matches the particles of two steps. If the steps are the same as in the last call, keeps its
+   * match. Returns false if the particles cannot be matched; Error then says why.
    */
   bool Match(vtkPointSet* first, vtkPointSet* second, const vtkSPHTemporalChoice& choice);
 
@@ -62,7 +62,7 @@ private:
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;
   std::string NameOfStep(int step) const;
-  /** Returns the way to the nearest image. */
+  /** Returns the way along an axis to the nearest image of a point. way: to the point itself. */
   double Nearest(double way, int axis) const;
 
   Step Steps[2];

@@ -25,7 +25,8 @@ def without_unit(thing):
 
 
 def convert(thing, unit, role, reference):
-    """Returns the numbers of `thing` in the unit of `reference`; None means no unit."""
+    """Returns the numbers of `thing` in `unit`; None means no unit. role, reference: names of `thing` and of the array with
+    this unit, for messages."""
     if isinstance(thing, (list, tuple)) and any(unit_of(part) is not None for part in thing):
         return [convert(part, unit, role, reference) for part in thing]
     own = unit_of(thing)

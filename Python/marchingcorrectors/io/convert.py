@@ -146,7 +146,7 @@ def _identity(path):
 
 
 class Outputs:
-    """Replaces all files at the end of the with block, or none if it raises.
+    """Replaces all files at the end of the with block, or none if the block raises.
 
     Checks first that no output is an input or another output, by whatever link. If an output is a symbolic link, the file
     behind it is replaced, and its mode stays; other hard links of that file keep the old contents. steps: outputs that the user

@@ -95,7 +95,7 @@ def load(parts, name):
 
 
 def names_of(group, count, most=9):
-    """Lists arrays of numbers with `count` rows and at most this many dimensions."""
+    """Lists the names of the arrays of numbers with `count` rows and at most `most` dimensions."""
     check_claims([group])
     arrays = {name: get(group, name) for name in group if is_numbers(get(group, name))}
     return [name for name, array in arrays.items() if array.shape[:1] == (count,) and array.ndim <= most]
@@ -124,7 +124,7 @@ def text(value):
 
 
 def read_hdf5(path, types, step):
-    """Finds the layout by the names of the file's groups."""
+    """Reads a file. The names of its groups tell the layout."""
     with h5py.File(path, "r") as file:
         names = set(file)
         if is_h5part(names) and types is None:
@@ -230,7 +230,7 @@ def read_gadget(path, file, types):
 
 
 def find_parts(files, kinds):
-    """Returns where the particles are, and the names of the arrays of numbers that all of them have."""
+    """Returns the parts that hold particles, and the names of the arrays of numbers that all parts have."""
     parts, names = [], None
     for kind in kinds:
         for path in files:
@@ -261,7 +261,7 @@ def read_phantom(path, file):
 
 
 def read_pysph(path, file):
-    """Joins all particle arrays to one set; their names tell walls."""
+    """Joins all of PySPH's particle arrays to one set. The names of the particle arrays tell which ones are walls."""
     particles = get(file, "particles")
     places = {name: get(particles, name) for name in particles}
     places = {name: place if get(place, "arrays") is None else get(place, "arrays") for name, place in places.items()}

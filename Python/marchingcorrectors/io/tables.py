@@ -49,7 +49,7 @@ def check_width(file, count):
 
 
 def columns_of(file, lines, names, separator=None):
-    """Returns {name: array} of rows of values."""
+    """Returns {name: array}: an array for each column of the lines."""
     try:
         if any("_" in line for line in lines):  # Python would accept "_" inside a number.
             raise ValueError

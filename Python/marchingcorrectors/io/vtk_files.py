@@ -369,7 +369,7 @@ class Legacy:
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
 
     def line(self):
-        """Returns the words of the next line that has some."""
+        """Returns the words of the next line that is not blank."""
         while self.at < len(self.data):
             end = self.data.find(b"\n", self.at, self.at + 1000)
             end = min(len(self.data), self.at + 1000) if end < 0 else end

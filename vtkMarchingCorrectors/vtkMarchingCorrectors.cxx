@@ -258,7 +258,7 @@ bool vtkMarchingCorrectors::FindWidening(
   sums->Own = run.Own;
   sums->Options = run.Options;
   sums->Options.level_limit = 0;
-  if (!sums->Measure(mine, false)) // with the box, which tells the particles that are too far away
+  if (!sums->Measure(mine, false)) // uses the box, to find particles that are too far away
   {
     return false;
   }

@@ -414,7 +414,7 @@ int vtkSPHComponents::RequestData(
   {
     vtkErrorMacro(<< problem);
   }
-  return 1; // see vtkSPHAlgorithm::RequestData
+  return 1; // also after an error, see vtkSPHAlgorithm::RequestData
 }
 
 void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)

@@ -84,11 +84,11 @@ public:
     }
   };
   Kept Particles, Scalar, Attributes, Widening;
-  vtkSmartPointer<vtkPointData> Factors; // the factors for the state Widening; null: there are none
+  vtkSmartPointer<vtkPointData> Factors; // of smoothing lengths, as Widening tells; null: none
   mcor_statistics FactorsStatistics = {};
 
 private:
-  std::string Device; // settings that the context was created for
+  std::string Device; // Device, Place and Count: as the context was created
   int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;

@@ -54,10 +54,10 @@ public:
   }
 
   double Time = 0.0;                                     // requested time
-  std::vector<double> Times = { 0.0 };                   // its step's, or the two around it
-  std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
+  std::vector<double> Times = { 0.0 };                   // of the steps that Time needs: 1 or 2
+  std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps that were read, by time
   std::map<size_t, vtkSPHTemporalPair> Pairs;            // by block
-  std::set<long> Ratios;                                 // motion / velocities, of past warnings
+  std::set<long> Ratios;                                 // MotionRatio of past warnings, rounded
   vtkTimeStamp ToldTime;                                 // when Ratios was last emptied
 };
 
@@ -266,7 +266,7 @@ int vtkSPHTemporalInterpolator::RequestData(
   {
     to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
   }
-  return 1; // see vtkSPHAlgorithm::RequestData
+  return 1; // also after an error, see vtkSPHAlgorithm::RequestData
 }
 
 void vtkSPHTemporalInterpolator::FillBlocks(

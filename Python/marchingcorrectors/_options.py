@@ -127,7 +127,7 @@ def kind_of(name):
 
 
 def default_of(name):
-    """Returns the value as a user would write it."""
+    """Returns an option's default value, as a user would write it."""
     options = c.mcor_options()
     lib.mcor_set_default_options(ctypes.byref(options))
     value = -1 if name == "scalar_component" else getattr(options, name, 0)
@@ -140,7 +140,7 @@ def default_of(name):
 
 
 def did_you_mean(name, known):
-    """Returns " Did you mean '...'?"."""
+    """Returns " Did you mean '...'?", or "" if no known name is close."""
     close = difflib.get_close_matches(str(name), [str(other) for other in known], 1)
     if not close:  # "kernel" is short for sph_kernel.
         close = [other for other in known if len(str(name)) > 3 and str(name).lower() in str(other).lower()][:1]

@@ -197,7 +197,7 @@ void vtkSPHParticles::TakeWidening(vtkDataArray* factors, vtkDataArray* volumes)
   if (volumes)
   {
     this->Core.volume = vtkSPHView(volumes);
-    this->Core.volume.name = nullptr; // the statistics then say that they were computed
+    this->Core.volume.name = nullptr; // then the statistics say that volumes were computed
   }
 }
 

@@ -116,7 +116,7 @@ public:
   mcor_found Found = {};
   mcor_input& Core = Found.input;
   std::string Error;
-  std::string Unused; ///< a sentence, if something that is set has no effect
+  std::string Unused; ///< a sentence, if a setting has no effect
 
   std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // arrays of identifiers, integers, strings
@@ -136,7 +136,7 @@ private:
   std::unique_ptr<vtkSPHNamed> Positions, Named; // the point arrays, held while the core reads them
   vtkSmartPointer<vtkDataArray> Made[2];         // arrays copied from Found.made
   vtkSmartPointer<vtkDataArray> Lengths, Densities; // arrays summed over neighbours
-  std::vector<mcor_array> Attributes;               // with the factors of the widening
+  std::vector<mcor_array> Attributes;               // Core.attributes, factors of widening too
 };
 VTK_ABI_NAMESPACE_END
 

@@ -92,7 +92,7 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
 // `point`.
 vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 {
-  const auto passOver = [this](vtkIdType one) // makes the way shorter by the next point
+  const auto passOver = [this](vtkIdType one) // leaves the next point out of the way to the root
   {
     const vtkIdType next = this->Root[one];
     for (int a = 0; a < 3; ++a)

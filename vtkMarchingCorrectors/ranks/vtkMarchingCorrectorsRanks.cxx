@@ -54,7 +54,7 @@ mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
   double points = 0.0, length = 0.0, squares = 0.0, vertices = 0.0, evaluations = 0.0;
   for (const mcor_statistics& one : parts)
   {
-    for (int a = 0; a < 3 && one.virtual_cells > 0; ++a) // the box around both
+    for (int a = 0; a < 3 && one.virtual_cells > 0; ++a) // the box around both lattices
     {
       const bool isFirst = all.virtual_cells == 0;
       const std::int64_t first = one.lattice_origin[a], last = first + one.lattice_cells[a],
@@ -354,7 +354,7 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkSPHParticles
   builder.BuildMesh(output, this->OutputPointsPrecision,
     [&run](double* ranges, int count) { run.MergeRanges(ranges, count); });
   vtkIdTypeArray* const cells = numbers.OfTriangles;
-  if (hasLines) // they come before triangles
+  if (hasLines) // lines come before triangles
   {
     cells->SetNumberOfValues(output->GetNumberOfCells());
     std::iota(cells->Begin(), cells->End(), vtkIdType(0));

@@ -38,7 +38,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
   const auto takeNumbers = [](vtkDataSetAttributes* data)
   {
     auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
-    if (vtkDataArray* ids = data->GetGlobalIds()) // arrays of any type
+    if (vtkDataArray* ids = data->GetGlobalIds()) // which may be of any type
     {
       numbers->DeepCopy(ids);
       data->RemoveArray(ids->GetName());
@@ -87,7 +87,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
 Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
 {
   vtkDataArray* given = data->GetGlobalIds();
-  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // first rank only
+  vtkSPHRanksLists wanted(static_cast<std::size_t>(ranks.GetCount())); // asks the first rank only
   for (vtkIdType i = 0; given && i < given->GetNumberOfTuples(); ++i)
   {
     wanted[0].push_back(static_cast<vtkIdType>(given->GetComponent(i, 0)));

@@ -167,7 +167,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
 {
   const mcor_options& o = *this->Options;
   const bool computesVolumes = vtkSPHComputesVolumes(input);
-  const bool findsFactors = o.widen > 1.0 && !input.widening.data; // with mcor_widen
+  const bool findsFactors = o.widen > 1.0 && !input.widening.data; // this run calls mcor_widen
   std::vector<double> radii(Index(ranks.GetCount()), 0.0);
   if (mcor_reach_around(&o, computesVolumes, findsFactors, 1.0, 1.0) == 0.0)
   {

@@ -296,7 +296,7 @@ const std::uint8_t* vtkSPHAlgorithm::vtkSharedRun::MarkOwned()
     const int owner = this->Space.FindOwner(this->Near->GetPoint(i));
     this->Owned.push_back(owner == this->Ranks.GetRank() ? 1 : 0);
   }
-  this->Owned.push_back(0); // not null, even without particles
+  this->Owned.push_back(0); // so that the result is not null, even without particles
   return this->Owned.data();
 }
 
@@ -393,7 +393,7 @@ void vtkSPHAlgorithm::vtkSharedRun::WarnOfParticles(
   if (this->IsFirst() && some != all.end())
   {
     mcor_input input = core;
-    this->OfAll(input, this->Options); // the run needs the old options no more
+    this->OfAll(input, this->Options); // the run no longer needs its own options
     this->vtkRun::WarnOfParticles(input, *some);
   }
 }

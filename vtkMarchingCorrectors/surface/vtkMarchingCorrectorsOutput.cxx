@@ -152,7 +152,7 @@ void vtkMarchingCorrectorsOutput::BuildCells(vtkPolyData* output)
     lines->SetData(offsets, points);
   }
   output->SetLines(s.line_offsets ? lines.Get() : nullptr);
-  if (this->Options.filled) // pieces of a file have the array also where nothing is drawn
+  if (this->Options.filled) // even if nothing is drawn: all pieces of a file have this array
   {
     vtkNew<vtkDoubleArray> values;
     values->SetNumberOfValues(s.line_count + s.triangle_count);

@@ -384,7 +384,7 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   output->GetFieldData()->RemoveArray("TimeValue"); // the step's own time
   if (!near.Ids)
   {
-    return; // one step has no particles, and the other nothing to interpolate with
+    return; // one step has no particles, so nothing can be interpolated
   }
   // Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
   const double nearTime = times[early ? 0 : 1], farTime = times[early ? 1 : 0];

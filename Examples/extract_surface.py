@@ -16,7 +16,7 @@ from marchingcorrectors import vtkMarchingCorrectors
 
 
 def write(algorithm, name):
-    """Runs the pipeline; returns the surface, which must not be empty."""
+    """Runs the pipeline, writes the surface to the file `name`, and returns it. Exits if the surface is empty."""
     writer = vtkXMLPolyDataWriter()
     writer.SetInputConnection(algorithm.GetOutputPort())
     writer.SetFileName(name)

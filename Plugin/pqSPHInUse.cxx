@@ -274,8 +274,9 @@ void pqSPHInUse::beginNew()
   }
 }
 
-// Sets a slice: through the middle, or in the particles' own plane. Or sets a line through the
-// densest part, along the longest side or upright, that ends somewhat beyond the fluid.
+// Sets a slice through the middle of the fluid, or in the plane of the particles; or sets a line
+// through the densest part of the fluid, along its longest side or upright. The line ends somewhat
+// beyond the fluid.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();

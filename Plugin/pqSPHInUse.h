@@ -7,7 +7,7 @@
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values
- * begins with the usual value for the array, and follows it until the user sets others.
+ * begins with the usual value for the array, and changes with the array until the user sets others.
  *
  * The panel of a new filter begins with what suits its particles: the free surface if walls are
  * found, an estimate if there are no smoothing lengths, and a plane, line or box that spans the

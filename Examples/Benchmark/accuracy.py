@@ -29,7 +29,8 @@ def print_table(title, columns, rows):
 
 
 def walls():
-    """Measures a channel between walls of three layers at y = 0 and y = 12, in which everything moves with (1, 1, 0), and a tank with a floor."""
+    """Prints errors of fluxes in a channel between walls of three layers at y = 0 and y = 12, in which the fluid moves with (1, 1, 0), and
+    errors of gauges in a tank with a floor."""
     x = lattice((-8, 8), (-3, 15), (-8, 8))
     solid = (x[:, 1] < 0) | (x[:, 1] > 12)
     in_place = x.copy()  # Here the layer beside each wall stays half a spacing away from the wall.
@@ -70,8 +71,8 @@ def walls():
 
 
 def volumes():
-    """Prints the volume inside the free surface of sheets, threads and drops of few particles, relative to the particles' own volume, and with one
-    volume for all."""
+    """Prints the volume inside the free surface of sheets, threads and drops of few particles, relative to the particles' own
+    volume: with computed volumes, and with a given volume of 1 for each particle."""
     ball = lattice((-4, 4), (-4, 4), (-4, 4))
     bodies = {"one layer": (lattice((0, 12), (0, 12), (0, 1)), (12, 12, 0)),
               "two layers": (lattice((0, 12), (0, 12), (0, 2)), (12, 12, 0)),
@@ -156,8 +157,8 @@ def mean_and_corrected(x, values, h, volume, points):
 
 
 def corrected():
-    """Prints how values with a first-order correction would differ: for white noise on disordered water, and for the dam break's velocities. Needs
-    SciPy."""
+    """Prints how values with a first-order correction would differ from the Shepard mean: for white noise on disordered
+    water, and for the dam break's velocities. Needs SciPy."""
     from marchingcorrectors import io
     random = np.random.default_rng(0)
     x = lattice((-6, 6), (-6, 6), (0, 10))

@@ -6,7 +6,7 @@
   benchmark.py PROGRAM [--tables a,b] [--sizes 60k,670k] [--runs 5] [--particles FILE...] [-- OPTIONS OF THE PROGRAM]
 
 Times are medians over --runs, in seconds. Every measurement of the program and of other software is a process of its own;
-reading the particles and writing the surface are not timed, unless it says so. Memory is the largest resident set of the
+reading the particles and writing the surface are not timed, unless the case says so. Memory is the largest resident set of the
 process. A case prints what it does in the words of its docstring.
 """
 import argparse
@@ -74,7 +74,7 @@ class Benchmark:
 
 
 def versions():
-    """Returns the versions of the competitors, as far as this Python has them."""
+    """Returns the versions of VTK and splashsurf, with which this program is compared."""
     from importlib.metadata import PackageNotFoundError, version
     try:
         splashsurf = version("pysplashsurf")

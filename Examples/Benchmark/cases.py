@@ -18,9 +18,9 @@ def medians(rows):
 
 
 def adaptive(benchmark):
-    """With given particles, for uniform and adaptive cubes in turn: triangles, seconds of a process's second surface,
-    and the processor seconds by which two surfaces take longer than one. Without: whole processes with adaptive cubes,
-    for smoothing lengths 1:10, 1:100, 1:1000."""
+    """Measures adaptive cubes. With given particles, prints for uniform and adaptive cubes in turn: the triangles, the
+    seconds of a process's second surface, and the processor seconds by which two surfaces take longer than one. Without
+    given particles, times whole processes with adaptive cubes, for smoothing lengths 1:10, 1:100 and 1:1000."""
     out, program = benchmark.report, benchmark.program
     if not benchmark.files:
         options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
@@ -77,7 +77,8 @@ def distance(benchmark):
     """Measures how far surfaces on adaptive and on uniform cubes are apart. There: from each vertex on adaptive cubes to
     the nearest one on uniform cubes, in edges of the smallest cube; usually both are the same crossing of a line of the
     lattice. Back: from each vertex on uniform cubes to the surface on adaptive cubes, in edges of the cube at that place.
-    The levels of cubes are computed here from SmoothingLength, for all particles, the cubic spline and no scale."""
+    The levels of cubes are computed here from SmoothingLength, as for the cubic spline, an h scale of 1, and only fluid
+    particles."""
     out, surface = benchmark.report, {}
     path = benchmark.files[0] if benchmark.files else benchmark.sets.get("graded-10", benchmark.sizes[-1])
     for mode in ("uniform", "adaptive"):
@@ -111,7 +112,8 @@ PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # The spacing is 1.
 def plane(benchmark):
     """Times an isoline of particles in a plane: by this program, and by vtkSPHInterpolator with a kernel of two dimensions
     on the same lattice and vtkFlyingEdges2D. Prints processor seconds of all threads, and in brackets seconds by the clock.
-    This program's are a fifth of the difference between processes with six surfaces and with one; reading is not timed."""
+    This program's seconds are a fifth of the difference between a process with six surfaces and one with one surface;
+    reading is not timed."""
     program, more, own = benchmark.program, 5, []
     path = benchmark.sets.get("plane", benchmark.sizes[-1])
     options = ["--scalar", "Swirl", "--iso", PLANE_ISO, "--smoothing-length", PLANE_LENGTH, "--no-attributes"]
@@ -140,7 +142,7 @@ def make_image(bounds, *dimensions):
 
 
 def make_probe(particles, image, *arrays, keep=True):
-    """Probes these arrays, or all of them."""
+    """Returns a vtkSPHProbe, which has not run yet, for these arrays, or for all arrays of the particles."""
     from marchingcorrectors import vtkSPHProbe
     probe = vtkSPHProbe()
     probe.SetInputData(image)
@@ -228,10 +230,10 @@ class Watch:
 
 
 def cancel(benchmark):
-    """Measures how long a run goes on after it is cancelled. A run stops after its next report of progress. For each kind
-    of run, with all kernels compiled: the longest time without a report, the least over the runs, by the clock and in
-    processor seconds of all threads, with what ran then; and the longest time from a report that cancels to the return,
-    over 8 places in a run."""
+    """Measures how long a run goes on after it is cancelled. A run stops after its next report of progress. Prints for
+    each kind of run, with all kernels compiled: the longest time without a report (of the run in which it is shortest), by
+    the clock and in processor seconds of all threads, and the phase that ran; and the longest time from a report that
+    cancels to the return, over 8 places in a run."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)
@@ -262,7 +264,7 @@ def cancel(benchmark):
 def project(benchmark):
     """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, boxes of 2.6) by project() of
     Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
-    else it evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
+    otherwise sarracen evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
     largest difference from project(), over the greatest value; the exact mode's error tells how far both are right.
     Seconds are by the clock and of processors."""
     import marchingcorrectors
@@ -305,7 +307,7 @@ def project(benchmark):
 
 
 class Walls:
-    """Holds the planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
+    """Holds the planes of the solid particles' bounding box, and the box around the solids that stand on the floor; y is up."""
 
     def __init__(self, solid, h):
         self.low, self.high = solid.min(axis=0), solid.max(axis=0)
@@ -406,8 +408,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns the mean number of copies of a rank, or the largest. If a side is cut into p parts, a part has a neighbour on either side with
-        probability 1 - 1/p."""
+        """Returns the mean number of copies of a rank, or the largest number with `most`. If a side is cut into p
+        parts, a part has a neighbour on either side with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))
@@ -420,9 +422,9 @@ class Model:
 
 
 def ranks(benchmark):
-    """Writes what it costs processes to share a surface: particles owned, copies of others', bytes sent, nodes evaluated.
-    Fits a model to these figures, and writes what the model says of larger data. Bytes are those of the copies, and of
-    the particles that travel, which are 1 - 1 / ranks of all."""
+    """Writes what it costs if processes share a surface: particles that a rank owns, copies of other ranks' particles, bytes
+    sent, nodes evaluated. Fits a model to these figures, and writes what the model says of larger data. The bytes are
+    those of the copies, and of the particles that travel: 1 - 1 / ranks of all particles."""
     out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
     for count in benchmark.sizes:
         path = benchmark.sets.get("tank", count)

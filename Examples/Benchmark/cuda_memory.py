@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether CUDA's memory can become an OpenCL buffer of the same card without a copy: CUDA exports memory as a file descriptor,
+"""Tells whether CUDA's memory can become an OpenCL buffer of the same card without a copy: CUDA exports memory as a file descriptor,
 cl_khr_external_memory_opaque_fd imports it. Decides whether arrays of CuPy or PyTorch could reach the kernels by one copy on the card. Its second
 half has not run on a card yet. It takes CUDA's first card. Needs both drivers, and Python alone.
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which device suits a series of surfaces: the seconds of an update with new particles, in one context, on each.
+"""Tells which device suits a series of surfaces: prints the seconds of an update with new particles, in one context, for each device.
 
   devices.py [--sizes 670k,10M] [--profile] [DEVICE...]     numbers or parts of names; default: all that the Python package lists
 
-Needs the package marching-correctors and NumPy alone. Medians of six updates after the first, which is given apart and
-holds what a driver compiles. The surfaces of all devices are compared, to the last bit. --profile adds, for each phase of
-the update with the median time, what it takes of the host and of the device, and the kernels that take longest; measuring
+Needs the package marching-correctors and NumPy alone. The seconds are medians of six updates. The first update,
+which includes what a driver compiles, is given apart. The surfaces of all devices are compared, to the last bit. --profile adds, for each
+phase of the update with the median time, the seconds of the host and of the device, and the kernels that take longest; measuring
 each command makes updates a little slower.
 """
 import argparse

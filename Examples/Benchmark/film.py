@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A film of a splash in one .usdc file, beside the program's series of .vtp files: time, sizes, and most memory.
+"""Compares a film of a splash in one .usdc file with the program's series of .vtp files: time, sizes, and peak memory.
 
     film.py PROGRAM [--steps 50,300] [--spacing 0.02]
 

@@ -33,8 +33,8 @@ SETS = {
     "dense-tank": ("tank", ("--ratio", "1.814"), ("--kernel", "quadratic")),
     # This set stands for the paper's dam break: particles have 70 neighbours and variable h.
     "dam-break": ("dam_break", (), ()),
-    # A full lattice stands for the paper's vortex rings. It has no free surface, so nothing is trimmed: with a shortened kernel, weights between the
-    # particles of a lattice are low.
+    # A full lattice stands for the paper's vortex rings. It has no free surface. Nothing is trimmed, because a shortened kernel gives low
+    # weights between the particles of a lattice.
     "vortex-rings": ("vortex_rings", ("--keep-all",),
                      ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0)),
     "plane": ("plane", (), ()),
@@ -135,9 +135,9 @@ class Program:
         self.run = functools.lru_cache(None)(self.measure)
 
     def measure(self, path, options):
-        """Returns medians of the timed runs. One process extracts the surface once more than it is timed, each time from scratch except for the
-        OpenCL program. The first extraction, which loads this program, is given apart. Another process compiles the program before, because the
-        compiler takes memory."""
+        """Returns medians of the timed runs. One process extracts the surface `runs` + 1 times, each time from scratch except for the
+        OpenCL program. The first extraction, which loads the OpenCL program, is given apart. Another process compiles the OpenCL program
+        before, because the compiler takes memory."""
         print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
         self.start(path, options)
         found = self.start(path, options, self.runs + 1)[0]
@@ -323,7 +323,7 @@ class Report:
         self.text(*([""] if self.lines[-1:] != [""] else []), f"{mark} {line}", "", *words, *([""] if words else []))
 
     def table(self, header, rows):
-        """Aligns the first column to the left, all others to the right."""
+        """Adds a table. Its first column is aligned to the left, all others to the right."""
         for cells in (header, ["---", *["---:"] * (len(header) - 1)], *rows):
             self.text("| " + " | ".join(map(str, cells)) + " |")
         self.text()
@@ -334,7 +334,7 @@ def mebibytes(size):
 
 
 def seconds_of(value):
-    """Returns the number with three significant digits."""
+    """Returns seconds as text, with at least three significant digits from 0.1 s on."""
     return f"{value:.1f}" if value >= 100 else f"{value:.2f}" if value >= 10 else f"{value:.3f}"
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same free surface by this package, by ParticleSurface of newton (1.8) and by the marching cubes of Warp, from the same particles with cubes of
-the same size. Needs the packages marching-correctors, newton and NumPy.
+"""Compares the free surface by this package, by ParticleSurface of newton (1.8) and by the marching cubes of Warp, from the same
+particles with cubes of the same size. Needs the packages marching-correctors, newton and NumPy.
 
   newton_compare.py [--sizes 60k] [--device cpu]     Warp's device, or that of marching-correctors
 

@@ -35,7 +35,7 @@ class Data:
     count: int
     scalar: str
     iso: float
-    coarse_iso: float  # There are only a few thousand particles, which do not resolve the other surface.
+    coarse_iso: float  # The iso value for sets of a few thousand particles, which do not resolve the surface of `iso`.
     grid: tuple
     seeds: tuple
     preview: tuple
@@ -104,7 +104,7 @@ def time_row(name, ours, paper, text=seconds_of):
 
 
 def cost(corrected, total):
-    """Returns the correction's share of the total without it."""
+    """Returns, for each column, the time of the correction divided by the total without correction."""
     return [None if a is None else (a - b) / b for a, b in zip(corrected, total)]
 
 

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How smooth surfaces are, and what that costs.
+"""Measures how smooth surfaces are, and what smoothing costs.
 
-Two scenes have particles one apart, moved at random by less than that: a tank at rest; and a crown, a splash with a
+Particles of two scenes are one apart, and moved at random by less than one: a tank at rest; and a crown, a splash with a
 sheet of one layer, threads at its rim and 40 lone drops.
 """
 import statistics
@@ -55,7 +55,7 @@ SCENES = {"tank, jitter 0.12": (tank, 0.12), "tank, jitter 0.18": (tank, 0.18), 
 
 
 def tilt(normals, wanted):
-    """Returns the tilt in degrees, weighted by area."""
+    """Returns the root mean square of the angle between `normals`, whose lengths are areas, and `wanted`, in degrees, weighted by area."""
     area = np.linalg.norm(normals, axis=1)
     cosine = np.abs((normals * wanted).sum(1)) / np.maximum(area * np.linalg.norm(wanted, axis=-1), 1e-300)
     return np.sqrt(np.average(np.degrees(np.arccos(np.clip(cosine, -1, 1))) ** 2, weights=area)) if len(area) else np.nan
@@ -80,7 +80,7 @@ def measure(scene, x, points, triangles):
 
 
 def times(benchmark):
-    """Runs in its own process, so that its memory and time can be measured."""
+    """Writes a table of the processor seconds of whole runs: medians, and their ratio to the surface as it is."""
     path, taken = benchmark.files[0], {}
     for _ in range(benchmark.runs):
         for name in ("as it is", "--compact", "--smooth"):
@@ -96,8 +96,8 @@ def times(benchmark):
 
 def smooth(benchmark):
     """Measures, for each surface: the tilt of its triangles against the true surface (root of the mean square,
-    degrees), drops, triangles, how many of them have an angle below 20 degrees, and the volume over N V. With given
-    particles, measures only processor seconds of whole runs, in turn, and their medians."""
+    degrees), how many drops it has, its triangles, the share of triangles with an angle below 20 degrees, and the volume
+    over N V. With given particles, measures only processor seconds of whole runs, in turn, and their medians."""
     if benchmark.files:
         return times(benchmark)
     random, path = np.random.default_rng(benchmark.arguments.seed), benchmark.folder / "scene.vtp"

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables a and b compare with other software on the wavy tank, with the cubic spline, the same smoothing length, and cubes
-of half this length."""
+"""Makes tables a and b, which compare this program with other software on the wavy tank, with the cubic spline, the same
+smoothing length, and cubes of half this length."""
 from measure import CUBE_FACTOR, THRESHOLD, compete, mebibytes, need_surface, ratio, seconds_of, text_of
 
 CUBE = ("--cube-factor", CUBE_FACTOR)
@@ -10,7 +10,7 @@ FREE_SURFACE = ("--free-surface", "--iso", THRESHOLD, *CUBE)
 
 
 def competitor_row(count, name, theirs, ours):
-    """Appends a row with what was measured, or with why it was left out."""
+    """Returns a row with what the competitor took, or with why it was left out."""
     head = [text_of(count), theirs.get("name", name)]
     if "left_out" not in theirs:
         every = theirs["all"]

@@ -121,7 +121,7 @@ class Array(bpy.types.PropertyGroup):
 
 
 def shared(**more):
-    """Has the properties that an object shares with its import."""
+    """Returns the properties that an object and the dialog of its import have in common."""
     return {
         "smoothing_length": StringProperty(
             name="Smoothing Length", **more, description="An array's name, a length, 'estimate' (from the particle spacing) or "

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles of any number, always the same, to try things with and for timing.
+"""Makes sets of any number of particles, always the same, for trials and for timing.
 
   make_particles.py SET N OUT.vtp [--ratio R] [--keep-all] [--steps K]
 
-Makes about N particles of one of the sets below. OUT_%04d.vtk (or .vtp) with --steps K: K steps of a film. Needs numpy and vtk.
+Makes about N particles of one of the sets below. With --steps K, writes K steps of a film, OUT_%04d.vtk (or .vtp). Needs numpy and vtk.
 """
 import argparse
 import math
@@ -99,8 +99,8 @@ def graded(count, ratio=1000):
     """Particles whose size goes with the distance from the middle, for adaptive cubes; ratio: largest h / smallest h.
 
     Jittered shells around a small hole, a wedge of them left out: the free surface goes from the hole, where particles are
-    smallest, along the wedge to the outside. Arrays: SmoothingLength, Volume, Sphere (0 on a sphere that passes beside the hole,
-    in units of the distance from there).
+    smallest, along the wedge to the outside. Arrays: SmoothingLength, Volume, Sphere (the distance from a sphere that passes
+    beside the hole, divided by the distance from the middle).
     """
     def shells(step):
         return 1 + int(math.log(ratio) / math.log(1 + 0.9 * step))
@@ -127,8 +127,9 @@ def wave(count, ratio=1.3, time=0.0):
     """A wave in a flume, in two dimensions, y = 0, for lines; ratio: h / spacing.
 
     Fluid and walls: a jittered lattice in a flume 3 m long, under a surface with a steep wave and a few drops before its crest,
-    around a cylinder. With --steps it moves along the flume, every 0.05 s. Masses are per metre of width. Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid,
-    1 wall), Pressure (hydrostatic, Pa), Velocity (of a solitary wave, m/s).
+    around a cylinder. With --steps the wave moves along the flume, by 0.05 s from step to step. Masses are per metre of width.
+    Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid, 1 wall), Pressure (hydrostatic, Pa), Velocity (of a
+    solitary wave, m/s).
     """
     length, depth, height, cylinder = 3.0, 0.4, 0.22, (2.15, 0.17, 0.09)
     drops = ((1.62, 0.66, 0.025), (1.69, 0.61, 0.016), (1.75, 0.66, 0.012))
@@ -136,7 +137,7 @@ def wave(count, ratio=1.3, time=0.0):
     crest = 1.3 + celerity * time
 
     def top(x):
-        """Makes the wave steeper on the side to which it travels."""
+        """Returns the height of the surface at x. The wave is steeper on the side to which it travels."""
         s = (x - crest) * np.where(x > crest, 7.0, 3.2)
         return depth + height / np.cosh(np.clip(s, -20, 20)) ** 2 + 0.006 * np.sin(21 * x)
 
@@ -212,7 +213,7 @@ def tangents(p):
 
 
 def moving_rings(sigma=0.1, z0=0.6, amplitude=0.012, time=3.5, dt=0.03, nodes=384):
-    """Returns the rings' centre lines at that time, and their core radii. After a time of about 4 the thin-filament model
+    """Returns the rings' centre lines at `time`, and their core radii. After a time of about 4 the thin-filament model
     breaks down."""
     t, rings = np.arange(nodes) * (2.0 * np.pi / nodes), []
     for sign in (1.0, -1.0):

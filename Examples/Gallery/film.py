@@ -5,8 +5,8 @@
 
     pvpython film.py PLUGIN FOLDER      (without a display: Testing/with-display.sh pvpython ...)
 
-Stores five steps (drop_0.vtp, ..., drop.pvd) and writes a frame for each of them and three between two of
-them: film.0000.png, ..., film.0016.png. film.png shows five: two of stored steps, and those between.
+Stores five steps (drop_0.vtp, ..., drop.pvd) and writes a frame for each step, and three frames between
+two steps: film.0000.png, ..., film.0016.png. film.png shows five frames: two of stored steps, and the three between them.
 """
 import os
 import sys
@@ -28,7 +28,7 @@ FRAMES = (STEPS - 1) * (BETWEEN + 1) + 1
 
 
 def store(folder):
-    """Writes the steps that a code would have stored, each with its particles in another order."""
+    """Writes the steps as a solver would have stored them, each with its particles in another order."""
     points, names = ball(), []
     for step in range(STEPS):
         order = np.random.default_rng(step).permutation(len(points))

@@ -32,7 +32,7 @@ from make_particles import poly_data  # noqa: E402
 
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE, WHITE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5), (1, 1, 1)
-# Cameras have position, focus and angle; the whole tank is seen from farther with more panels in a row.
+# Cameras have position, focus and angle. TANK shows the whole tank, with a wider angle for more panels in a row.
 TANK = {n: ((-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), angle) for n, angle in ((1, 27), (2, 38), (3, 52))}
 NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # This camera looks at the water behind the obstacle.
 EDGE = (0.3, 0.75, 0.4), (0.82, 0.44, 0.12), 22
@@ -225,7 +225,7 @@ FINEST, SHARE = 0.002, 0.1  # The smallest spacing, and how it grows with the di
 
 
 def graded_particles():
-    """Returns the centres and edges of cubes that are divided until they are fine enough for their distance from the point. They fill a
+    """Returns the centres and edges of cubes that are divided until they are fine enough for their distance from the origin. They fill a
     half-space below rings of waves, each half as high and as wide as the next ring outside."""
     centres, edge, found = np.zeros((1, 3)), 2.0, []
     while len(centres):

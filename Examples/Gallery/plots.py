@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the guide's plots, and pictures beside other software's.
+"""Draws the guide's plots, and pictures that show our surfaces beside other software's.
 
 plots.py DIRECTORY [NAME...]     (without a display: Testing/with-display.sh python3 plots.py ...)
 
@@ -103,7 +103,7 @@ def level(time):
 
 
 def volumes_of(surface):
-    """Returns the volume of each triangle's piece, in cm^3."""
+    """Returns, for each triangle, the volume of its piece in cm^3; and, for each piece, its first triangle."""
     piece = surface.connectivity().cell_data["RegionId"]
     a, b, c = (surface.points.astype(float)[surface.faces.reshape(-1, 4)[:, i]] for i in (1, 2, 3))
     return 1e6 * np.bincount(piece, (a * np.cross(b, c)).sum(1) / 6)[piece], np.unique(piece, return_index=True)[1]

@@ -1,12 +1,12 @@
 #!/usr/bin/env pvbatch
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The free surface of the dam break over processes, coloured by process: seams, and none.
+"""Draws the free surface of the dam break by several processes, coloured by process, with seams and without.
 
     mpirun -n 3 pvbatch seams.py PLUGIN FOLDER      (without a display: Testing/with-display.sh mpirun ...)
 
-Writes seams.png. Left: three slabs of particles, each with a surface of its own, which is what processes
-make that do not talk to each other. Right: the surface that the processes share.
+Writes seams.png. Left: three slabs of particles, each with a surface of its own, as processes make
+them without exchange of particles. Right: the surface that the processes share.
 """
 import os
 import sys

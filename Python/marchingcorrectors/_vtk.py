@@ -354,7 +354,8 @@ class Particles(Arguments):
 
     def signatures(self):
         """Returns three marks. A mark changes with the particles, with the scalar, or with the options that the factors of smoothing
-        lengths depend on. The data set's own time counts, too, because users change arrays in place, and call only the data set's Modified()."""
+        lengths depend on. The data set's own time counts, too, because users change arrays in place, and call only the data
+        set's Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())

@@ -284,8 +284,8 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// Describes arrays, and names those with a role, such as the normals, as VTK's writers do in a
-/// file. VTK's XML name of an array's type tells the size.
+/// Writes the element of a list of pieces that describes their arrays, as VTK's writers do: it names
+/// arrays with a role, such as the normals. VTK's names of types have the number of bits.
 void Describe(std::ostream& text, const std::string& element, vtkDataSetAttributes* arrays)
 {
   text << "    <" << element;

@@ -45,8 +45,8 @@ def parse_numbers(text, kind, count):
 
 
 def offsets_of(cells, count):
-    """Returns where each cell begins in the list of the points of all cells, and this list. cells: for each cell, its number of points, then
-    its points."""
+    """Returns where each cell begins in the list of the points of all cells, and this list. cells: for each cell, its number of points,
+    then its points."""
     width = len(cells) // count if count else 0
     if count and width * count == len(cells) and (cells[::width] == width - 1).all():
         return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()
@@ -71,8 +71,8 @@ def find_vertices(types, offsets, points, count):
 
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
-    of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become arrays of the
-    points, too.
+    of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
+    arrays of the points, too.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.

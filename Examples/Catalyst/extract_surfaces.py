@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A Catalyst 2 script: the free surface of a running code's particles, every second step as a file.
+"""A Catalyst 2 script, which writes the free surface of a running solver's particles at every second step.
 
-The code's channel is called "particles". The environment names the plugin, MCOR_PLUGIN, and the folder
+The solver's channel is called "particles". The environment names the plugin, MCOR_PLUGIN, and the folder
 for what is written, MCOR_EXTRACTS. All processes run this script, and share each surface.
 """
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A stand-in for a running code, with ParaView in situ beside it.
+"""Stands in for a running solver, which gives its particles to ParaView at every step (in situ).
 
     [mpirun -n RANKS] /usr/bin/python3 simulation.py SCRIPT [STEPS]
 

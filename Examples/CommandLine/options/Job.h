@@ -115,7 +115,8 @@ struct Job
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
   SliceOptions Slice;
   std::vector<Place> Places; ///< gauges, or sections
-  /// Upright gauges over a rectangle: counts along x and y, and bounds. Empty, or the only gauges.
+  /// Upright gauges over a rectangle: counts along x and y, and bounds. Unless empty, no other gauges
+  /// are given.
   std::vector<double> Grid;
   /// The particles get the gradient of this array, and what follows from the gradient.
   std::string Derive;

@@ -27,8 +27,8 @@ std::string QuotedForJson(const std::string& text);
 /// core's sentences. Returns 0 if there is no such word.
 int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
-/// Prints an error or a warning as one line on standard error, after the program's name. Names and
-/// files may have put anything into the sentence.
+/// Prints an error or a warning as one line on standard error, after the program's name. The
+/// sentence is made printable first, because it may contain names from files.
 void Say(const std::string& sentence);
 
 /// Throws std::runtime_error, "FILE cannot be read: WHY".

@@ -47,7 +47,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
 /// arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Returns, in the same way, the number in the first of the arrays `names` that the file has.
+/// Returns the number in the first of the arrays `names` that the same field data have, or nothing.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
@@ -151,7 +151,8 @@ using Table = std::vector<Column>;
 
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// Returns the columns x, y and z, with these letters behind the names, as far as they exist.
+/// Returns those of the columns x, y and z that exist. behind: letters that follow x, y and z in the
+/// names.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
 /// Finds the columns of positions by their names; none if no name tells. Fails if only some of x, y

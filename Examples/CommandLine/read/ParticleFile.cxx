@@ -196,8 +196,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns only the points and their arrays. Cells would cost memory for each particle; nobody uses
-/// them, or anything else in the data.
+/// Returns only the points and their arrays. Nothing else in the data is used, and cells would cost
+/// memory for each particle.
 vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
@@ -227,7 +227,7 @@ vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool hav
   return particles;
 }
 
-/// Leaves out particles that are copies of another part's.
+/// Leaves out particles that are copies of another part's particles.
 void DropCopies(vtkPolyData* part)
 {
   vtkUnsignedCharArray* marks = part->GetPointGhostArray();

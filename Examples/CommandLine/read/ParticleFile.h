@@ -73,7 +73,7 @@ struct ParticleSets
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out
-/// particles that a part marks as copies of another part's (vtkGhostType).
+/// particles that a part marks as copies of another part's particles (vtkGhostType).
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
 /// Reads a data set of any class, as carefully as ReadParticles().

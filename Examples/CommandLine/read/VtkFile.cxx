@@ -277,8 +277,8 @@ protected:
   {
     const std::string file = this->FileName ? this->FileName : "";
     const std::size_t size = file.empty() ? this->InputString.size() : BytesOf(file)->size();
-    // A byte holds eight bits at most. Packed, it may hold more: 7,000 zeros by LZMA, the best packer
-    // that VTK reads.
+    // A byte holds at most eight values, which are bits. A packed byte may hold more: 7,000 zeros with
+    // LZMA, the best packer that VTK reads.
     const double most = static_cast<double>(size) * (root->GetAttribute("compressor") ? 1e4 : 8.0);
     double points = 0.0;
     CheckXmlSizes(file, most, root, points);

@@ -26,8 +26,8 @@
 namespace
 {
 
-/// All signals that people and batch systems send to end a program; and those that were not ignored at
-/// the start. nohup ignores hangups.
+/// All: the signals that people and batch systems send to end a program. Awaited: those that were not
+/// ignored at the start, as nohup ignores hangups.
 sigset_t All, Awaited;
 
 void FindAwaited()
@@ -62,7 +62,7 @@ volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError =
   STDERR_FILENO; ///< leads to the user even while an Activity is silent
 
-/// Both are never destroyed, because the waiting thread lives as long as the process.
+/// FilesLock and Files are never destroyed, because the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
 std::vector<std::string>& Files = *new std::vector<std::string>;
 
@@ -224,8 +224,8 @@ void PrepareForEnding()
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   KeepWatchOfCrashes();
-  // All later threads leave these signals to one thread that waits for them: it may lock and
-  // allocate. Ignored signals are blocked, too, but never awaited. Otherwise LLVM, which PoCL
+  // All later threads leave these signals to one thread that waits for them. Unlike a handler, this
+  // thread may lock and allocate. Ignored signals are blocked, too, but never awaited. Otherwise LLVM, which PoCL
   // brings, would handle them, and its handler unblocks all other signals.
   pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try

@@ -56,8 +56,8 @@ Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
   return steps;
 }
 
-/// A file's name as its text without numbers, and its numbers. A number is its count of digits and its digits, without
-/// leading zeros, so that pairs are ordered as numbers are.
+/// A file's name, as the text without its numbers, and the numbers. A number is a pair of its count of digits and its
+/// digits, without leading zeros, so that such pairs have the order of the numbers.
 using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
 
 NumberedName Numbered(const std::string& name)
@@ -454,7 +454,7 @@ bool MakeTable(Sharing& sharing, const std::string& what,
       Messages().AddWarningsTo(moment.Warnings);
       sharing.OnFirst([&] { file.Write(text, false); });
     },
-    // The error of an only step is the program's.
+    // If there is only one step, its error ends the program.
     [count](const ParticleTimes::Moment& moment) { Require(count > 1, moment.Error); });
   sharing.OnFirst(
     [&]

@@ -52,8 +52,8 @@ public:
   /// Opens all files that will be read, see OpenSources(), and checks the outputs.
   void CheckFiles(const std::vector<std::string>& outputs) const;
 
-  /// Works on each time. outputs: the file of each, or empty. If a time fails, says so, calls miss(),
-  /// goes on with the others, and returns false at the end.
+  /// Works on each time. outputs: the file of each time, or empty. If a time fails, says so, calls
+  /// miss(), goes on with the other times, and returns false at the end.
   bool ForEach(const std::vector<std::string>& outputs, const std::function<void(Moment&)>& work,
     const std::function<void(const Moment&)>& miss);
 

@@ -62,8 +62,9 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// Adds a column to the table of fluxes: what has flowed since the first time, by trapezia between
-/// steps. passed: the time since the last step; before, sums: fluxes then, and integrals, of each section.
+/// Adds a column to the table of fluxes: what has flowed since the first time, by the trapezoidal
+/// rule. passed: the time since the last step; before: each section's flux at the last step; sums:
+/// each section's integral so far.
 void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   std::vector<double>& before, std::vector<double>& sums)
 {
@@ -83,7 +84,7 @@ void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   before = now;
 }
 
-/// Returns the iso values of a run, ascending; if it had no particles, the requested ones.
+/// Returns the iso values of a run, ascending; if the run had no particles, the requested values.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 {
   std::vector<double> values = NumbersOf(run, "IsoValues");
@@ -136,7 +137,8 @@ std::vector<double> AreasOfLines(
   return areas;
 }
 
-/// Returns the sum of a column over the pieces with this iso value, or over all; without a column, their number.
+/// Returns the sum of a column over the pieces with this iso value, or over all pieces; without a column, the number of
+/// these pieces.
 double SumOf(vtkTable* pieces, const char* column, bool areAll, double iso = 0.0)
 {
   double sum = 0.0;

@@ -63,8 +63,8 @@ struct Run
   double WallSeconds = 0.0; // of the whole filter, which are more than those of its phases
 };
 
-/// Extracts the surface of the particles once. Gives it the array ComponentId, drops the pieces that are
-/// to be left out, and adds a row for each piece to the text of their table, if one is wanted. Throws as
+/// Extracts the surface of the particles once, with the array ComponentId. Drops the pieces that are to
+/// be left out, and adds a row for each piece to the table `pieces`, if this table is wanted. Throws as
 /// Update() does.
 Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
   const std::string& progress = "");
@@ -74,15 +74,16 @@ Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, doubl
 void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* particles,
   ColorScale& colors, bool hasHints);
 
-/// Returns the bytes of a .png file of a surface, of points with the field, or of an image of it, in the
-/// outline of `frame`.
+/// Returns the bytes of a .png file that shows a surface, points with the field, or an image of the
+/// field, in the outline of `frame`.
 std::string Draw(const Job& job, const std::string& file, vtkDataSet* data, vtkDataSet* frame,
   const Picture& picture, ColorScale& colors);
 
 /// Writes the picture of the job's only output, if it is wanted.
 void WritePicture(const Job& job, vtkDataSet* data, vtkDataSet* frame, ColorScale& colors);
 
-/// Evaluates the field at the points, or projects it if they are null. Returns the filter's seconds.
+/// Evaluates the field at `points`, or projects the field if they are null. Returns the filter's
+/// seconds.
 double Evaluate(
   Sharing& sharing, vtkPointSet* particles, vtkDataSet* points, const std::string& progress);
 
@@ -97,20 +98,21 @@ std::string DescribeSize(vtkImageData* image);
 std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name);
 double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 
-/// Returns the first of the forms in which all names in braces, such as {Area} or {ScalarRange:1},
-/// have values, with these values; else the last form, with nothing in place of the missing ones. A value
-/// is a text, the array of a quantity if there is one, a whole count, or a number with six digits.
+/// Returns one of the forms, with values in place of names in braces, such as {Area} or
+/// {ScalarRange:1}: the first form whose names all have values, else the last form, with nothing in
+/// place of names without a value. A value is a text, the array of a quantity if there is one, a whole
+/// count, or a number with six digits.
 std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
-/// Describes a run's field data in four lines, or, at length, in more, for users who know the method; or
-/// only its seconds. Returns "" if the run had no particles to use.
+/// Describes a run's field data in four lines. atLength: in more lines, for users who know the method;
+/// onlySeconds: tells only the run's seconds. Returns "" if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds);
 
 /// Returns the statistics of the last of `runs` as JSON, with the seconds of each run.
 std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,
   const std::vector<std::string>& warnings, double peakResidentBytes);
 
-/// Reports a step of a film. inputs: its files; result: the surface's file or, if `run` is null, why
+/// Returns the report of a step of a film. inputs: its files; result: the surface's file or, if `run` is null, why
 /// there is none.
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds);

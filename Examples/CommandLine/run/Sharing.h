@@ -43,9 +43,9 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// Returns this process's part of the particles that read() gives. If the name of a file is given,
-  /// it holds all of them, so that each process may read a part of it instead. Throws if there are
-  /// none, unless `mayBeEmpty`.
+  /// Returns this process's part of the particles that read() gives. If `file` is not empty, this file
+  /// holds all the particles, and each process may read a part of the file instead. Throws if there
+  /// are no particles, unless `mayBeEmpty`.
   virtual Particles Read(const std::string& /*file*/, bool /*mayBeEmpty*/,
     const std::function<Particles()>& read)
   {

@@ -90,8 +90,8 @@ vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
   return widened;
 }
 
-/// Gives the particles the smoothing lengths that --widen and --smooth make for the surface, and
-/// tells the filter the names of their arrays.
+/// Returns the particles with the smoothing lengths that --widen and --smooth make for the surface.
+/// Tells the filter the names of the new arrays.
 vtkSmartPointer<vtkPointSet> WidenFor(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
   SetParticles(job.Surface, job, input);
@@ -168,7 +168,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
 }
 
-/// Refuses an array to colour by that the output will not have, before the output is made.
+/// Fails, before the output is made, if the output will not have the array to colour by.
 void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   static const std::vector<std::string> ofPoints = { "WeightSum", "Gradients",
@@ -193,7 +193,7 @@ void CheckColorName(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* partic
   }
 }
 
-/// Returns why there is no surface, as far as the ranges tell.
+/// Returns why there is no surface; "" if the run has no iso value.
 std::string ReasonForNoSurface(vtkFieldData* run)
 {
   const std::size_t values = NumbersOf(run, "IsoValues").size();

@@ -22,7 +22,7 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Widens the range by the values on most of this data set's area, unless a range was given, so
+  /// Unless a range was given, widens the range by the values on most of this data set's area, so
   /// that a film's colours cover all steps so far. Throws std::runtime_error if the data set has
   /// points but no such array.
   void Include(vtkDataSet* data);

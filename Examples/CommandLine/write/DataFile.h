@@ -63,7 +63,7 @@ std::string TableField(const std::string& text);
 /// Returns a value so that it is read back exactly; NaN is an empty field.
 std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component = 0);
 
-/// Appends a line for each row, and, to an empty text, first a line with the names of the columns.
+/// Appends a line for each row. If the text is empty, first appends a line with the columns' names.
 void AppendTable(std::string& text, vtkTable* table);
 
 #endif

@@ -32,7 +32,7 @@ namespace
 using Work = std::function<void()>;
 
 /// VTK's writers put names into XML as they are. Gives arrays and their components names that are fit
-/// for XML, and returns what gives them their own names again.
+/// for XML, and returns functions that restore the former names.
 std::vector<Work> FitNamesForXml(vtkDataSet* data)
 {
   std::vector<Work> undo;

@@ -18,8 +18,8 @@ void CheckOutputs(const std::vector<std::string>& outputs);
 /// lets them replace their targets. Without Commit(), also if the program is ended, targets stay as
 /// they were. If a target is a symbolic link, the file that it leads to is replaced. Mode, owner and
 /// group stay. Other hard links of a replaced file keep the old contents. Commit() writes into a
-/// target that is not a regular file (a device, a FIFO, /dev/stdout). All throw std::runtime_error
-/// with one sentence.
+/// target that is not a regular file (a device, a FIFO, /dev/stdout). All functions throw
+/// std::runtime_error with one sentence.
 class OutputFiles
 {
 public:
@@ -35,7 +35,7 @@ private:
   std::vector<OutputTarget> Files;
 };
 
-/// Writes one file by itself.
+/// Writes one file that belongs to no other output, as OutputFiles does.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
 /// A file of all steps so far, which can be read during the run, and after the program was ended. In a long series it

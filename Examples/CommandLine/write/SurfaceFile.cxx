@@ -134,8 +134,8 @@ struct Column
   std::string Name;
 };
 
-/// Adds a column for each component of an array. Those of a vector have the mark and a letter behind
-/// the name or, if there are not enough letters, a number.
+/// Adds a column for each component of an array. For a vector, the mark and a letter follow the name;
+/// if there are not enough letters, the mark and a number.
 void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std::string& name,
   const std::string& mark, const std::vector<std::string>& letters = {})
 {
@@ -153,7 +153,8 @@ void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std
   }
 }
 
-/// Returns the type of .ply files that holds the array's values. No type has 64-bit integers.
+/// Returns the type of .ply files that holds the array's values. 64-bit integers, for which .ply has
+/// no type, become doubles.
 PlyType FindPlyType(vtkAbstractArray* array)
 {
   const int type = array->GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array->GetDataType();

@@ -153,8 +153,8 @@ public:
 
   ///@{
   /**
-   * Which component of the scalar array to contour; MAGNITUDE (-1, the default) is the Euclidean
-   * norm, which is 3 for ParaView's panel. Not used for arrays with one component.
+   * Which component of the scalar array to contour; MAGNITUDE (-1, the default; 3 in ParaView's panel)
+   * is the Euclidean norm. Not used for arrays with one component.
    */
   vtkSPHValueMacro(ScalarComponent, int, MAGNITUDE);
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
@@ -323,10 +323,11 @@ public:
 
   ///@{
   /**
-   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_WEIGHT: it
-   * continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in
-   * front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends
-   * where the solids' share of the weight sum exceeds WallShare. SOLIDS_AUTO by default.
+   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_WEIGHT: the
+   * surface continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: the
+   * surface ends in front of the wall, where the weight of the fluid alone is VertexThreshold.
+   * SOLIDS_WALL: the surface ends where the solids' share of the weight sum exceeds WallShare.
+   * SOLIDS_AUTO by default.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);

@@ -20,7 +20,7 @@
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
-// The core takes these values as they are.
+// The filters pass these values to the core as they are.
 static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
     static_cast<int>(vtkSPHAlgorithm::QUADRATIC) == MCOR_QUADRATIC &&
     static_cast<int>(vtkSPHAlgorithm::M_PRIME_4) == MCOR_M_PRIME_4 &&

@@ -305,8 +305,8 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid, without the few particles (0.1 %, or 8) that are farther from the
-   * box of the others than this box is long. Returns false if no particle is fluid. densest: see
+   * Finds the box of the fluid. Leaves out a few particles (at most 0.1 %, or 8) if they are farther
+   * from the box of the others than this box is long. Returns false if no particle is fluid. densest: see
    * GetNextDensest(); may be null. Collective if processes share a run.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);

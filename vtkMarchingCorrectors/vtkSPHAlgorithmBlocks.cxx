@@ -202,7 +202,7 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// Keeps, for each end of each axis, the few values nearest to the end; values at upper ends are
+// For each end of each axis, keeps the `far` + 1 values nearest to the end; values at upper ends are
 // negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {

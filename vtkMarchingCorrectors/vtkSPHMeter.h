@@ -43,7 +43,7 @@ public:
   /** Also leave solid particles out when volumes are computed from positions. Off by default. */
   vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /** The table. */
+  /** Returns the table with a row for each place. */
   vtkTable* GetOutput();
 
   /** The weight sum at which the fluid ends, above 0. 0.5 by default. */

@@ -84,7 +84,7 @@ public:
     }
   };
   Kept Particles, Scalar, Attributes, Widening;
-  vtkSmartPointer<vtkPointData> Factors; // of smoothing lengths, as Widening tells; null: none
+  vtkSmartPointer<vtkPointData> Factors; // made from the data that Widening signs; or null
   mcor_statistics FactorsStatistics = {};
 
 private:
@@ -135,7 +135,7 @@ public:
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
    * Collects the particles, and notes which arrays were found. Warns if there is no fluid, or if
-   * something has no effect. Returns false, after an error, if an array is not usable.
+   * a setting has no effect. Returns false, after an error, if an array is not usable.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /** Finds the period and, in a shared run, the globals: those of mcor_probe if forSamples is set, else of mcor_extract. */

@@ -243,8 +243,7 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
 }
 }
 
-// No rank may return here while another goes on and waits for it: all ranks first agree on any
-// problem.
+// No rank may return while another rank waits for it: all ranks first agree on any problem.
 void vtkMarchingCorrectors::ContourDistributed(
   vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output)
 {

@@ -150,8 +150,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();
 }
 
-// Returns the error, the same on all ranks. No rank may return here while another goes on and waits
-// for it.
+// Returns the error, the same on all ranks. No rank may return while another rank waits for it.
 std::string vtkSPHComponents::SplitDistributed(
   vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const
 {

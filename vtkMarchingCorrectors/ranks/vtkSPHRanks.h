@@ -23,7 +23,7 @@
  *  9. The first rank does what needs a whole surface. For pieces or a file it gets all tuples, and
  *     puts them in the order of these numbers (vtkSPHGatherTuples). For lines it gets all
  *     particles, and makes all lines.
- * 10. No rank returns while another goes on and waits for it: all ranks first agree on any problem.
+ * 10. No rank returns while another rank waits for it: all ranks first agree on any problem.
  *
  * All functions except the getters are collective: all ranks call them in the same order. Built
  * where VTK has MPI and DIY, whose serialization turns values into bytes (diy::Serialization).
@@ -108,8 +108,8 @@ public:
    */
   void ReduceRanges(double* ranges, int count)
   {
-    const auto negateGreatest = [ranges, count] // so that the least values are wanted at both
-                                                // ends, by one message
+    const auto negateGreatest = [ranges, count] // negated, the greatest values are the least, so
+                                                // one message is enough
     {
       for (int i = 1; i < 2 * count; i += 2)
       {

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// No rank may return here while another goes on and waits for it: all ranks first agree on any
-// problem.
+// No rank may return while another rank waits for it: all ranks first agree on any problem.
 #include "vtkSPHSharedRun.h"
 
 #include "vtkBoundingBox.h"

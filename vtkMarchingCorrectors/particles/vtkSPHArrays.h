@@ -40,7 +40,7 @@ std::string vtkSPHRealName(const std::string& name);
 /** Returns the sentence "Point arrays: A, B." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
-/** Adds an object's address and modification time to a signature. VTK gives no time to two changes. */
+/** Adds an object's address and modification time to a signature. No two changes in VTK have the same time. */
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
@@ -183,7 +183,7 @@ enum vtkSPHHow
   OTHER
 };
 
-/** Adds the costs of a call of the core to the costs of earlier calls. */
+/** Adds the costs of one call of the core to the costs of earlier calls in `run`. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
 /** Finds the point array with the most usual name for this quantity; nullptr: there is none. */

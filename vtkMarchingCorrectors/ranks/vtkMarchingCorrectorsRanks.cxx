@@ -42,8 +42,8 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 
 /**
  * Merges statistics: sums of counts, the longest seconds, and means over all points (each point is
- * counted by one rank only). Bricks, nodes and evaluations count twice if both sides of a seam
- * evaluate them.
+ * counted by one rank only). Bricks, nodes and evaluations count twice if the ranks on both sides of
+ * a seam evaluate them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {

@@ -23,7 +23,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** All particles within this number of support radii must be known, see mcor_find_smoothing_lengths. */
+/** All particles within this number of support radii around a particle must be known, see mcor_find_smoothing_lengths. */
 constexpr double Around = 1.25;
 /** Allows for the rounding of places in periods. */
 constexpr double Rounding = 1.0001;

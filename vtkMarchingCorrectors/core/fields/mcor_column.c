@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Columns of an SPH kernel: a table of their integrals over rectangles, made by quadrature. It
- * uses only operations that all processors round alike. */
+/* Makes the table of an SPH kernel's columns by quadrature: their integrals over rectangles. Only
+ * operations that all processors round alike are used. */
 
 #include "mcor_plane.h"
 #include "mcor_project.h"
@@ -142,8 +142,8 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
 }
 
 /* Returns place i where the density is evaluated along an axis: the nodes come first, then the
- * points of each cell. *length: how long a cell is there. Cells of radial kernels are shorter near
- * the centre, where the density may have a cusp. */
+ * points of each cell. *length: how long a cell is at this place. Cells of radial kernels are
+ * shorter near the centre, where the density may have a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];
@@ -183,7 +183,8 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Sums along x, then divides all values by the integral over the whole kernel. */
+/* Writes the nodes of the table: adds up the columns' sums along x, then divides all numbers by the
+ * integral over the whole kernel. */
 static void mcor_fill_nodes(const mcor_column_job* job)
 {
   mcor_column* column = job->column;

@@ -39,7 +39,7 @@ typedef struct mcor_derive_run
 
 /* ---- evaluation ---- */
 
-/* Inverts m. Returns false if that would magnify rounding too much. */
+/* Inverts m. Returns false if the inversion would magnify rounding too much. */
 static bool mcor_invert(const double m[3][3], double inverse[3][3])
 {
   double det = 0, norm = 0, inverse_norm = 0;

@@ -70,9 +70,9 @@ void mcor_measure_piece(const mcor_flux_job* job, mcor_flux_piece* piece)
   }
 }
 
-/* Appends the halves of a piece. *is_halved becomes false, and nothing is appended, where that makes
- * the longest side no shorter: far from the origin, doubles may not tell the middle of a side from
- * its ends. */
+/* Appends the halves of a piece. If halving makes the longest side no shorter, appends nothing, and
+ * *is_halved becomes false: far from the origin, doubles may not tell the middle of a side from its
+ * ends. */
 static mcor_status mcor_halve_piece(
   mcor_flux_job* job, const mcor_flux_piece* piece, bool* is_halved)
 {
@@ -94,7 +94,7 @@ static mcor_status mcor_halve_piece(
   return MCOR_OK;
 }
 
-/* Finds sample k of a piece. */
+/* Writes the place of sample k of a piece to `point`. */
 static void mcor_place_sample(
   const mcor_flux_form* form, const mcor_flux_piece* piece, int k, double point[3])
 {
@@ -174,8 +174,8 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds the integrals over the part in fluid of a triangle or line, whose corners are samples of a
- * piece. Between the corners, weights and values are linear. Returns whether the level cuts the
+/* Adds the integrals over the part of a triangle or line that is in fluid. Its corners are samples
+ * of a piece; between them, weights and values are linear. Returns whether the level cuts the
  * triangle or line. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
@@ -244,8 +244,8 @@ static bool mcor_integrate_piece(const mcor_flux_job* job, const double* weight,
   return false;
 }
 
-/* Adds a piece to its section, or halves it if that may change its integrals. first: its first
- * sample. */
+/* Adds a piece to its section, or halves the piece if halving may change its integrals. first: the
+ * number of the piece's first sample. */
 static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece, int first)
 {
   mcor_flux_section* found = &job->found[piece->section];

@@ -59,8 +59,8 @@ typedef struct mcor_flux_job
   mcor_flux_section* found;          /* [section_count] */
   MCOR_LIST(mcor_flux_piece) pieces; /* of which the sections are made */
   bool is_counting;                  /* the first pass, which only counts cells */
-  /* In this pass: the next of the sections' pieces; parts of pieces to do before; how many cells there
-   * were so far; the area of the pieces that are done. */
+  /* In this pass: the next of the sections' pieces; parts of pieces that come before it; how many
+   * cells there were so far; the area of the pieces that are done. */
   int64_t next;
   MCOR_LIST(mcor_flux_piece) parts;
   double cells, area_done;

@@ -123,7 +123,7 @@ static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const 
 }
 
 /* Finds the edges that begin at a triangle's first corner, and its unit normal times `sign`.
- * Returns false if it has no normal. */
+ * Returns false if the triangle has no normal. */
 static bool mcor_find_edges(const double x[9], double sign, double edges[2][3], double normal[3])
 {
   mcor_subtract(x + 3, x, edges[0]);

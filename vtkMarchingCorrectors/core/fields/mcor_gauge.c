@@ -135,7 +135,7 @@ static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
   return MCOR_OK;
 }
 
-/* Returns the greatest distance between samples, L. */
+/* Returns the greatest distance between samples (unit L). */
 static double mcor_gauge_step(double h_scale, double smoothing_length_min)
 {
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
@@ -282,8 +282,8 @@ static mcor_status mcor_scan_row(
 }
 
 /* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
- * extremum. If a suspect part has crossings, they become changed parts, and its suspect extrema are
- * dropped. one: each part keeps only its first crossing. */
+ * extremum. If a suspect part has crossings, its sections with a crossing go to job->changed, and
+ * its suspect extrema are dropped. one: each part keeps only its first crossing. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {
@@ -365,7 +365,8 @@ static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64
   {
     MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
   }
-  /* Only the first round may find several crossings in a part; later ones would be rounding. */
+  /* Only the first round may find several crossings in a part. In later rounds, several crossings
+   * would come from rounding. */
   for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
   {
     MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, round > 0));
@@ -394,7 +395,8 @@ static void mcor_read_line(
   r->state = full ? MCOR_GAUGE_FULL : n > 0 ? MCOR_GAUGE_WET : MCOR_GAUGE_DRY;
   r->first = r->last = NAN;
   r->depth = 0;
-  /* Crossings lead into and out of the fluid in turn. If `full`, the last one leads into it. */
+  /* Crossings lead into and out of the fluid in turn. If `full`, the last crossing leads into the
+   * fluid. */
   for (int64_t i = n - (full ? 0 : 1); i >= 0; i -= 2)
   {
     const double end = i < n ? at[i] : 1, begin = i > 0 ? at[i - 1] : 0;

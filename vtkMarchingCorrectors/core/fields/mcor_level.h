@@ -34,9 +34,9 @@ mcor_label mcor_label_of(const char* name, int64_t number);
  * about the level. */
 mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, const char* who, mcor_body body, mcor_statistics* statistics);
-/* Makes the search grid. If particles are near, prepares the job's run, and calls `work`. The field
- * is evaluated in the job's box and `margin` around it or, if there is no box, in the ranges
- * `around`. */
+/* Makes the search grid. If it has particles, prepares the job's run, and calls `work`. The field
+ * is evaluated in the job's box and `margin` (unit L) around it or, if there is no box, in the
+ * ranges `around`. */
 mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, mcor_status (*work)(mcor_level_job*));
 /* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered

@@ -47,9 +47,9 @@ void mcor_free_arrays(double** arrays, int count);
 /* Ends a call without a surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
-/* mcor_widen.c. Reads the volumes that were computed, [count], unit L^3, from the search grid's
- * weights; 1 where a particle is not on the device, or not in the box. The caller frees them, even
- * after a failure. */
+/* mcor_widen.c. Makes *volume, [count], unit L^3: the volumes that were computed, from the search
+ * grid's weights; 1 for a particle that is not on the device, or not in the box. The caller frees
+ * it, even after a failure. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume);
 
 #endif

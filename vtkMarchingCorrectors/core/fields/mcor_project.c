@@ -19,8 +19,8 @@
 
 /* ---- the image ---- */
 
-/* Chooses the axes of the image. With a line of sight along x, y or z they are the other two, in
- * this order. Otherwise z points up, or y if the line of sight is nearly along z. */
+/* Chooses the axes of the image. With a line of sight along x, y or z, the image has the other two
+ * axes, in this order. Otherwise z points up, or y if the line of sight is nearly along z. */
 static mcor_status mcor_choose_axes(mcor_project_job* job)
 {
   mcor_context* context = job->context;
@@ -109,7 +109,7 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Finds the sides of the image, which shows the box or the period, seen along the line of sight;
+/* Finds the sides of the image. It shows the box or the period, seen along the line of sight, or
  * else all that particles reach. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {

@@ -13,9 +13,9 @@
  * Columns of an SPH kernel, seen along a line of sight: the share of the kernel that projects onto
  * a rectangle. Lengths are in h. */
 
-/* E(x, y): the share of the kernel that projects onto the rectangle from a corner of the table,
- * or the centre, to (x, y). A rectangle's share is the mixed difference of E at its corners, so the
- * shares of rectangles side by side add up to 1, but for rounding. */
+/* E(x, y): the share of the kernel that projects onto the rectangle from a corner of the table, or
+ * the centre, to (x, y). A rectangle's share is the mixed difference of E at its corners, so the
+ * shares of rectangles side by side add up to 1, except for rounding. */
 typedef struct mcor_column
 {
   bool is_radial;  /* the kernel depends on the distance alone, as all but tensor kernels do */
@@ -26,8 +26,8 @@ typedef struct mcor_column
   double* nodes;   /* [cells + 1][cells + 1][4], y first: E, dE/dx, dE/dy, d2E/dxdy, in cells */
 } mcor_column;
 
-/* The side of a rectangle: a cubic Hermite interpolant's cell, and weights of value and slope at
- * both ends. */
+/* The side of a rectangle: a cubic Hermite interpolant's cell, and weights of the value and the
+ * slope at both ends of the cell. */
 typedef struct mcor_column_side
 {
   int cell;
@@ -37,9 +37,9 @@ typedef struct mcor_column_side
 /* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
-/* Finds a side at `at` along x (axis 0) or y. */
+/* Returns the side of a rectangle at `at` (in h) along x (axis 0) or y (axis 1). */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
-/* Finds E at the corners where `count` sides along x meet one side along y. */
+/* Writes to `sums` E at the corners where `count` sides along x meet one side along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,
   const mcor_column_side* side, double* sums);
 
@@ -101,8 +101,8 @@ static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
 mcor_status mcor_make_column(
   const mcor_project_job* project, double least_pixel, mcor_column* column);
 
-/* mcor_project_spread.c. Spreads all particles over the image, whose sides are known, in steps of a
- * call. */
+/* mcor_project_spread.c. Spreads all particles over the image, whose sides are known. Reports
+ * progress, and makes out->values. */
 mcor_status mcor_spread_particles(mcor_project_job* job);
 
 #endif

@@ -58,8 +58,8 @@ static void mcor_read_amounts(
 /* ---- particles in the image ---- */
 
 /* Finds the periodic images of a particle that matter, [first, last] along each axis: images in the
- * box and, across the line of sight, images beside the box that reach into it. Moves the particle
- * into the first period of the box. */
+ * box and, across a line of sight along x, y or z, images beside the box that reach into it. Moves
+ * the particle into the first period of the box. Returns whether there are such images. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {
@@ -85,7 +85,8 @@ static bool mcor_find_splats(
   return any;
 }
 
-/* Finds the position of a particle in the image. Returns whether it reaches the image. */
+/* Finds a particle's position in the image, and the pixels that the particle reaches. Returns
+ * whether the particle reaches the image. */
 static bool mcor_make_splat(
   const mcor_project_job* job, const double x[3], double h, mcor_splat* splat)
 {
@@ -106,7 +107,9 @@ static bool mcor_make_splat(
 
 /* ---- spreading ---- */
 
-/* Adds a row of pixels. */
+/* Adds a particle to a row of pixels. A pixel's share is at least `lowest`. below, above: E at the
+ * row's lower and upper corners. coarse, fine: the sums of rounded numbers and of their rounded
+ * rests. */
 static void mcor_add_pixels(int count, double amount, double lowest, const double* restrict below,
   const double* restrict above, const double unit[2], double* restrict coarse,
   double* restrict fine)
@@ -167,8 +170,8 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 
 /* ---- the passes ---- */
 
-/* Spreads the images of particles. The first pass only counts the images, and finds the most that
- * an image adds to a pixel. */
+/* Spreads the periodic images of particles over the picture. The first pass only counts the
+ * periodic images, and finds the most that one of them adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;

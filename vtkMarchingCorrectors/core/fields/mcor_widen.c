@@ -236,7 +236,7 @@ static mcor_status mcor_run_widen(
 
 /* ---- The call ---- */
 
-/* Returns the highest iso value of the free surface. */
+/* Returns the highest iso value of the free surface; 0.5 for scalars. */
 static double mcor_widen_iso(const mcor_options* options)
 {
   double iso = 0.5;

@@ -119,7 +119,7 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 }
 
 /* Leaves out particles beyond a region that reaches `half` from the middle of a sample of the fluid
- * along each axis. Fails if they are too many; the sentence is set already. */
+ * along each axis. Fails if they are too many; the error sentence is set already. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, double half)
 {
   const mcor_sample_list* samples = &context->samples[0];

@@ -252,8 +252,8 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
     : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), mcor_called(f, words, name), has));
 }
 
-/* Takes the array that is given for a role, else the one that was found before, as the role's view.
- * words: what it is for. Returns whether there is one. */
+/* Makes the array that is given for a role, else the array that was found before, the role's view.
+ * words: what the array is for. Returns whether there is such an array. */
 static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, int components)
 {
   const char* name = mcor_given_name(f, role);
@@ -410,7 +410,7 @@ static void mcor_find_sizes(mcor_finder* f)
   }
 }
 
-/* Chooses the array to contour if none is given. All ranks call it. */
+/* Chooses the array to contour if none is given. All ranks call this function together. */
 static int mcor_choose_scalar(mcor_finder* f)
 {
   const int active = f->request->active;

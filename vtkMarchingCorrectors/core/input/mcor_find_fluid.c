@@ -90,7 +90,8 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   return count < MCOR_KINDS ? count : 0;
 }
 
-/* Finds the value of fluid particles in an array that clearly tells it. */
+/* Finds the value of fluid particles among the values of an array. Returns whether they clearly
+ * tell it. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
   bool whole = count > 0;
@@ -205,7 +206,7 @@ static bool mcor_counts(const mcor_finder* f, const int* of, int64_t particle)
   return counts;
 }
 
-/* Writes why particles are left out: "within 0,1,0,1,0,1 and left by Type=1:2". */
+/* Returns the beginning of a sentence: "No particle is within 0,1,0,1,0,1 and left by Type=1:2". */
 static char* mcor_describe_choice(const mcor_finder* f)
 {
   const mcor_request* request = f->request;

@@ -39,7 +39,7 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
   return spread;
 }
 
-/* Names the first particle off the plane (a solid one if all fluid shares a plane). */
+/* Fails, and names the first particle off the plane (a solid one if all fluid shares a plane). */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {

@@ -12,8 +12,8 @@
 /* The most names that a quantity has. */
 #define MCOR_NAMES 14
 
-/* mcor_name.c. Whether a name is this usual one, of small letters and digits; "_", "-", blanks and case
- * do not matter. */
+/* mcor_name.c. Whether a name is the name `usual`, which consists of small letters and digits. In
+ * `name`, "_", "-", blanks and case do not matter. */
 bool mcor_is_usual_name(const char* name, const char* usual);
 
 /* Turns ASCII letters to small ones in any locale: in a Turkish one, tolower('I') is no i. */
@@ -52,7 +52,8 @@ const char* mcor_given_name(const mcor_finder* f, mcor_role role);
 /* Finds the array of this name without checking it; -1: there is none. */
 int mcor_find_by_name(const mcor_finder* f, const char* name);
 /* Finds the array of this name; -1 and an error if it is missing or does not suit. components: 1:
- * it must have one number for each particle; 0: any number of components. words: what it is for. */
+ * the array must have one number for each particle; 0: any number of components. words: what the
+ * array is for. */
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
 /* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
@@ -61,7 +62,7 @@ const char* mcor_names_of(mcor_finder* f);
 double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
 
 /* mcor_find_fluid.c. Finds the array and the value that mark fluid, or an array that seems to mark
- * it but is not used. All ranks call it. */
+ * fluid but is not used. All ranks call this function together. */
 void mcor_find_fluid(mcor_finder* f);
 /* Marks solid and absent particles, and counts the fluid. */
 void mcor_mark_particles(mcor_finder* f);

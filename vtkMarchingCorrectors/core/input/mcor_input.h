@@ -135,8 +135,8 @@ mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Finds the least and greatest value of one component, skipping marked particles unless `solid`
- * is NULL; without any: DBL_MAX, -DBL_MAX. */
+/* Finds the least and greatest value of one component, skipping marked particles unless `solid` is
+ * NULL. If no particle is left, the range is DBL_MAX, -DBL_MAX. */
 void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, int component, double range[2]);
 /* Returns the largest absolute value in a range; 0 if the range is empty. */
@@ -144,8 +144,8 @@ static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
-/* Returns the largest magnitude of a component over all particles but absent ones. Ignored solids
- * count, too, if their values are finite. */
+/* Returns the largest magnitude of a component over all particles except absent ones. Ignored
+ * solids count, too, if their values are finite. */
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
@@ -161,7 +161,8 @@ struct mcor_far
   double place[3];
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
-/* Marks the same particles in a call with globals: all particles beyond the measured bounds. */
+/* In a call with globals, marks the particles that the measuring call left out: all particles
+ * beyond the measured bounds. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
 /* Finds the bounds of a lattice that is cut. low, high: the bounds of the positions of all
@@ -172,8 +173,8 @@ void mcor_cut_bounds(mcor_context* context, const double low[3], const double hi
  * a lattice that is too large. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that
- * is not finite, or not above 0 where it must be; -1: none. */
+/* Returns the first particle with a component that is not finite or, if `positive`, not above 0;
+ * -1: none. Skips marked particles unless `solid` is NULL. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive);
 
@@ -186,7 +187,8 @@ mcor_status mcor_measure_components(
 
 /* Finds a value near the median of the scalar of fluid particles, whose range is known already. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
-/* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, one axis' factor. */
+/* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, the factor of one
+ * axis. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
 /* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
@@ -218,7 +220,8 @@ void mcor_read_smoothing_length(
 void mcor_widen_lengths(
   const mcor_input* input, int64_t first, int count, const double* h, double* out);
 
-/* Whether the device computes volumes from the particles' density. */
+/* Whether the device computes the particles' volumes, because neither volumes nor masses with
+ * densities are given. */
 static inline bool mcor_needs_density(const mcor_input* input)
 {
   return !mcor_is_given(&input->volume) &&

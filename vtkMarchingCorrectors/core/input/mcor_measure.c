@@ -16,7 +16,8 @@
 
 /* A few watched particles suffice to notice wrong smoothing lengths. A watch sees all positions
  * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
- * h_median. If the watched particles lie in a tilted plane, it also finds whether all others do. */
+ * h_median. If the watched particles lie in a tilted plane, the watch also finds whether all other
+ * particles lie in this plane. */
 
 #define MCOR_WATCH_CELLS 64
 typedef struct mcor_watch
@@ -246,7 +247,7 @@ enum
   MCOR_LONE = 3 /* fluid particles without a surface by themselves */
 };
 
-/* The most that one factor adds to the sum of factors. */
+/* The most that one particle's widening factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
 /* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all kernels

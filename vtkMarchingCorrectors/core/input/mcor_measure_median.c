@@ -89,9 +89,9 @@ static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks
   return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
 }
 
-/* Narrows the bins' range to the bin that holds one value, until fewer than `many` values are in
- * it. number: the value's index in ascending order. A bin's range ends at its least and its
- * greatest value, so that a huge outlier does not move the median. */
+/* Narrows the bins' range to the bin that holds one value, again and again, until this bin has
+ * fewer than `many` values. number: the value's index in ascending order. A bin's range ends at its
+ * least and its greatest value, so that a huge outlier does not move the median. */
 static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ranks,
   mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {

@@ -223,8 +223,8 @@ double mcor_cube_root(double value)
   return ldexp(root, exponent / 3);
 }
 
-/* The estimate is 1.3 times the median of the samples' spacings. A sample's spacing is that of a
- * lattice with as many particles within the distance of its 32nd neighbour. */
+/* The estimate is 1.3 times the median of the samples' spacings. A sample's spacing is the spacing
+ * of a lattice with as many particles within the distance of the sample's 32nd neighbour. */
 static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, double* estimate)
 {
   double spacing[MCOR_SAMPLES], largest = 0;

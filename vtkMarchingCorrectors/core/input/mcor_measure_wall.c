@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Measures the wall share: the share of the weight at which a surface ends on the layer of
- * solids that faces the fluid. It is the median, over sampled solids, of the solids' share of
- * the weight there. Each sample counts as much as the fluid weighs there, so solids that no
- * fluid reaches do not count. Weights are added as whole numbers, so the result depends neither
- * on the order of the particles nor on how ranks share them. */
+/* Measures the wall share: the share of the weight at which a surface ends on the layer of solids
+ * that faces the fluid. At a sampled solid, the solids have a share of the weight; the wall share
+ * is the median of these shares. Each sample counts as much as the fluid weighs at it, so solids
+ * that no fluid reaches do not count. Weights are added as whole numbers, so the result depends
+ * neither on the order of the particles nor on how ranks share them. */
 
 #include "mcor_input.h"
 #include "mcor_vector.h"
@@ -147,8 +147,8 @@ static double mcor_median_share(mcor_wall_measure* wall)
   return MCOR_FREE_WALL_SHARE; /* no fluid is near */
 }
 
-/* Sorts the samples along an axis without a period, if there is one, and weighs fluid
- * and solids there. */
+/* Sorts the samples along an axis without a period, if there is one, and weighs fluid and solids at
+ * each sample. */
 static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* wall)
 {
   const mcor_input* input = wall->input;

@@ -21,8 +21,9 @@
 #define MCOR_LEAF 8 /* particles of a leaf of the tree */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* accuracy of a length; least length, as a share of the extent */
-/* The extent goes at most this many widths of the particles' middle half beyond that half.
- * Otherwise one particle far away would leave no digits for all others. */
+/* The curve covers an extent that reaches at most this many widths beyond the middle half of the
+ * particles, where a width is the length of this half. Otherwise one particle far away would leave
+ * no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
 
 typedef struct mcor_neighbour
@@ -84,9 +85,10 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
   return most == 0 ? 0 : p[axis] < q[axis] ? -1 : 1;
 }
 
-/* Particles at one place, such as all beyond a corner of the extent, are compared along the curve
- * of their coordinates' bits, which grow as the numbers do. Equal ones are compared by their bytes,
- * so that the input's order does not matter. */
+/* Compares particles along the curve. Particles at one place of the curve, such as all beyond a
+ * corner of the extent, are compared along the curve of their coordinates' bits, which grow as the
+ * numbers do. Equal particles are compared by their bytes, so that the input's order does not
+ * matter. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -314,7 +316,7 @@ static double mcor_length_step(double h, int further)
 }
 
 /* Solves for the smoothing length at a place, between two steps, by false position with some
- * bisection. The steps do not depend on the first guess, so the result does not either. */
+ * bisection. Neither the steps nor the result depend on the first guess. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;

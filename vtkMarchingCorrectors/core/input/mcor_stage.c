@@ -202,7 +202,7 @@ static inline void mcor_put_fix(const mcor_context* context, void* array, int64_
   ((int64_t*)array)[i] = (int64_t)(x + 0.5);
 }
 
-/* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
+/* Writes a chunk to the staging arrays, from element `to` on; changes the chunk. */
 MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   const mcor_staging* staging, mcor_stage_chunk* chunk, const double* inv_h, int64_t to)
 {

@@ -103,7 +103,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
 /* Warns where fewer steps of single precision than this lie between nearest particles. */
 #define MCOR_COARSE_STEPS 8
 
-/* Returns the step between neighbouring numbers of single precision at x. */
+/* Returns the step between neighbouring numbers of single precision at `largest`. */
 static double mcor_single_step(double largest)
 {
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
@@ -224,8 +224,8 @@ static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
   return mcor_say(MCOR_SAY(ISO_OUTSIDE), o->iso_values[first], others, name, low, high);
 }
 
-/* Where particles fill a small share of space, each cell has a node of weight below the
- * threshold. */
+/* Warns of a node threshold that may discard all cells. Where particles fill a small share of
+ * space, each cell has a node of weight below the threshold. */
 static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -370,8 +370,8 @@ mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input
   return mcor_is_explained(warning, &suspicion) ? MCOR_NO_MESSAGE : checks[warning](&suspicion);
 }
 
-/* The longest step between two coordinates, as a share of the cube size; some triangles are far
- * smaller than cubes. */
+/* The longest step between two coordinates without a warning, as a share of the cube size. It is
+ * short, because some triangles are far smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
 mcor_message mcor_describe_single_points(double largest, double cube_size)

@@ -37,8 +37,8 @@ typedef struct mcor_fill_triangle
   uint64_t square;
 } mcor_fill_triangle;
 
-/* A node, or a line's vertex, on the border of a square; and the part of the border from there to
- * the next corner. */
+/* A node, or a line's vertex, on the border of a square; and the part of the border from this
+ * corner to the next one. */
 typedef struct mcor_fill_corner
 {
   mcor_cap_corner corner; /* must be the first member; vertex: a corner of mcor_fill_triangle */
@@ -230,7 +230,7 @@ static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
   return mcor_cap_key(edge) ^ (uint64_t)part << 44;
 }
 
-/* Adds side s to the border, without its last node. */
+/* Adds side s of a square to its border, without the node at the end of the side. */
 static mcor_status mcor_add_border_side(mcor_filling* fill, int s)
 {
   const int64_t begin = mcor_corner_index(&fill->nodes, fill->lowest, s),
@@ -340,8 +340,8 @@ static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      /* Goes to the other end of the line. A level has two corners on the border, or four. Lines
-       * join four corners around the parts below or around the parts above. */
+      /* Goes to the other end of the line. A level has two corners on the border, or four. With
+       * four, its two lines run around the parts below the level, or around the parts above. */
       const int level = next->level;
       const bool joined = mcor_find_number(&fill->lines[level].joined, (uint64_t)fill->lowest) >= 0;
       const int step = next->falls == joined ? 1 : fill->count - 1;

@@ -177,8 +177,8 @@ mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)
 
 /* ---- Lines ---- */
 
-/* The lines at a point: at most one begins there, and at most one ends. next: where the first one
- * ends; last: where the second one begins; -1: none. */
+/* The lines at a point. At most one line begins at it, and at most one ends. next: where the
+ * beginning line ends; last: where the ending line begins; -1: no such line. */
 typedef struct mcor_line_ends
 {
   int32_t next, last;
@@ -248,14 +248,15 @@ static bool mcor_join(mcor_line_ends* ends, mcor_surface* surface)
   return true;
 }
 
-/* Returns the area of a triangle; below 0 if it runs round clockwise. */
+/* Returns the area of a triangle; below 0 if its corners run clockwise. */
 static double mcor_area_of(const double* a, const double* b, const double* c)
 {
   return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
 }
 
-/* Measures the length, and the area: of the filled region or, if all lines are closed, of what they
- * enclose. Areas of lines count from one of the points. */
+/* Measures the length, and the area: the area of the filled region or, if all lines are closed, the
+ * area that they enclose. A line adds the area of the triangle from the surface's first point to
+ * the line. */
 static void mcor_measure_lines(mcor_surface* surface)
 {
   mcor_statistics* s = &surface->statistics;

@@ -52,21 +52,22 @@ static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
   return (plane->axis + a) % 3;
 }
-/* Returns this axis' letter in the current call. */
+/* Returns the letter x, y or z of the caller's axis of turned coordinate a, in the current call. */
 static inline char mcor_axis_letter(const mcor_context* context, int a)
 {
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* Turns [count][3] numbers back; the constant coordinate of each becomes `constant`. */
+/* Turns [count][3] numbers back to the caller's axes; the constant coordinate of each becomes
+ * `constant`. */
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
 
 /* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* Makes normals from lines if the gradient gives none; needs the lines of the
- * box's ring. */
+/* Makes normals from lines if the gradient gives none. Needs the lines in the ring of cells around
+ * the box, too. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
 /* Makes the surface's polylines from the lines that its triangles stand for, and turns the surface
  * back. */

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkMarchingCorrectors for a VTK without our C++ class: it has the same properties, and gives the same results.
+"""The filter vtkMarchingCorrectors for a VTK without our C++ class. This filter has the same properties, and gives the same results.
 
 This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
@@ -589,7 +589,7 @@ def in_panel(sentence):
 
 
 def paraview_plugin(kind):
-    """Gives ParaView the filter and its panel: the C++ plugin's XML, with this class in it."""
+    """Sets the XML that gives ParaView the filter and its panel: the XML of the C++ plugin, with the class `kind` in it."""
     root = read_panel()
     group = root.find("ProxyGroup[@name='filters']")
     root[:], group[:] = [group], group.findall("SourceProxy[@class='vtkMarchingCorrectors']")

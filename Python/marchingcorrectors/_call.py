@@ -159,7 +159,8 @@ class Finder(Arguments):
         return array if array.dtype in ELEMENTS or array.dtype.kind not in "fiu" else contiguous(array, name)
 
     def add_sizes(self, given, estimate):
-        """Adds quantities. given: {role: array, value or None}; the scalar may also be a name. estimate: estimate_smoothing_length."""
+        """Adds the quantities and the scalar to the request. given: {role: array, value or None}; the scalar may also be a
+        name. estimate: estimate_smoothing_length."""
         self.ratio = None
         if isinstance(estimate, str):
             name, equals, ratio = estimate.partition("=")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""python -m marchingcorrectors surface, gauge, slice, line: the functions for files, with the words of the program
-marching-correctors, whose options for pieces, pictures and several processes are not here."""
+"""python -m marchingcorrectors surface, gauge, slice, line: the functions for files, with the options of the program
+marching-correctors, except for its options for pieces, pictures and several processes."""
 import argparse
 import ctypes
 import csv
@@ -155,7 +155,7 @@ def make_parser(command):
 
 
 def find_words(given, names, particles, command):
-    """Returns keywords of the functions from the options; the file gives some of the missing ones."""
+    """Returns the keywords of the functions that the options give. The file gives some keywords that the options do not give."""
     words = {}
     for option in options_of(command):
         keyword, value = keyword_of(option), getattr(given, option[2:].replace("-", "_"), None)

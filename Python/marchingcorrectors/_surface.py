@@ -304,7 +304,7 @@ class Projection(Result):
 
     @property
     def pixel_area(self) -> float:
-        """L^2. values.sum() * pixel_area is the mass in the image, where the values are column densities."""
+        """The area of a pixel, L^2. If the values are column densities, values.sum() * pixel_area is the mass in the image."""
         left, right, lower, upper = self.extent
         return float((right - left) * (upper - lower) / max(self.values.size, 1))
 

@@ -50,8 +50,8 @@ class Film:
     Example: with Film("film.usdc", fps=24) as film: film.add(surface, time)
 
     The film is written to a file beside `path`, which gets the name `path` at the end of the with block, also if Ctrl-C ends
-    the block after a step. Any other exception leaves no file. Each step is written at once and leaves memory; only .usda
-    keeps all steps, because its text is made at the end.
+    the block after a step. Any other exception leaves no file. Steps are written to the disk during the block, and
+    leave memory; the text of .usda is made from all steps at the end.
 
     path: .usdc (binary), .usda (text) or .usd. It cannot be one of the inputs.
     fps: frames of a second of film; a step's time code is time x fps x slow.

@@ -166,8 +166,8 @@ def add_values(data, count, chosen, made):
 
 
 def take_vertices(data, have=None):
-    """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++; the data set itself if
-    nothing changes."""
+    """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does. Returns the data
+    set itself if nothing has to change."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):

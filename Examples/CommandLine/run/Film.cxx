@@ -226,7 +226,7 @@ private:
     }
   }
 
-  /// Lists a step that was written, and says so.
+  /// Adds a step that was written to the list of steps, and reports the step.
   void Keep(
     const Moment& moment, vtkFieldData* statistics, const std::string& what, double seconds)
   {

@@ -74,7 +74,7 @@ class Part(NamedTuple):
 
 
 def load(parts, name):
-    """Returns one array of several parts, each read into its place; a part without `keep` is not copied."""
+    """Returns the array `name` of all parts, one part after the other. Parts without `keep` are read straight into the result."""
     result, begin = None, 0
     for part in parts:
         with h5py.File(part.file, "r") as file:

@@ -9,9 +9,10 @@
 
 #include <stdlib.h>
 
-/* Cells of the table from the centre to the end of the support: for pixels not much smaller than h,
- * and for much smaller ones. Errors fall at least with the third power of a cell's size: at h = 3
- * pixels they are about 1e-8 of the greatest value, at h = 50 pixels below 1e-6. */
+/* How many cells the table has from the centre to the end of the support: for pixels not much
+ * smaller than h, then for pixels that are much smaller. Errors fall at least with the third power
+ * of a cell's size: at h = 3 pixels they are about 1e-8 of the greatest value, at h = 50 pixels
+ * below 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
@@ -87,7 +88,7 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
   return sum;
 }
 
-/* Returns the column density; its scale does not matter. */
+/* Returns the column density at (x, y), in any unit, because mcor_fill_nodes scales the table. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
   if (job->is_tensor)

@@ -18,8 +18,9 @@
 /* Particles treated at a time. */
 #define MCOR_DERIVE_BATCH (1 << 20)
 
-/* Worst condition of an M that is inverted, in the Frobenius norm, where the identity has 3. The
- * condition is how much inversion magnifies rounding. */
+/* A matrix M with a worse condition is not inverted. The condition tells how much inversion
+ * magnifies rounding. It is the product of the Frobenius norms of M and its inverse, 3 for the
+ * identity. */
 #define MCOR_WORST_CONDITION 300
 
 typedef struct mcor_derive_run
@@ -276,7 +277,7 @@ typedef struct mcor_decompose_job
   const mcor_flow* flow;
 } mcor_decompose_job;
 
-/* Turns the symmetric matrix so that element (p, q) becomes 0. r is the third index. */
+/* Rotates the symmetric matrix so that element (p, q) becomes 0. r is the third index. */
 static void mcor_rotate_away(double m[3][3], int p, int q, int r)
 {
   if (fabs(m[p][q]) < 1e-18 * (fabs(m[p][p]) + fabs(m[q][q])))

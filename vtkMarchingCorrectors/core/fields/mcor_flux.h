@@ -19,13 +19,13 @@ typedef struct mcor_flux_piece
   double normal[3];    /* one entry for each component of the velocity, unit length */
   double size;         /* area of a triangle, or length of a line */
   int side;            /* the longest side goes from this corner to the next one */
-  double length;       /* how long it is */
+  double length;       /* length of the longest side */
 } mcor_flux_piece;
 
 /* Results of a section. Sums are whole numbers of units, so their order does not matter. */
 typedef struct mcor_flux_section
 {
-  double area, near; /* of the whole section; of its cells that particles may be near */
+  double area, near; /* area of the whole section; area of its cells near particles */
   double unit[MCOR_FLUX_SUMS];
   int64_t sum[MCOR_FLUX_SUMS + 1]; /* the last one: how many pieces particles reach */
 } mcor_flux_section;
@@ -57,7 +57,7 @@ typedef struct mcor_flux_job
   double smoothing_length; /* the smallest scaled smoothing length */
   double speed_floor, density_floor;
   mcor_flux_section* found;          /* [section_count] */
-  MCOR_LIST(mcor_flux_piece) pieces; /* of which the sections are made */
+  MCOR_LIST(mcor_flux_piece) pieces; /* the pieces of all sections */
   bool is_counting;                  /* the first pass, which only counts cells */
   /* In this pass: the next of the sections' pieces; parts of pieces that come before it; how many
    * cells there were so far; the area of the pieces that are done. */

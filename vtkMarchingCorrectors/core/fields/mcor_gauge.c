@@ -53,8 +53,8 @@ typedef struct mcor_gauge_row
 {
   int64_t line, count;
   double first, step, last;
-  /* The row has the samples of a line that particles may reach: place i is (sample + i) / steps.
-   * steps is 0 if the row is of a part. */
+  /* If steps > 0, the row has the samples of a line that particles may reach, and place i is
+   * (sample + i) / steps. If steps is 0, the row divides a part of a line. */
   int64_t steps, sample;
   const double* weight; /* [count] */
 } mcor_gauge_row;

@@ -48,9 +48,9 @@ bool mcor_owns_point(const mcor_level_job* job, const double point[3])
 }
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
- * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and of a sum that
- * equals the level where F is exactly this share of T. Far from solids, F equals T, and the lowered
- * sum is F. */
+ * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and level + (F -
+ * share T) / (1 - share), which equals the level where F is exactly its share of T. Far from
+ * solids, F equals T, and the lowered sum is F. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

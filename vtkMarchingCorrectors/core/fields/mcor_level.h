@@ -17,7 +17,7 @@ typedef struct mcor_level_job
   double level;
   mcor_findings around; /* ranges along x, y, z that hold all that is measured */
   bool has_box;
-  double box[6];       /* the box of what this call owns, in the call's coordinates */
+  double box[6];       /* the box that this call owns, in the call's coordinates */
   double owned[3][2];  /* the box's cells along x, y, z */
   mcor_probe_run* run; /* evaluates the field */
   double* with_solids; /* [MCOR_LEVEL_BATCH], weight sums of fluid and solids; NULL: no solids */

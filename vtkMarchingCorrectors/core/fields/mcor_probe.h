@@ -18,13 +18,13 @@ typedef struct mcor_probe_run
   double* weights_with_solids; /* weight sums of fluid and solids at the points; NULL: not wanted */
   mcor_point_batch batch;
   mcor_buffer weight, weight_with_solids, sums, weight_gradient, gradients;
-  struct /* what is mapped of the batch and of the device's results */
+  struct /* views of the batch, and of the device's results */
   {
     void *node, *offset, *order, *weight, *weight_with_solids, *sums, *weight_gradient, *gradients;
   } view;
   mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
   int64_t first;                     /* first point of the batch */
-  int count, inside; /* points of the batch; points of it that particles may reach */
+  int count, inside; /* numbers of points in the batch: all; those in reach */
 } mcor_probe_run;
 
 /* Lets the call use only particles near options->box, which holds the caller's points. Returns false

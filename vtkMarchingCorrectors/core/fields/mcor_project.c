@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define MCOR_MOST_PIXELS 32768 /* along the longer side */
-#define MCOR_MOST_PERIODS 2    /* in periods; longer supports would have too many images */
+#define MCOR_MOST_PERIODS 2    /* longest support, in periods; more would need too many images */
 #define MCOR_MOST_IMAGES 16    /* the most images of a period in a box, along an axis */
 #define MCOR_MOST_LENGTHS 1e6  /* the longest side of an image without a box, in the largest
                                 * smoothing length */

@@ -95,9 +95,9 @@ static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
     (!job->view->counted || job->view->counted[i]);
 }
 
-/* mcor_column.c. In two dimensions, takes the kernel itself, not an integral along the line of sight.
- * least_pixel: the shorter side of a pixel / the greatest h. The caller frees the nodes, even after a
- * failure. */
+/* mcor_column.c. Makes the table. In two dimensions, takes the kernel itself, not an integral along
+ * the line of sight. least_pixel: the shorter side of a pixel / the greatest h. The caller frees
+ * the nodes, even after a failure. */
 mcor_status mcor_make_column(
   const mcor_project_job* project, double least_pixel, mcor_column* column);
 

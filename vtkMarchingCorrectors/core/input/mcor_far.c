@@ -40,7 +40,7 @@ typedef struct mcor_far_job
   bool open[3];        /* axes without a period */
   double reach, slack; /* per smoothing length: the support radius, and how much farther away a
                         * particle is still needed */
-  double margin;       /* of mcor_reach_around */
+  double margin;       /* the margin for mcor_reach_around */
   double radius;       /* all particles within this distance of the region stay */
   mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
                                            * this rank. */

@@ -52,7 +52,7 @@ static mcor_filling mcor_measure_filling(const mcor_input* input)
 typedef struct mcor_filling_job
 {
   const mcor_input* input;
-  const double* low; /* of the bounds */
+  const double* low; /* the lower corner of the fluid's bounds */
   double length;     /* the smoothing length of all particles; 0: they have their own */
   double size;
   int cells[3], all;

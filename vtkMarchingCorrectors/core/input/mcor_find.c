@@ -74,7 +74,7 @@ static void mcor_put_element(void* array, mcor_element type, int64_t i, double v
   }
 }
 
-/* Returns an array as the core reads it: where it lies, if it is of floats or doubles without gaps;
+/* Returns an array as the core reads it: the array itself if it has floats or doubles without gaps,
  * else a copy. */
 static mcor_array mcor_view_of(mcor_finder* f, const mcor_named* named)
 {
@@ -462,8 +462,8 @@ static void mcor_keep_scalar(mcor_finder* f, mcor_array view, bool is_column, bo
   }
 }
 
-/* Finds the scalar to contour, the one attribute of derivatives, or the scalar of a projection, if
- * it has one. */
+/* Finds the scalar to contour; or the attribute whose derivatives are wanted; or the scalar of a
+ * projection, if it has one. */
 static void mcor_find_scalar(mcor_finder* f, bool contours)
 {
   const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),

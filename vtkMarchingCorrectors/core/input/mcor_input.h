@@ -3,8 +3,8 @@
 #ifndef mcor_input_h
 #define mcor_input_h
 
-/* What files that read the input share. They read the caller's arrays as double: one element, or a
- * chunk of one component in a loop that compilers vectorise. */
+/* Shared by the files that read the input. They read the caller's arrays as double: one element, or
+ * a chunk of one component in a loop that compilers vectorise. */
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"

@@ -31,7 +31,7 @@ typedef struct mcor_watch
   double support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
-  double normal[3];                          /* 0: they do not lie in a plane */
+  double normal[3];                          /* of the watched particles' plane; 0: none */
   /* Distances along the normal from the first watched particle: the greatest, and the greatest with
    * the sign reversed. */
   double beyond[MCOR_SLICES][2];
@@ -244,7 +244,7 @@ enum
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
   MCOR_FACTOR_SUM = 2,
-  MCOR_LONE = 3 /* fluid particles without a surface by themselves */
+  MCOR_LONE = 3 /* fluid particles that would have no surface if they were alone */
 };
 
 /* The most that one particle's widening factor adds to the sum of factors. */

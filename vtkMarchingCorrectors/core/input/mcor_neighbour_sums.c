@@ -20,7 +20,7 @@
 
 #define MCOR_LEAF 8 /* particles of a leaf of the tree */
 #define MCOR_LENGTH_STEPS 60
-#define MCOR_LENGTH_ERROR 1e-7 /* accuracy of a length; least length, as a share of the extent */
+#define MCOR_LENGTH_ERROR 1e-7 /* relative error of a length; least length / extent */
 /* The curve covers an extent that reaches at most this many widths beyond the middle half of the
  * particles, where a width is the length of this half. Otherwise one particle far away would leave
  * no digits for all others. */
@@ -305,8 +305,8 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* Returns the greatest step that is not above h, or the one `further` steps on. Each power of 2 has
- * four steps. */
+/* Smoothing lengths have steps, four in each power of 2. Returns the greatest step that is not
+ * above h, or the step that comes `further` steps after it. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;

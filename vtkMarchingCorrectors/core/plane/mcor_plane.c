@@ -135,7 +135,7 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Across the plane, bounds are the plane less and plus the largest support. */
+/* Across the plane, the bounds are the plane's coordinate less and plus the largest support. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;
@@ -286,7 +286,7 @@ static void mcor_measure_lines(mcor_surface* surface)
   }
 }
 
-/* Makes normals, to the right of the lines: at all points of a preview, or if the caller wants it;
+/* Makes normals, to the right of the lines: at all points of a preview, or with triangle_normals;
  * else only where the gradient vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
 {

@@ -73,8 +73,8 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
  * back. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 
-/* mcor_fill.c. mcor_begin_fill checks that lines can be filled, if they are to be, and evaluates the
- * nodes. */
+/* mcor_fill.c. If lines are to be filled, mcor_begin_fill checks that they can be, and evaluates
+ * the nodes. */
 mcor_status mcor_begin_fill(mcor_context* context);
 /* mcor_take_lines keeps the trimmed lines of the current iso value; mcor_number_lines notes the
  * numbers of their points. Both do nothing if lines are not filled. */

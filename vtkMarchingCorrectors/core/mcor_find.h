@@ -115,9 +115,9 @@ extern "C"
     double within[6];      /* bounds of the particles that count, unless all are 0 */
     const mcor_only* only; /* [only_count]; a value must be in one of its array's ranges */
     int only_count;
-    /* Names, one a line, or NULL. taken: arrays that are computed; excluded: others that must not
-     * be attributes. The array of iso values has the name of what is contoured, unless a computed
-     * array has this name. */
+    /* Names of arrays, one a line, or NULL. taken: arrays that are computed; excluded: other arrays
+     * that must not be attributes. The array of iso values has the name of what is contoured,
+     * unless a computed array has this name. */
     const char *taken, *excluded;
     int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
     int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
@@ -139,8 +139,8 @@ extern "C"
     int* nearest; /* [nearest_count], arrays that cannot be interpolated: whole numbers, text */
     int nearest_count;
     mcor_named made[2]; /* "Velocity" of vx, vy and vz; "Density" of mass and volume; or no name */
-    /* Nonzero: the caller must sum these over neighbours, and hand them in: see
-     * mcor_take_lengths. */
+    /* Nonzero: the caller must compute lengths or densities by sums over neighbours, and hand them
+     * in: see mcor_take_lengths. */
     int needs_lengths, needs_densities;
     mcor_message error;       /* what is missing or not usable */
     mcor_message unused_type; /* names an array that seems to tell fluid from solids, but is not
@@ -164,16 +164,16 @@ extern "C"
 
   /* Put the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities into an input
    * that needs them; borrowed until mcor_free_found. Densities become the scalar. If there are
-   * masses, but no other densities and no volumes, they also give the volumes. */
+   * masses, but no other densities and no volumes, the densities also give the volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 
-  /* Returns the array to show if the user has chosen none, see mcor_view_priority: the active one
-   * if it is fit; -1: none is fit. */
+  /* Returns the index of the array to show if the user has chosen none, see mcor_view_priority. If
+   * the active array is fit, it is shown. -1: no array is fit. */
   int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
 
-  /* Returns the array that has the most usual name of the quantity, among arrays with `components`
-   * components and `tuples` tuples of numbers; -1: none. */
+  /* Returns the index of the array that has the most usual name of the quantity, among arrays with
+   * `components` components and `tuples` tuples of numbers; -1: none. */
   int mcor_find_named(
     const mcor_named* arrays, int count, mcor_quantity quantity, int components, int64_t tuples);
 

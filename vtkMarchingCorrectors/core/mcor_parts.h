@@ -62,8 +62,8 @@ extern "C"
     double cut_high[3]; /* if cut, where the box or points end; `high` lies beyond */
   } mcor_measure;
 
-  /* Facts about all particles, which a call with only some of them needs for its box of the
-   * surface. */
+  /* Facts about all particles. A call with only some of the particles needs them to make its box of
+   * the surface. */
   struct mcor_globals
   {
     mcor_measure measured;
@@ -100,16 +100,16 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: the whole
-     * surface has no sides but those of a period. A vertex that several ranks have is counted by
-     * one of them. */
+    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: only periods
+     * bound the whole surface. A vertex that several ranks have is counted by one of them. */
     double whole_box[6];
   };
 
-  /* mcor_create_context for one of `count` processes or threads that run side by side on a machine;
-   * place: its number, from 0. Unless a number names the device, the processes take turns among all
-   * devices of the same platform and kind. Processes on one CPU device get a share of its
-   * processors each. Results do not depend on which device, or which share, a process gets. */
+  /* Does what mcor_create_context does, for one of `count` processes or threads that run side by
+   * side on a machine; place: the number of this one, from 0. Unless a number names the device, the
+   * processes take turns among all devices of the same platform and kind. If processes use the same
+   * CPU device, each gets a share of its processors. Results do not depend on which device, or
+   * which share, a process gets. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
@@ -129,10 +129,11 @@ extern "C"
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
   /* Returns how far from a box all particles are needed, however short their supports are, because
-   * what reaches the box depends on them; 0: none. All lengths have one unit. computes_volumes:
-   * whether the call computes volumes; widest: options.widen for mcor_widen, 0 for other calls;
-   * reach: how far a particle that reaches the box may be away from the box, 0 if no particle
-   * reaches it; margin: at least two cubes, because particles and the box are rounded. */
+   * the particles that reach the box depend on these neighbours; 0: no neighbours are needed. All
+   * lengths have one unit. computes_volumes: whether the call computes volumes; widest:
+   * options.widen for mcor_widen, 0 for other calls; reach: how far a particle that reaches the box
+   * may be away from the box, 0 if no particle reaches it; margin: at least two cubes, because
+   * particles and the box are rounded. */
   double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,
     double reach, double margin);
 

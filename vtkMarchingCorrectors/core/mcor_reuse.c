@@ -44,7 +44,7 @@ static bool mcor_same_bounds(const double a[6], const double b[6])
   return memcmp(a, b, 6 * sizeof *a) == 0;
 }
 
-/* Whether all options are the same on which the search grid depends. */
+/* Whether all options on which the search grid depends are the same. */
 static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 {
   enum

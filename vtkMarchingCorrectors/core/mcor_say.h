@@ -3,7 +3,7 @@
 #ifndef mcor_say_h
 #define mcor_say_h
 
-/* Says a sentence of mcor_says.def. VTK's filters and the program do so by vtkSPHSay.h. */
+/* Writes sentences of mcor_says.def. VTK's filters and the program use vtkSPHSay.h for this. */
 
 #include "mcor.h"
 

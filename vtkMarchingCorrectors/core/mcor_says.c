@@ -20,8 +20,8 @@ static const struct
 #include "mcor_says.def"
 };
 
-/* label: the words in panels; if it is "", they are made from property, the name in VTK's
- * filters. */
+/* For each slot, its words. label: the words in panels; "": they are made from `property`, the
+ * option's name in VTK's filters. */
 static const struct
 {
   const char *slot, *label, *property;

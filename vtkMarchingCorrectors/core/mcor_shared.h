@@ -49,7 +49,7 @@ typedef struct mcor_level
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)
 
 /* Particles or triangles that one work-item treats in turn. A CPU needs several, because it cannot
- * do other work while it waits for one. */
+ * go on with another work-item while it waits for memory. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
 /* INSERTION: successive cells with at most this number of particles together share an insertion
@@ -79,8 +79,8 @@ typedef struct mcor_level
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* maybe both sides: evaluate */
 #define MCOR_UNTRIED 7 /* maybe both sides; no proof was tried */
-/* Bit beside the state of a leaf: the state does not cover the nodes that cells of other levels
- * have on its sides. */
+/* Bit beside the state of a leaf: the state does not cover the nodes on the leaf's sides that
+ * belong to cells of other levels. */
 #define MCOR_OPEN_SIDES 4
 
 /* Numbers of a brick's masks. EDGE: its lattice edges with a vertex, see mcor_march_count.
@@ -111,7 +111,8 @@ typedef struct mcor_rung
   MCOR_TYPE(int) unused;
 } mcor_rung;
 
-/* The last number of a vertex's edge has its level above this many bits. */
+/* A vertex's edge is four numbers: a node, and a last number that has the level above this many
+ * bits. */
 #define MCOR_LEVEL_SHIFT 8
 
 /* Slots that hold the nodes of a leaf: 2^3 of its level, 3^3 of the next finer level. */

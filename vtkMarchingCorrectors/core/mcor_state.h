@@ -147,8 +147,9 @@ typedef struct mcor_mesh
                                                   * each level */
 } mcor_mesh;
 
-/* A set of bricks of one level of adaptive cubes. clusters: for each cluster of 4^3 bricks, aligned
- * to multiples of 4, by its first brick's key, a mask: bit x + 4 y + 16 z is a brick. */
+/* A set of bricks of one level of adaptive cubes. Bricks are in clusters of 4^3, which begin at
+ * multiples of 4. clusters: for the key of a cluster's first brick, a mask of the cluster's bricks
+ * in the set; bit x + 4 y + 16 z is a brick. */
 typedef struct mcor_brick_set
 {
   mcor_table clusters;
@@ -188,8 +189,9 @@ typedef struct mcor_adaptive
 /* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
-  /* One bit per brick of a block (ulong, by the brick's number). marked: a pair lies in it.
-   * reached: growth has come so far. grown: `reached` at the last look. */
+  /* Masks of cells: a ulong for each brick of all blocks, by the brick's number. marked: the line
+   * between a pair's particles passes. reached: growth has come so far. grown: the reached cells
+   * from which growth has gone on. */
   mcor_buffer marked, reached, grown;
   mcor_buffer domain; /* ulong, by slot: cells where growth may go */
   mcor_buffer found;  /* int: what a kernel found in any brick */

@@ -85,7 +85,7 @@ double mcor_rounding(const mcor_context* context)
   return 0.5 * ldexp(context->lattice.cube, -context->lattice.fix_bits);
 }
 
-/* Fills in the numbers that are known at the end. */
+/* Fills in the numbers that are known only at the end. */
 mcor_status mcor_finish_statistics(mcor_context* context)
 {
   mcor_statistics* s = context->run.statistics;

@@ -2,19 +2,19 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Compact contours. Where the surface passes close to a node, Marching Cubes makes slivers.
- * Therefore the vertices of one node that are joined by edges are merged into their mean [Moore and
- * Warren], which then moves along the gradient onto the surface. Triangles with two equal corners
- * vanish.
+ * Therefore the vertices of one node that are joined by edges are merged into one vertex at their
+ * mean [Moore and Warren], which then moves along the gradient onto the surface. Triangles with two
+ * equal corners vanish.
  *
  * The vertices that become one merged vertex are a bunch. If the merged vertex does not reach the
  * surface, or turns a triangle over, its bunch is taken apart again, which is always possible. This
- * may turn over triangles around the bunch, so there are two rounds. Then the vertices of the
- * remaining slivers move (mcor_compact_face.c).
+ * may turn over triangles around the bunch, so there are two rounds. After these rounds, the
+ * vertices of the remaining slivers move (mcor_compact_face.c).
  *
- * Merged vertices, and vertices that moved, are appended to the mesh. At the end each of them takes
- * the place, and so the key, of the vertex that it replaces; a merged vertex replaces the first
- * vertex of its bunch. The other vertices of the bunch stay in the mesh, but no triangle uses
- * them. */
+ * Merged vertices, and vertices that moved, are appended to the mesh. At the end each appended
+ * vertex takes the place, and so the key, of the vertex that it replaces; a merged vertex replaces
+ * the first vertex of its bunch. The other vertices of the bunch stay in the mesh, but no triangle
+ * uses them. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -69,7 +69,8 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
   if (n > bunches->point_room)
   {
-    /* Merged vertices, half of the vertices at most, find room without a copy. */
+    /* Leaves room for the merged vertices, at most half as many as vertices, so that nothing is
+     * copied again. */
     bunches->point_room = n + n / 2;
     const size_t bytes = bunches->point_room * sizeof *bunches->points;
     mcor_point* points = realloc(bunches->points, bytes);
@@ -89,7 +90,8 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Nodes of vertices that are being appended to the mesh, and where their lines begin. */
+/* For vertices that are being appended to the mesh: their nodes, and where the lines begin on which
+ * they are corrected. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
@@ -97,7 +99,8 @@ typedef struct mcor_adding
   void* offset; /* real [][4] */
 } mcor_adding;
 
-/* The vertices keep the nodes of the vertices that they replace. */
+/* Gives each appended vertex the node of the vertex that it replaces, and the offset from this
+ * node. */
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_adding* add = data;
@@ -161,8 +164,8 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Keeps the triangles that are left. Copies each appended vertex to the place of the vertex that it
- * replaces. */
+/* Keeps the triangles whose corners still differ. Copies each appended vertex to the place of the
+ * vertex that it replaces. */
 static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
 {
   mcor_context* context = bunches->context;

@@ -10,7 +10,7 @@
 #include <stdatomic.h>
 
 /* Merges vertices of the current iso value, and corrects the merged vertices. Comes after trimming
- * and caps, and leaves the borders that they make as they are. */
+ * and caps, and leaves the borders of both as they are. */
 mcor_status mcor_compact(mcor_context* context);
 
 /* Vertices in a box depend on this number of cells around the box: four decide whether a vertex is
@@ -21,10 +21,10 @@ mcor_status mcor_compact(mcor_context* context);
 
 /* ---- Private to the module ---- */
 
-/* A vertex that stays has this key in place of its node. */
+/* This key, in place of a node's key, marks a vertex that is neither merged nor moved. */
 #define MCOR_FROZEN UINT64_MAX
 
-/* State of a bunch. */
+/* State of a bunch of vertices, see below. */
 enum
 {
   MCOR_BUNCH_APART,  /* its vertices stay */
@@ -34,8 +34,8 @@ enum
 };
 
 /* A vertex before merging. A bunch is a set of vertices that belong to one lattice node and are
- * joined by edges of triangles; its first vertex stands for it. Each other vertex is a bunch of its
- * own, and stays apart. */
+ * joined by edges of triangles; the set's first vertex stands for it. A vertex that is joined to no
+ * other is a bunch by itself, and stays apart. */
 typedef struct mcor_bunch_vertex
 {
   uint64_t key;        /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
@@ -48,8 +48,8 @@ typedef struct mcor_bunch_vertex
   bool leans;       /* of a bunch: it is merged only as long as all sure bunches beside it are */
 } mcor_bunch_vertex;
 
-/* A vertex of the mesh. Its position is a whole number of units, 2^-MCOR_POINT_FIX of the lattice's
- * edges, so that sums of positions have no order, and differences are the same a period apart. */
+/* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX lattice edges, so sums
+ * of positions do not depend on the order, and differences are the same a period apart. */
 #define MCOR_POINT_FIX 30
 typedef struct mcor_point
 {
@@ -99,20 +99,21 @@ static inline void mcor_set_state(const mcor_bunches* bunches, int32_t v, int st
     &bunches->of[bunches->of[v].first].state, (unsigned char)state, memory_order_relaxed);
 }
 
-/* Returns vertex v, or the first vertex of the merged bunch that replaced it. */
+/* Returns vertex v; if v is merged, the first vertex of its bunch, which stands for the merged
+ * vertex. */
 static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
 {
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
 }
 
-/* Whether a triangle or line is left: its corners must differ. */
+/* Whether a triangle or line is left after merging: its corners must differ. */
 static inline bool mcor_is_left(const int32_t corner[3], int corners)
 {
   return corner[0] != corner[1] &&
     (corners == 2 || (corner[1] != corner[2] && corner[2] != corner[0]));
 }
 
-/* Finds the corners of a triangle in the mesh. Returns whether it is left. */
+/* Finds the places in the mesh of a triangle's corners. Returns whether the triangle is left. */
 static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
   for (int c = 0; c < 3; ++c)
@@ -122,7 +123,8 @@ static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_
   return mcor_is_left(place, bunches->corners);
 }
 
-/* Sets the place of a vertex, or, for the first vertex of a merged bunch, of the whole bunch. */
+/* Sets the place in the mesh of vertex v; if v is the first vertex of a merged bunch, of all the
+ * bunch's vertices. */
 static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_t place)
 {
   for (int32_t w = v; w >= 0; w = mcor_is_merged(bunches, v) ? bunches->of[w].next : -1)
@@ -134,11 +136,11 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
 /* mcor_compact.c. Appends to the mesh the vertices that begin at `starts`, and corrects them. */
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
-/* mcor_compact_bunch.c. Finds the bunches, and merges those that may be merged whatever happens to
- * other bunches; fills `starts` with them. */
+/* mcor_compact_bunch.c. Finds the bunches, and merges each bunch that can be merged whatever
+ * happens to the others. Fills `starts` with the merged bunches. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
-/* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over;
+/* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over.
  * mcor_move_slivers moves vertices of slivers. */
 mcor_status mcor_take_apart(mcor_bunches* bunches);
 mcor_status mcor_move_slivers(mcor_bunches* bunches);

@@ -16,15 +16,17 @@
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
 
-/* Most edges of a fan; a bunch with more stays apart. */
+/* Most edges of a fan (the triangles around a bunch); a bunch with more edges stays apart. */
 #define MCOR_FAN_LIMIT 48
 
-/* A closed piece keeps at least this number of vertices: 6 of 8 triangles, or 4 of 4 lines. */
+/* Least number of vertices that a closed piece keeps: 6 of a surface, with 8 triangles; 4 of a
+ * closed line. */
 #define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 6 : 4)
 
 /* ---- Nodes ---- */
 
-/* Vertices on the sides of caps and periods stay. side: node coordinates of the sides; -1: none. */
+/* What mcor_key_slice needs. side: node coordinates of the sides of caps and periods, where
+ * vertices stay; -1: none. */
 typedef struct mcor_keying
 {
   const mcor_bunches* bunches;
@@ -32,10 +34,10 @@ typedef struct mcor_keying
   int side[3][4];
 } mcor_keying;
 
-/* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer by
- * linear interpolation; if both are equally near, to the lower end. Neighbouring levels differ by
- * one, so the level's last bit distinguishes them. Vertices on a side, on the border that the node
- * threshold leaves, of cuts, and of caps stay. */
+/* Gives each vertex the key of its node: the end of its edge that is nearer by linear
+ * interpolation; if both are equally near, the lower end. Neighbouring levels differ by one, so the
+ * level's last bit distinguishes them. Vertices stay (MCOR_FROZEN) if they lie on a side, lie on
+ * the border that the node threshold leaves, or belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_keying* keying = data;
@@ -88,7 +90,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   MCOR_THEN(status,
     mcor_parallel_run(
       context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL));
-  /* Freezes vertices beside caps, and holds vertices beside cuts. */
+  /* Freezes the corners of caps. Holds the vertices at the ends of cut edges, because keys of cuts
+   * refer to them. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
@@ -104,7 +107,7 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* Returns the first vertex to which v is joined so far. */
+/* Returns the first of the vertices to which v is joined so far. */
 static int32_t mcor_first_of(mcor_bunch_vertex* of, int32_t v)
 {
   while (of[v].first != v)
@@ -146,7 +149,8 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
 }
 
-/* Lists the triangles of each bunch, each once, by its first corner in the bunch. */
+/* Makes a list of triangles for each bunch. A triangle is listed once for each of its bunches, by
+ * its first corner in the bunch. */
 static void mcor_list_triangles(mcor_bunches* bunches)
 {
   for (int64_t t = 0; t < bunches->triangle_count; ++t)
@@ -166,16 +170,16 @@ static void mcor_list_triangles(mcor_bunches* bunches)
 
 /* ---- Whether they can be merged ---- */
 
-/* The edges opposite to a bunch in its triangles, in their order around it. For lines: one edge
- * from the vertex before the bunch to the vertex behind it. */
+/* The edges opposite to a bunch in the triangles around it. For lines: one edge, from the vertex
+ * before the bunch to the vertex behind it. */
 typedef struct mcor_fan
 {
   int count;
   int32_t from[MCOR_FAN_LIMIT], to[MCOR_FAN_LIMIT];
 } mcor_fan;
 
-/* Finds the fan around a bunch. Returns false if the bunch cannot be contracted to a point, or has
- * no fan. */
+/* Finds the fan around a bunch. Returns false if the bunch cannot be contracted to a point, or if
+ * its fan has too many edges. */
 static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
   const mcor_bunch_vertex* of = bunches->of;
@@ -246,8 +250,8 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return seen == fan->count;
 }
 
-/* Whether a closed piece would keep enough vertices: counts the bunches in triangles around a bunch
- * and around its ring, as if all were merged. */
+/* Whether a closed piece would keep enough vertices: counts a bunch, the bunches of its ring, and
+ * the bunches in triangles around these, as if all were merged. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);
@@ -282,8 +286,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged. all: both with no other bunch merged and with all others merged;
- * else: with the bunches that are merged so far. */
+/* Whether a bunch can be merged. If `all` is set: both with no other bunch merged and with all
+ * others merged. Else: beside the bunches that are merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };
@@ -304,7 +308,8 @@ static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
     (!all || mcor_is_ring(&fan, bunches->corners)) && mcor_is_large(bunches, bunch, &merged);
 }
 
-/* Finds the bunches that are merged whatever happens to the others. */
+/* Merges the bunches that can be merged whatever happens to the others; other bunches become
+ * unsure. */
 static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -319,8 +324,8 @@ static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Chooses unsure bunches that can be merged beside the sure ones. Of two unsure bunches beside each
- * other, only the first may be chosen. */
+/* Chooses unsure bunches that can be merged beside the bunches that are merged already. Of two
+ * unsure bunches beside each other, only the first may be chosen. */
 static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -340,7 +345,7 @@ static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Finds the means of merged bunches. */
+/* Finds where merged vertices start: at the mean of each bunch's vertices. */
 static void mcor_mean_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -50,8 +50,8 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks a triangle's merged bunches as bad: those that did not reach the surface, else all if the
- * triangle is turned over. Marks the widest corner of a sliver. */
+/* Marks merged bunches of a triangle as bad: the ones that did not reach the surface; if all did,
+ * all of them if the triangle is turned over. Marks the widest corner of a sliver. */
 static void mcor_judge_triangle(const mcor_bunches* bunches, int64_t t)
 {
   const cl_int* corner = bunches->triangles + 3 * t;
@@ -92,7 +92,7 @@ static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Takes a bunch apart, and the bunches that lean on it. */
+/* Takes a bunch apart, and so the bunches that were merged only because this one was (`leans`). */
 static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
 {
   const mcor_bunch_vertex* of = bunches->of;
@@ -114,8 +114,8 @@ static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
   }
 }
 
-/* Taking bunches apart can only turn over triangles around these bunches, so each round judges only
- * these triangles again. */
+/* Takes bad bunches apart. This can only turn over triangles around these bunches, so each round
+ * judges only these triangles again. */
 mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   const mcor_bunch_vertex* of = bunches->of;
@@ -145,13 +145,13 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 
 /* ---- Slivers ---- */
 
-/* Farthest start from a vertex's node, in edges; a line from this start ends within
+/* How far from a vertex's node, in edges, a line may start; from there it ends within
  * MCOR_POINT_EXTENT. */
 #define MCOR_FARTHEST_START 2.5
 
 /* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles
- * there. Returns whether the vertex may start in the middle. Of two vertices beside each other,
- * only the first moves. */
+ * around it. Returns whether the vertex may start in this middle. Of two vertices beside each
+ * other, only the first moves. */
 static bool mcor_look_around(const mcor_bunches* bunches, mcor_start* start)
 {
   const mcor_bunch_vertex* of = bunches->of;

@@ -3,8 +3,9 @@
 #ifndef mcor_adaptive_h
 #define mcor_adaptive_h
 
-/* Adaptive cubes: the interface for other phases. Vertices are on edges of their level's lattice;
- * node, offset, gradient and correction are in cells of the level, 2^level cubes long. */
+/* Adaptive cubes: the interface for other phases. A vertex lies on an edge of its level's lattice.
+ * Its node, offset, gradient and correction are in cells of this level, which are 2^level cubes
+ * long. */
 
 #include "mcor_internal.h"
 
@@ -29,9 +30,9 @@ enum
 };
 /* Launch a heavy kernel level by level, with the search grid in cells of each level. The kernel
  * takes MCOR_GRID_PARAMS, then two or three arguments that these functions add, then up to
- * MCOR_MORE_ARGS `more`. At vertices, they add the number of groups of vertices, the groups, and
- * the vertices' nodes. By level, they add the first and the count of the elements [first[l],
- * end[l]); each element has `items` work-items. */
+ * MCOR_MORE_ARGS `more`. mcor_launch_at_vertices adds the number of groups of vertices, the groups,
+ * and the vertices' nodes. mcor_launch_by_level adds the first and the count of the elements
+ * [first[l], end[l]); each element has `items` work-items. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \

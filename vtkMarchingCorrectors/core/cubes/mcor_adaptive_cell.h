@@ -68,8 +68,9 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
   return (step < 3 ? 0 : step < 9 ? 1 : 2) << 5 | lower;
 }
 
-/* Links the slots where a segment cuts off a run of nodes above. The ring is counter-clockwise,
- * seen from outside, so that triangles face the nodes below. */
+/* Links slots in a ring of nodes around a face: one segment cuts off each run of nodes above the
+ * iso value, and leads from the slot before the run to the slot behind it. The ring is
+ * counter-clockwise, seen from outside, so that triangles face the nodes below. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   const int* ring, int count, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {
@@ -203,8 +204,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
   return b * (b - 1) / 2 + a;
 }
 
-/* Finds the third vertex of the triangle that has side a-b, in the part from a to b, and the part's
- * cost without that side. */
+/* Returns the third vertex of the cheapest triangle with side a-b in the loop's part from a to b.
+ * *least: the cost of this part without side a-b. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {
@@ -265,7 +266,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   return total;
 }
 
-/* Takes the loop through a slot out of the links. The loop is empty if the slot has no link. */
+/* Follows the links from a slot until they return, and removes them. The loop is empty if the slot
+ * has no link. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_trace(
   MCOR_TYPE(uint) split, int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
 {

@@ -44,7 +44,7 @@ mcor_status mcor_launch_at_vertices(
   {
     const int level = i / 2, boundary = i % 2;
     const int begin = boundary ? mesh->march_count : 0;
-    /* includes vertices of caps */
+    /* Vertices of caps come last, and count as vertices on the boundary. */
     const int end = boundary ? mesh->vertex_count : mesh->march_count;
     const int* of_levels = mesh->level_first[boundary];
     const int first = level > 0 ? of_levels[level] : begin;

@@ -10,7 +10,7 @@
 /* The first cubes are the smallest that cover the lattice with at most this number of cubes. */
 #define MCOR_FIRST_CUBES 32768
 
-/* Finds the states of the cubes in block_keys, and which of them are inactive. parts: the number of
+/* Finds the states of the cubes in block_keys, and which cubes are inactive. Evaluates the `parts`
  * cubes that were made by dividing; `index` has their places, or is empty if the places are 0, 1,
  * 2, .... The other cubes are kept blocks in larger cubes that are now inactive; these blocks
  * become void, as if they did not exist. */
@@ -37,11 +37,12 @@ static mcor_status mcor_test_cubes(
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Most blocks: if a fourth of them has surface, the triangles reach their own limit. */
+/* Most blocks. If a fourth of so many blocks had surface, the triangles would reach their own
+ * limit. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Replaces the cubes by the parts of active cubes, and, if the parts are blocks, adds the blocks
- * `kept`. *parts: number of parts. */
+/* Replaces the cubes by the parts of the active cubes. If the parts are blocks (level 1), also adds
+ * the blocks `kept`. *parts: number of parts, without `kept`. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
   const mcor_buffer* kept, int kept_count, int* parts)
 {

@@ -2,9 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Derives the cases of Marching Cubes by mcor_adaptive_cell.h: its functions trace loops of
- * segments around a cell without finer cells beside it, and cut the loops into triangles. They
- * avoid diagonals within a face, because the neighbour cell might have the same diagonal, and four
- * triangles would then meet there. Some rows need such diagonals; see mcor_allow_diagonals.
+ * segments around a cell without finer cells beside it, and cut the loops into triangles. The
+ * triangles have no diagonals within a face, because the neighbour cell might have the same
+ * diagonal, and four triangles would then meet in it. Some rows need such diagonals; see
+ * mcor_allow_diagonals.
  *
  * The corners of an ambiguous face are above and below in turn. Either the corners above are cut
  * off, or they are joined and the corners below are cut off. Each of the 256 cases has a row for
@@ -81,9 +82,10 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
   }
 }
 
-/* Allows diagonals between two opposite edges of each ambiguous face. There are two such pairs; the
- * cell below the face may use one, and the cell above the other. The face's lowest corner decides
- * which one. So the three faces around a corner are alike; otherwise few tunnels could be made. */
+/* Allows diagonals between two opposite edges of each ambiguous face. A face has two pairs of
+ * opposite edges: the cell below the face may use one pair, the cell above it the other. Which one
+ * depends on the side of the iso value on which the face's lowest corner lies. So the three faces
+ * around a corner are alike; otherwise few tunnels could be made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
@@ -113,7 +115,7 @@ static void mcor_add_triangles(mcor_cell_row* row, const uint8_t* slots, int tri
   row->triangles = (uint8_t)(row->triangles + triangles);
 }
 
-/* Fills a loop with a disc. */
+/* Adds to a row the triangles of a disc that fills a loop. */
 static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
 {
   mcor_adaptive_loop loop = loops->of[i];
@@ -131,7 +133,8 @@ static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
 
 /* ---- Tunnels ---- */
 
-/* Gives corners the same number in `region` if the cell's surface connects them on their side. */
+/* Gives corners the same number in `region` if they are on the same side of the iso value, and
+ * edges of the cell or joined faces connect them. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
 {
   int pairs[24][2], count = 0;
@@ -181,8 +184,8 @@ static int mcor_side_cost(const mcor_strip* strip, int i, int j)
   return cost;
 }
 
-/* Tries all strips that continue after a steps along the first loop and b steps along the
- * second. */
+/* Tries all ways to continue a strip after a steps along the first loop and b steps along the
+ * second. Keeps the cheapest strip. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
   const mcor_adaptive_loop *first = &strip->first, *second = &strip->second;
@@ -213,7 +216,7 @@ static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
   strip->used[i][j] = 0;
 }
 
-/* Adds the shortest tunnel between two loops. Returns 0 if there is none. */
+/* Adds the cheapest tunnel between two loops to a row. Returns 0 if there is none. */
 static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor_cell_row* row)
 {
   const int limit = 1 << 20;
@@ -231,9 +234,9 @@ static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor
   return strip.best_cost < limit;
 }
 
-/* Finds the pair of loops that a tunnel may connect. The tunnel must join two regions on `side` (1:
- * above), and the region between the loops must be on the other side. Returns 0 unless there is
- * exactly one pair. */
+/* Finds the pair of loops that a tunnel may connect. The tunnel joins two regions on `side` (1:
+ * above the iso value), so the region between the loops must be on the other side. Returns 0 unless
+ * there is exactly one pair. */
 static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* first, int* second)
 {
   int region[8], around[4], pairs = 0;
@@ -256,8 +259,8 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   return pairs == 1;
 }
 
-/* Makes the rows of a case for one set of decisions: `row` fills each loop with a disc; rows with a
- * tunnel go to `to` and following. Returns the number of rows with a tunnel. */
+/* Makes the rows of a case for one set of decisions. In `row`, discs fill all loops. Rows with a
+ * tunnel are written to `to` and following. Returns the number of rows with a tunnel. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

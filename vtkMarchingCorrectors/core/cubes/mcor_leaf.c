@@ -65,8 +65,8 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer));
 }
 
-/* Evaluates the nodes of all slots that are neither known nor certain. Then all nodes have
- * signs. */
+/* Evaluates the nodes of all slots, except for nodes that are known or whose side is certain. Then
+ * finds all nodes' sides of the iso value. */
 static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
   const mcor_options* options = context->run.options;

@@ -19,7 +19,8 @@ static mcor_status mcor_read_int(
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
-/* Finds the used cells in the box and its ring. */
+/* Finds the used cells, through which the surface passes, in the box and in the ring of cells
+ * around it. */
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -103,7 +104,8 @@ static mcor_status mcor_count_edges(mcor_context* context)
 }
 
 /* Writes the vertices, the triangles or lines, and, if mcor_follows_cells, the cell of each
- * triangle or line. Counts the triangles of each level; with a box, only the owned ones. */
+ * triangle or line. Counts the triangles of each level; with a box, only triangles of cells in the
+ * box. */
 static mcor_status mcor_emit(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;

@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of the virtual grid: their values, and on which side of the iso value they are. The nodes
- * above a plane get the sides of the nodes in it. */
+/* Nodes of the virtual grid: their values, and on which side of the iso value they are. In two
+ * dimensions, the nodes above the plane get the sides of the nodes in the plane. */
 
 #include "mcor_adaptive.h"
 
-/* Evaluates all nodes of the bricks whose nodes are needed and not known yet. */
+/* Evaluates the nodes that are needed and not known yet, in all bricks. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -24,8 +24,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Finds the signs of the nodes of bricks with bits in `evaluated`. The values are new, or from an
- * earlier iso value. */
+/* Finds on which side of the iso value nodes are, in the bricks with bits in `evaluated`. The
+ * nodes' values are new, or from an earlier iso value. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   const mcor_brick_data* now = &context->bricks.now;

@@ -3,9 +3,9 @@
 
 /* The paper's seed selection by particle pairs [III-C].
  *
- * The cells on the line between the particles of a pair are marked. From these cells, others are
- * reached through crossed faces, and from one end of a period to the other. Which cells are marked
- * and reached depends on the particles alone. Only bricks with nodes of reached cells are
+ * The cells on the line between the particles of a pair are marked. From the marked cells, others
+ * are reached through crossed faces, and from one end of a period to the other. Which cells are
+ * marked and reached depends on the particles alone. Only bricks with nodes of reached cells are
  * evaluated.
  *
  * Pairs are for comparisons with the paper: all cubes have one size, and one process makes the
@@ -20,7 +20,7 @@ static size_t mcor_count_places(const mcor_context* context)
   return (size_t)context->bricks.block_count * MCOR_BLOCK_BRICKS;
 }
 
-/* Marks the cells between pairs. */
+/* Marks the cells between the two particles of each pair. */
 static mcor_status mcor_mark_pairs(mcor_context* context)
 {
   mcor_pairs* pairs = &context->pairs;
@@ -65,7 +65,7 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
   return mcor_sign_nodes(context, &bricks->need);
 }
 
-/* Adds the periodic images of reached cells. *reached: whether any is new. */
+/* Adds the periodic images of reached cells. *reached: whether any image is new. */
 static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -100,8 +100,8 @@ mcor_status mcor_find_reached(mcor_context* context)
     MCOR_TRY(mcor_place_reached(context, first, &placed));
     if (placed)
     {
-      /* Cells grow only where nodes have right values: in the period, whose particles are on the
-       * device, and in the ring around it. */
+      /* Cells are reached only where nodes have right values: in the period, whose particles are on
+       * the device, and in the ring of cells around the period. */
       MCOR_TRY(mcor_find_neighbours(context));
       MCOR_TRY(
         mcor_fill(context, &pairs->domain, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong)));

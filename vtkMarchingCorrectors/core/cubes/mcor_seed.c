@@ -10,10 +10,10 @@
 #include <float.h>
 #include <math.h>
 
-/* Returns the greatest relative rounding error of a Shepard mean of values that are all on one
- * side. With n particles that reach a point, the errors of the two sums are at most (n + 3) and (n
- * + 1) unit roundoffs of their absolute terms, and the quotient adds one. Particles of 27 cells of
- * each level may reach a point. */
+/* Returns the greatest relative rounding error of a Shepard mean of values that are all on one side
+ * of the iso value. If n particles reach a point, the errors of the mean's two sums are at most (n
+ * + 3) and (n + 1) unit roundoffs of their absolute terms, and the quotient adds one. Particles of
+ * 27 cells of each level may reach a point. */
 double mcor_side_margin(const mcor_context* context)
 {
   const mcor_grid* grid = &context->grid;
@@ -23,7 +23,8 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Requests the bricks that `fresh` nodes of neighbouring bricks require. */
+/* Requests bricks whose states are certain, but different from the side of a `fresh` node beside
+ * them. bricks.found: whether there were any. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -58,8 +59,8 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 
 /* Tests regions. Requests the bricks that stay uncertain, whose cells are the seeds, and lists
  * their regions. Places the requested bricks, and all bricks that are known from earlier iso
- * values. Finds states of the uncertain bricks, and evaluates most of them; but not in a plane,
- * where bounds cost more than a brick's few nodes. */
+ * values. Finds states of the uncertain bricks, and evaluates most of these bricks. Skips this in a
+ * plane, where bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

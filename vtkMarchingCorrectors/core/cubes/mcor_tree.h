@@ -17,8 +17,9 @@
 
 /* mcor_tree_brick.c. Returns the number of bits that are set. */
 int mcor_bit_count(uint64_t bits);
-/* Adds bricks of a cluster, which has the key of its first brick, to a set. Returns false if memory
- * ran out, or, before the sets take much memory, if the leaves would become too many. */
+/* Adds bricks to a set: the mask `bricks` of the cluster whose first brick has this key. Returns
+ * false if memory ran out, or, before the sets take much memory, if the leaves would become too
+ * many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 /* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
@@ -26,7 +27,7 @@ bool mcor_are_too_many(const mcor_brick_set* levels);
 /* Number of bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
-/* Return, from a brick's key, the key of its cluster, and the brick's bit there. */
+/* Return, from a brick's key, the key of its cluster, and the brick's bit in the cluster's mask. */
 static inline uint64_t mcor_cluster_of(uint64_t key)
 {
   return key & ~UINT64_C(0xdb); /* x, y and z have three bits each */
@@ -45,8 +46,8 @@ static inline uint64_t mcor_layers(int axis, int count)
     { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
   return layers[axis][count];
 }
-/* Returns which bricks of a cluster are between `first` and `last`; at least one is. cluster: its
- * first brick. */
+/* Returns the mask of a cluster's bricks between `first` and `last`, which must be at least one.
+ * cluster: the position of the cluster's first brick. */
 static inline uint64_t mcor_bricks_between(
   const int first[3], const int last[3], const int cluster[3])
 {

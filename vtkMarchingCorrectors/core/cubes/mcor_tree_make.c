@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: makes the leaves, which are the parts of split bricks (mcor_tree_split.c) that
- * are not split, too. All ranks know all split bricks, but make leaves only in their box. Leaves
- * are bits of blocks: the parts of a cluster's bricks form a block of the level below. */
+ * are not split themselves. All ranks know all split bricks, but make leaves only in their box.
+ * Leaves are bits of blocks: the parts of a cluster's bricks form a block of the level below. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -50,8 +50,8 @@ static mcor_status mcor_add_block(
   return MCOR_OK;
 }
 
-/* Adds the blocks of one level that have parts of split bricks of the next level, or of their
- * periodic images, and all blocks around these. Together, the blocks have all finer leaves beside
+/* Adds blocks of one level: the ones that have parts of split bricks of the next level, or of these
+ * bricks' periodic images, and all blocks around them. So the blocks have all leaves beside coarser
  * leaves, and all bricks whose nodes leaves need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)

@@ -43,8 +43,8 @@ typedef struct mcor_splitter
   int level, first[3], last[3];
 } mcor_splitter;
 
-/* Returns which of the given bricks of a cluster a particle reaches. Most are farther away along one
- * axis alone. */
+/* Returns the mask of those `bricks` of a cluster that a particle reaches. Most bricks that it does
+ * not reach are too far away along one axis alone. */
 static uint64_t mcor_reached_bricks(
   const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3], uint64_t bricks)
 {
@@ -101,9 +101,10 @@ static bool mcor_split_reached(
   return made;
 }
 
-/* Splits the bricks that one particle reaches. The brick in which it lies is its home. done: keys
- * of homes whose whole neighbourhood is split already; each key has one place. Most particles are
- * in such homes and reach no farther than the neighbourhood, so they are skipped. */
+/* Splits the bricks that one particle reaches. home: the brick in which the particle lies. done:
+ * keys of homes whose neighbours are all split already; a key's place follows from its last bits.
+ * Most particles are in such homes and reach no farther than the neighbours, so they are skipped.
+ * Returns false if the set could not take the bricks. */
 static bool mcor_split_by_particle(
   mcor_tree_job* job, int slice, mcor_splitter* p, uint64_t done[MCOR_BLOCK_BRICKS])
 {

@@ -3,7 +3,7 @@
 #ifndef mcor_cl_h
 #define mcor_cl_h
 
-/* OpenCL: device, programs, buffers, launches. Only mcor_cl_*.c call cl*. */
+/* OpenCL: device, programs, buffers, launches. Only mcor_cl_*.c call OpenCL's functions (cl...). */
 
 #include "mcor.h"
 #include "mcor_opencl.h"
@@ -20,8 +20,8 @@ typedef struct mcor_buffer
   size_t size; /* bytes */
 } mcor_buffer;
 
-/* Memory of the host that a driver has locked, for a mapped buffer of a device that has memory of
- * its own. */
+/* Memory of the host that a driver has locked. A buffer of a device with memory of its own is
+ * mapped by way of it. */
 typedef struct mcor_locked
 {
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
@@ -170,10 +170,10 @@ typedef enum mcor_load
 #define MCOR_LARGE_LAUNCH 65535
 
 /* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
- * names, or else the default. */
+ * names, or else the default. place, count: see mcor_create_shared_context. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Called before each call. If no device was named and the open one lacks the build, opens the best
- * device that has it. release: frees everything on the old device first. */
+/* Called before each call. If the user named no device, and the open one cannot run the build,
+ * opens the best device that can. release: frees everything on the old device first. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
@@ -184,7 +184,8 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds building the missing programs takes; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
-/* Ends the threads that build, after the programs that are under way, and keeps these. */
+/* Waits for the programs that are being built, ends the threads that build, and keeps the programs
+ * that are done. */
 void mcor_end_building(mcor_cl* cl);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* Releases a buffer. A large one is kept for the next request of about its size: the first touch
@@ -195,7 +196,7 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer);
 void mcor_drop_kept(mcor_context* context, int64_t most);
 /* Frees the locked memory that is not in use. */
 void mcor_drop_locked(mcor_context* context);
-/* Called where a call begins: keeps no more than the last call needed. */
+/* Called when a call begins: frees kept buffers beyond what the last call needed. */
 void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
@@ -223,7 +224,7 @@ mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, 
 /* Fills only the bytes [first, last). */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
-/* Gives one buffer's memory to another one; the first is then empty. */
+/* Moves the memory of buffer `from` to `to`; `from` is then empty. */
 void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to);
 /* Makes room for `bytes`, keeping the first `old` bytes. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);

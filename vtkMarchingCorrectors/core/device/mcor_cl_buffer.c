@@ -177,9 +177,9 @@ mcor_status mcor_read(
   return MCOR_OK;
 }
 
-/* Takes the smallest unused memory with enough room; if there is none, makes the largest larger. A
- * driver locks pages when a buffer is mapped for the first time, which takes 25 times as long as
- * the copy (H100: 0.57 and 0.02 ms for each MiB). Memory that is kept here stays locked. */
+/* Takes the smallest unused memory with enough room; if no memory is large enough, enlarges the
+ * largest. A driver locks pages when a buffer is mapped for the first time, which takes 25 times as
+ * long as the copy (H100: 0.57 and 0.02 ms for each MiB). Memory that is kept here stays locked. */
 static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_locked** taken)
 {
   mcor_cl* cl = &context->cl;
@@ -292,8 +292,8 @@ mcor_status mcor_unmap_all(
   return status;
 }
 
-/* Returns the bytes to fill or copy between two progress reports: about 10 ms of untouched
- * memory. */
+/* Returns how many bytes to fill or copy between two progress reports. So many bytes of untouched
+ * memory take about 10 ms. */
 static size_t mcor_step_of(size_t bytes)
 {
   const size_t most = (size_t)1 << 25;

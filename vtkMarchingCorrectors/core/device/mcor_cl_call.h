@@ -3,7 +3,7 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* Only for the files mcor_cl_*.c, which call OpenCL. It also says what is special about some
+/* Only for the files mcor_cl_*.c, which call OpenCL. Also tells what is special about some
  * drivers. */
 
 #include "mcor_internal.h"
@@ -42,14 +42,15 @@ mcor_status mcor_open_profile(mcor_context* context);
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes);
-/* Counts one more command in the profile. host, device: seconds. event: gives more seconds of the
- * device when the command is done, and is released then; or NULL. */
+/* Counts one more command in the profile. host, device: seconds. event: NULL, or the event that
+ * tells more seconds of the device when the command is done; the profile then releases it. */
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
   int64_t bytes, double host, double device, cl_event event);
 /* Returns the seconds between start and end of a command; -1: the driver does not tell. */
 double mcor_event_seconds(cl_event event);
 
-/* Tries a command. `call` has MCOR_EVENT as its event: NULL, unless there is a profile. */
+/* Runs an OpenCL command, and counts it in the profile if there is one. `call` passes MCOR_EVENT as
+ * its event, which is NULL without a profile. */
 #define MCOR_CL_COMMAND(context, command, name, bytes, call, what)                                 \
   do                                                                                               \
   {                                                                                                \
@@ -79,7 +80,8 @@ static inline bool mcor_is_pocl(const char* platform_name)
   return strcmp(platform_name, "Portable Computing Language") == 0;
 }
 
-/* Returns a variable of the environment that only tests set; other builds do not read it. */
+/* Returns a variable of the environment that only tests set. Builds without tests do not read it,
+ * and return NULL. */
 static inline const char* mcor_test_setting(const char* name)
 {
 #ifdef MCOR_TESTING

@@ -25,8 +25,8 @@ typedef struct mcor_device_list
   } of[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
 
-/* Lists the devices, the built-in one first. Drivers are left out where listing them would end
- * the process, as PoCL does if it cannot start its threads. */
+/* Lists the devices, the built-in one first. drivers: also lists devices of drivers, unless listing
+ * them would end the process, as PoCL does if it cannot start its threads. */
 static void mcor_find_devices(mcor_device_list* list, bool drivers)
 {
   cl_platform_id platforms[MCOR_PLATFORM_LIMIT] = { mcor_native_platform() };
@@ -165,7 +165,7 @@ static void mcor_query_device(mcor_cl* cl)
     cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof cl->width, &cl->width, NULL);
   cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && cl->width > 1;
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
-   * when they are launched. So it gains nothing from parts. */
+   * when they are launched. So it gains nothing if programs are built in parts. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
   /* A CPU that works as a GPU counts as apart, so that tests reach the code for such devices,
    * too. */
@@ -175,9 +175,9 @@ static void mcor_query_device(mcor_cl* cl)
   cl->units = (int)units;
 }
 
-/* Lets `count` processes take in turn the devices that are like the chosen one. Returns the
- * device of process *place; *place and *count then count the processes that take the same
- * device. */
+/* Distributes `count` processes over the devices that are like the chosen one. Returns the device
+ * of process *place. *place and *count become this process's number, and the number of processes,
+ * on this device. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
   int like[MCOR_DEVICE_LIMIT], n = 0;
@@ -195,9 +195,9 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
   return like[turn];
 }
 
-/* Divides a CPU among `count` processes, of which this one is number `place`. A driver that
- * cannot be divided gives all of the CPU to each process. A share of the built-in device is a
- * number of threads. */
+/* Divides a CPU among `count` processes, of which this one is number `place`. If the driver cannot
+ * divide the CPU, each process uses all of it. A share of the built-in device is a number of
+ * threads. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {
   cl_uint units = 1, parts = 0;
@@ -289,8 +289,8 @@ static mcor_status mcor_start_device(
   return MCOR_OK;
 }
 
-/* Returns a sentence about drivers that were not listed, to follow another sentence; "" if all
- * were. */
+/* Returns a sentence, to follow another sentence, about drivers that were not listed; "" if all
+ * were listed. */
 static const char* mcor_driver_fault(const mcor_device_list* list)
 {
   return list->drivers_fail
@@ -315,7 +315,7 @@ static mcor_status mcor_fail_without_device(
     context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_DEVICE), MCOR_POCL_HINT, mcor_driver_fault(list));
 }
 
-/* Starts the best device for a build, where none was named. */
+/* Starts the best device for a build if the user named none. */
 static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {

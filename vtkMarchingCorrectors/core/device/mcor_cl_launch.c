@@ -80,8 +80,8 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
   32 /* while a kernel's time is unknown, its first part is the limit divided by this number */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
-/* Launches `count` work-items from `offset` on. Drivers compile a kernel anew at its first
- * launch with few or many items, from 0 or from elsewhere; the built-in device compiles nothing. */
+/* Launches `count` work-items from `offset` on. Drivers may compile a kernel once more for many
+ * items, and once more for items that do not begin at 0. The built-in device compiles nothing. */
 static mcor_status mcor_enqueue_part(
   mcor_context* context, mcor_kernel* kernel, size_t offset, size_t count, size_t group)
 {

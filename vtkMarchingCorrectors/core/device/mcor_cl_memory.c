@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Arrays in OpenCL buffers of the caller's. The host checks and measures particles, so it maps the
+/* Arrays in OpenCL buffers of the caller. The host checks and measures particles, so it maps the
  * buffers by queues in the buffers' own contexts. It copies arrays that have other bytes between
  * values, or do not begin at a multiple of their numbers' size. */
 
@@ -9,7 +9,7 @@
 #include "mcor_cl_call.h"
 #include "mcor_input.h"
 
-/* A buffer of the caller's that the host sees. */
+/* A buffer of the caller that the host sees. */
 typedef struct mcor_seen
 {
   cl_command_queue queue;

@@ -3,7 +3,7 @@
 #ifndef mcor_cl_memory_h
 #define mcor_cl_memory_h
 
-/* Inputs with arrays in OpenCL buffers of the caller's, see mcor_array.memory. */
+/* Inputs with arrays in OpenCL buffers of the caller, see mcor_array.memory. */
 
 #include "mcor.h"
 

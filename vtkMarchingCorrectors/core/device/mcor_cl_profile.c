@@ -92,7 +92,7 @@ double mcor_event_seconds(cl_event event)
   return known ? 1e-9 * (double)(end - start) : -1;
 }
 
-/* Takes the times of commands that are done. */
+/* Adds the device's seconds of pending commands to their rows, and releases the events. */
 static void mcor_take_events(struct mcor_profile* profile)
 {
   for (int64_t i = 0; i < profile->pending.count; ++i)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's objects, memory, programs and kernels, as far as mcor_cl_*.c ask for
- * them. A buffer is memory of the host, and a command queue is always empty. */
+/* The built-in device's objects, memory, programs and kernels: what mcor_cl_*.c use of OpenCL. A
+ * buffer is memory of the host. A command queue is always empty. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
@@ -91,7 +91,7 @@ static int mcor_units(void)
   return mcor_limit_threads(mcor_processors(1));
 }
 
-/* Answers a query with `size` bytes at `from`. */
+/* Answers a query of OpenCL with the `size` bytes at `from`. */
 static cl_int mcor_answer(const void* from, size_t size, size_t room, void* to, size_t* needed)
 {
   if (needed)
@@ -164,7 +164,7 @@ static cl_int mcor_device_info(
 
 /* ---- Objects ---- */
 
-/* Defines the release of a type whose objects own nothing else. */
+/* Defines a function that releases objects of a type which own no other memory. */
 #define MCOR_RELEASE_ALONE(name, type)                                                             \
   static cl_int name(type object)                                                                  \
   {                                                                                                \
@@ -175,7 +175,8 @@ MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
-/* Makes an object, all zero but for its table; NULL and the error if memory ran out. */
+/* Makes an object that is zero, except for its table. Returns NULL and sets *error if memory ran
+ * out. */
 static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);

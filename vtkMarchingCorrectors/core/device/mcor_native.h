@@ -21,8 +21,8 @@ typedef enum mcor_instructions
   MCOR_INSTRUCTIONS_V4
 } mcor_instructions;
 
-/* Runs the work-items [first, last) of kernel `number` of a program; arguments: pointers to its
- * arguments. */
+/* Runs the work-items [first, last) of kernel `number` of a program; arguments: pointers to the
+ * kernel's arguments. */
 typedef void mcor_native_run(unsigned number, void* const* arguments, size_t first, size_t last);
 typedef struct mcor_native_program
 {
@@ -35,7 +35,7 @@ typedef struct mcor_native_program
   const char *kernels, *arguments;
 } mcor_native_program;
 
-/* Made by the build. */
+/* All compiled programs; the build makes this list. */
 extern const mcor_native_program mcor_native_programs[];
 
 /* mcor_native_program.c. Returns the best instruction set of this processor and system for which
@@ -45,7 +45,8 @@ int mcor_best_instructions(void);
  * none. */
 const mcor_native_program* mcor_find_program(const char* options);
 
-/* Returns NULL where this processor has none of the instruction sets. */
+/* Returns the built-in device's platform; NULL if this processor has none of the instruction
+ * sets. */
 cl_platform_id mcor_native_platform(void);
 /* Returns the threads of a context; these may be fewer than the device's units. */
 mcor_pool* mcor_native_pool(cl_context context);

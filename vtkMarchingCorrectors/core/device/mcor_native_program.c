@@ -24,7 +24,7 @@ static mcor_instructions mcor_ask_processor(void)
   {
     return MCOR_INSTRUCTIONS_BASE;
   }
-  /* The registers that the system saves for each thread. */
+  /* Reads which registers the system saves for each thread. */
   __asm__ volatile("xgetbv" : "=a"(state), "=d"(rest) : "c"(0));
   if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || !MCOR_HAS(state, 0x06u) ||
     !MCOR_HAS(b, bmi_avx2_bmi2))

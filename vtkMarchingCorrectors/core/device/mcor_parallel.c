@@ -176,7 +176,7 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
   }
 }
 
-/* asks: whether the context's progress callback is asked, and may cancel. */
+/* Runs the body for all slices. asks: the context's progress callback is asked, and may cancel. */
 static mcor_status mcor_run_loop(mcor_context* context, bool asks, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices)
 {

@@ -15,8 +15,8 @@
 
 #define MCOR_SLICES 32 /* at most */
 
-/* The number of elements that is worth starting a thread (about 30 us): elements that take 10 ns,
- * 1 ns, or the time to read them from memory. */
+/* The least number of elements for which starting a thread (about 30 us) is worth it: of elements
+ * that take 10 ns, that take 1 ns, or that are only read from memory. */
 #define MCOR_HEAVY_GRAIN 8192
 #define MCOR_LIGHT_GRAIN 65536
 #define MCOR_MEMORY_GRAIN 262144
@@ -24,33 +24,34 @@
 /* Treats elements [first, last) of a loop. */
 typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t last);
 
-/* Runs the body once for every slice of [0, count), in any order, in several threads, and waits
- * for all. Slices depend on `count` and `grain` (their least size) alone; so a loop that sums by
- * slice, and then over slices in order, has the same result with any number of threads. Returns
- * the number of slices. context: its threads are used, but it is not asked whether to go on;
- * NULL: threads are made for this loop. */
+/* Runs the body once for every slice of [0, count), in any order, in several threads, and waits for
+ * all. Slices depend on `count` and `grain` (their least size) alone; so a loop that sums by slice,
+ * and then over slices in order, has the same result with any number of threads. Returns the number
+ * of slices. context: its threads are used, but its progress callback is not asked; NULL: threads
+ * are made for this loop. */
 int mcor_parallel_for(
   mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
-/* Runs the body within a call. A call may be cancelled between slices; then some slices do not run.
- * *slices becomes the number of all slices, unless it is NULL. A context that is NULL, or not in a
- * call, is not asked. A body must not use loops or launches of the same context. */
+/* Runs the body as mcor_parallel_for does, but asks the context's progress callback, which may
+ * cancel the call; then some slices do not run. *slices becomes the number of all slices, unless it
+ * is NULL. Nobody is asked if the context is NULL or not in a call. A body must not use loops or
+ * launches of the same context. */
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices);
 
-/* Returns how many of the processors that the calling thread may use are for one of `count`
- * processes; at least 1. */
+/* Returns how many processors one process may use if `count` processes share the processors that
+ * the calling thread may use; at least 1. */
 int mcor_processors(int count);
 
 /* Returns how many threads to use on `usable` processors. If MCOR_THREADS in the environment is a
- * number above 0, it is the most. */
+ * number above 0, no more than this number are used. */
 int mcor_limit_threads(int usable);
 
 /* Treats elements [first, last) of a loop without slices. */
 typedef void mcor_pool_body(void* data, size_t first, size_t last);
 
 /* Threads that sleep until there is a loop to share with the thread that runs it. They are created
- * when a loop needs them; all zero but for `threads`: none exists yet. */
+ * when a loop needs them. A pool that is all zero, except for `threads`, has none yet. */
 typedef struct mcor_pool
 {
   int threads;    /* the most threads, the calling one included; 0: not decided */
@@ -69,9 +70,9 @@ typedef struct mcor_pool
   size_t last, step;
 } mcor_pool;
 
-/* Runs the body for the elements [first, last), `step` at a time, in any order, and waits for
- * all. Every thread computes with C's default rounding and denormal numbers, whatever the caller
- * has set. context: as above. */
+/* Runs the body for the elements [first, last), `step` at a time, in any order, and waits for all.
+ * Every thread computes with C's default rounding and denormal numbers, whatever the caller has
+ * set. context: its progress callback is asked between steps; may be NULL. */
 mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
   size_t step, mcor_pool_body* body, void* data);
 /* Ends the threads of a pool, which is then all zero. */

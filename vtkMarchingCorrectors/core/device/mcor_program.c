@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compilers take long. So a program holds little that a run does not need, and kernels that do not
- * depend on the SPH kernel, the field or solids are compiled once for all of these. */
+/* Compilers take long. Therefore a program holds little that a run does not need. Kernels that do
+ * not depend on the SPH kernel, the field or solids are compiled once for all of these. */
 
 #include "mcor_program.h"
 #include "mcor_internal.h"

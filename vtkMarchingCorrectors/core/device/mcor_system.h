@@ -33,9 +33,9 @@ typedef void (*mcor_function)(void);
 bool mcor_system_bears_drivers(void);
 mcor_function mcor_system_opencl(void);
 
-/* Compiles a function of long loops twice, the second time for processors with AVX2, where the
- * loader can choose: about half as many instructions. The bits are the same, as every operation is
- * rounded by itself. Sanitizers are not ready when the loader chooses. */
+/* Compiles a function of long loops twice, the second time for processors with AVX2, if the loader
+ * can choose: this saves about half of the instructions. The bits are the same, as every operation
+ * is rounded by itself. Sanitizers are not ready when the loader chooses. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&       \
   !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define MCOR_VECTOR_LOOPS __attribute__((target_clones("avx2", "default")))

@@ -3,7 +3,7 @@
 #ifndef mcor_table_h
 #define mcor_table_h
 
-/* A hash table from keys to values other than 0. All zero: empty. */
+/* A hash table from keys to values other than 0. A table that is all zero is empty. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,15 +20,15 @@ typedef struct mcor_table
   size_t capacity, count;
 } mcor_table;
 
-/* Returns 0 where the key is missing. */
+/* Returns the key's value; 0 if the key is missing. */
 uint64_t mcor_table_find(const mcor_table* map, uint64_t key);
-/* Returns the place of the key's value; it is 0 if the key is new, and must be set before the
- * table is used again. NULL: memory ran out. */
+/* Returns the place of the key's value. The value is 0 if the key is new, and must be set before
+ * the table is used again. NULL: memory ran out. */
 uint64_t* mcor_table_add(mcor_table* map, uint64_t key);
 void mcor_table_free(mcor_table* map);
 
-/* For tables of numbers from 0 on. Returns the key's number, which becomes `number` if the key
- * is new. -1: memory ran out. */
+/* For tables whose values are numbers from 0 on. Returns the key's number; a new key gets `number`.
+ * -1: memory ran out. */
 int32_t mcor_table_number(mcor_table* map, uint64_t key, int32_t number);
 /* Returns the key's number; -1: it has none. */
 int32_t mcor_find_number(const mcor_table* map, uint64_t key);

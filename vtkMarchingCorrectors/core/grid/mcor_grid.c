@@ -16,8 +16,8 @@
  * as long, with 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
-/* The most cells of a level along an axis, so that keys of all levels stay below 2^62. If particles
- * are so far apart, far fewer cells are as good. */
+/* The most cells of a level along an axis, so that keys of all levels stay below 2^62. A level that
+ * would need more cells has hardly any particles in each, so that larger cells are as good. */
 #define MCOR_CELL_LIMIT (1 << 19)
 
 /* Divides an axis into cells of a level. A cell is `cell` cubes long, or a little longer if whole
@@ -43,8 +43,9 @@ static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell,
   level->cells[axis] = ((int)((last - side) / period) + 2) * cells + 1;
 }
 
-/* Makes one level for each factor of 2 of support radius that occurs, and renumbers
- * staging->level. Returns the number of search cells of all levels. */
+/* Makes a level of the search grid for each factor of 2 between support radii that occurs, and
+ * renumbers the particles' levels, staging->level. Returns the number of search cells of all
+ * levels. */
 static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
@@ -163,7 +164,7 @@ static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket, so keys are not needed. The scalar takes their memory next. */
+    /* Each cell has a bucket, so keys are not needed. The scalar's values take their memory. */
     mcor_release(context, &context->stage.values);
     context->stage.values = grid->cell_keys;
     grid->cell_keys = (mcor_buffer){ 0 };
@@ -347,8 +348,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
 }
 
 /* Chooses A0, the shift of the scalar. A Shepard mean shifts with its values, so A - A0, with A0
- * near most values, keeps the digits of a scalar with a large offset, and of one with a few huge
- * peaks. */
+ * near most values, keeps the digits of a scalar with a large offset or a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Groups the points where the field is evaluated; the points of a group share a gather. */
+/* Groups the points where the field is evaluated. The particles around a group are gathered once
+ * for all its points. */
 
 #include "mcor_internal.h"
 
@@ -20,7 +21,7 @@ mcor_status mcor_make_groups(
     MCOR_INT(count), MCOR_BUFFER(&points->flags), MCOR_BUFFER(&points->groups));
 }
 
-/* Makes room for points and for the field there. */
+/* Makes room for points and for the field at these points. */
 mcor_status mcor_reserve_points(mcor_context* context, mcor_field_points* points, size_t count)
 {
   const size_t reals = count * context->cl.real_size;
@@ -31,7 +32,7 @@ mcor_status mcor_reserve_points(mcor_context* context, mcor_field_points* points
   return mcor_reserve(context, &points->weight, reals);
 }
 
-/* Cuts points [first, first + count) into groups, and evaluates the field there. */
+/* Cuts points [first, first + count) into groups, and evaluates the field at them. */
 mcor_status mcor_evaluate_points(
   mcor_context* context, const mcor_field_points* points, int first, int count, int* group_count)
 {
@@ -43,8 +44,8 @@ mcor_status mcor_evaluate_points(
     MCOR_INT(0), MCOR_INT(0), MCOR_BUFFER(&points->value), MCOR_BUFFER(&points->weight));
 }
 
-/* Sorts the points of a batch by place, points outside of all bricks last, and cuts the other
- * points (`inside`: how many) into groups. */
+/* Sorts the points of a batch by place, with points outside of all bricks last. Cuts the first
+ * `inside` points into groups. */
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count)
 {

@@ -87,8 +87,8 @@ mcor_status mcor_sort(
   const int segments = mcor_segments(context, count);
   const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
   const size_t n = (size_t)count;
-  /* The bits that one round treats: the fewest rounds possible, of about equal size, with a
-   * histogram no larger than the sorted array. */
+  /* Chooses how many bits one round treats: rounds are as few as possible and of about equal size,
+   * and the histogram is no larger than the sorted array. */
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
   while (most > 8 && segments << most > count)
   {
@@ -169,7 +169,8 @@ mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int c
   return MCOR_OK;
 }
 
-/* Most buckets for `keys` keys: memory stays linear in the keys, however sparse these are. */
+/* Most buckets for `keys` keys: memory stays proportional to the number of keys, however far apart
+ * their values are. */
 uint64_t mcor_most_buckets(int keys)
 {
   const uint64_t most = 4 * (uint64_t)keys + (1 << 20);

@@ -245,7 +245,7 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
 #define MCOR_SINC_A(q) fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0)
 #define MCOR_SINC_FIRST(last, before) realv p = MCOR_FMA((real)last, t, (real)before);
 #define MCOR_SINC_NEXT(c) p = MCOR_FMA(p, t, (real)c);
-/* _D also computes d = p'; _E also d = p' and e = p'' / 2. */
+/* Macros with _D also compute d = p'; macros with _E also d = p' and e = p'' / 2. */
 #define MCOR_SINC_FIRST_D(last, before)                                                            \
   realv d = (realv)(real)last;                                                                     \
   MCOR_SINC_FIRST(last, before)

@@ -68,7 +68,7 @@ void mcor_move_period(mcor_options* options)
  * a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
-/* The margin of a probe's points: rounding moves particles by less. */
+/* The margin of a probe's points, in cubes: rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
 
 /* Greatest distance between the particles of a pair, in smoothing lengths, rounded up. */
@@ -90,9 +90,9 @@ double mcor_box_slack(const mcor_options* options)
 #define MCOR_NO_SIDE (1 << 30)
 
 /* Writes the sides of the box from `low` to `high` in halves of a cube: centres of cells of all
- * levels are whole numbers of halves. With several levels, a side is infinite, or at the period's
- * end, if `sides` is NULL or if it is the lattice's side, because large cells stick out of the
- * lattice. */
+ * levels are whole numbers of halves. With several levels, large cells stick out of the lattice.
+ * Therefore, if `sides` is NULL, or a side is the lattice's, the side is put at the period's end,
+ * or at infinity. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
@@ -273,9 +273,9 @@ double mcor_reach_around(
 {
   /* A volume depends on all particles within the particle's own, unscaled support. */
   const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
-  /* The support of the nearest particle may end before the box, but the particle is nearer than the
-   * particles that reach the box. The same is true for the other particle of a pair, which is
-   * within a smoothing length. */
+  /* A particle that is the nearest one may not reach the box, but it is nearer than the particles
+   * that reach the box. The other particle of a pair may not reach the box either, but it is within
+   * a smoothing length. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
   /* A widening factor depends on sums with widened supports, at the particle and at the particles

@@ -11,13 +11,14 @@
 /* mcor_lattice.c. Lays the virtual grid over all that the particles' supports reach. */
 mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options);
 
-/* Limits the cells along an axis, [side[0], side[1]), to the cells of the box; NULL: all. */
+/* Limits the cells along an axis, [side[0], side[1]), to the cells of the box. sides NULL: there is
+ * no box, and all cells stay. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
 /* Finds the cells that the call owns. The lattice must be known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* The box in which particles, or their images whole periods away, are needed; for staging. In cubes
+/* Where particles, or their images whole periods away, must be for the call to need them. In cubes
  * from the lattice's origin. */
 typedef struct mcor_reach_box
 {
@@ -41,16 +42,16 @@ typedef struct mcor_images
 /* Returns the distance from the box up to which a particle is needed, from its kernel's length and
  * its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells whose particles need sums. Returns false if all particles need them. Only one
- * image of a particle counts: the image in the period, or on the period's upper side if the lower
- * side is not in the box. */
+/* Finds the cells [first, last) whose particles need sums, for mcor_derive and mcor_widen. Returns
+ * false if all particles need sums. Only one image of a particle counts: the image in the period,
+ * or on the period's upper side if the lower side is not in the box. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* Finds where particles are needed. Returns false if they are needed everywhere. */
 bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach);
-/* Returns a position in the device's units; with a period, it is rounded as on the device, and
- * moved into the first period. */
+/* Returns a position in the device's units. With a period, the position is rounded as on the
+ * device, and moved into the first period. */
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
 /* Lists the images that are needed; returns their number. */
 int mcor_list_images(
@@ -73,7 +74,7 @@ int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
  * most this far from the box. */
 double mcor_box_slack(const mcor_options* options);
 /* Returns the ring with adaptive cubes, in cells of each level. A wide ring counts double, because
- * the cells between may be larger. */
+ * larger cells may lie between it and the box. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
@@ -98,8 +99,8 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
 
 /* Output: makes room for the keys and flags of `more` triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
-/* Sets the key of a triangle of the surface, an iso value's number and a cell or square, and whether
- * this call owns it. */
+/* Sets the key of a surface's triangle, made of the iso value's number and the triangle's cell or
+ * square, and whether this call owns the triangle. */
 void mcor_keep_cell(
   mcor_context* context, mcor_surface* surface, int64_t triangle, int number, uint64_t cell);
 mcor_status mcor_crop_surface(

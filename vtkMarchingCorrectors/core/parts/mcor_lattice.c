@@ -54,7 +54,8 @@ static int64_t mcor_count_cubes(
   return 0;
 }
 
-/* Finds edges that divide the periods and are at most a cube long; if possible, all are equal. */
+/* Finds edges that divide the periods and are at most a cube long. If possible, all edges are
+ * equal. */
 static mcor_status mcor_fit_edges(
   mcor_context* context, const double length[3], int axis, double cube, double edge[3], int* top)
 {
@@ -184,8 +185,8 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
   /* spared: the least number of trailing zeros of an edge as a fixed-point number. Nodes need as
-   * many as particles with the longest supports have, and enough for a double to hold the nodes
-   * exactly. */
+   * many zeros as particles with the longest supports have, and so many that a double holds the
+   * nodes exactly. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
@@ -292,8 +293,7 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
   MCOR_FAIL_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
     MCOR_SAY(GRID_TOO_LONG_AT_ALL), cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  /* Adaptive cubes need the last bit, too: with very different smoothing lengths, lattices are
-   * long. */
+  /* Adaptive cubes use one bit more, because lattices are long if smoothing lengths differ much. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
   while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {

@@ -38,8 +38,8 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Sums over slices of the triangles; they are exact, like the sums over parts. Without `sums`, the
- * largest terms alone are wanted, which decide the sums' units. */
+/* Sums over slices of the triangles; they are exact, like the sums over parts. If `sums` is false,
+ * only the largest terms are wanted; these decide the units of the sums. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;
@@ -69,7 +69,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     mcor_subtract(c[1], c[0], u);
     mcor_subtract(c[2], c[0], v);
     mcor_cross(u, v, n);
-    /* The volume is between the triangle and the origin. */
+    /* Volume of the tetrahedron between the triangle and the origin. */
     const double area = 0.5 * sqrt(mcor_dot(n, n)), volume = mcor_dot(c[0], n) / 6;
     found.area_most = area > found.area_most ? area : found.area_most;
     found.volume_most = fabs(volume) > found.volume_most ? fabs(volume) : found.volume_most;
@@ -86,8 +86,8 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->slices[slice] = found;
 }
 
-/* Finds the largest terms of all slices, or, with the largest terms of all parts, the sums. context:
- * NULL outside of a call. */
+/* Finds the largest terms of all slices; or the sums, for which `measures` must have the largest
+ * terms of all parts. context: NULL outside of a call. */
 static mcor_status mcor_measure_slices(mcor_context* context, const mcor_surface* surface,
   const int64_t* numbers, bool sums, mcor_measures* measures)
 {
@@ -128,8 +128,8 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* Volumes count from one of the points, because coordinates may be large. mcor_plane.c
- * measures lines. */
+/* Measures volumes from one of the points, because coordinates may be large. mcor_plane.c measures
+ * lines. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .triangle_count = surface->triangle_count };
@@ -152,9 +152,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 /* Triangles between two progress reports. */
 #define MCOR_NORMAL_STEP (1 << 18)
 
-/* Makes normals from triangles: at all points of a preview, or if the caller wants it; else only
- * where the gradient vanishes. The cross product weights each triangle by its area. Runs on one
- * thread: the order in which a point's triangles are added must not change. */
+/* Makes normals from triangles: at all points in a preview, or if the caller wants this; else only
+ * where the gradient vanishes. Each triangle counts by its area, as its cross product does. Runs on
+ * one thread: the order in which a point's triangles are added must not change. */
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;

@@ -42,8 +42,8 @@ struct mcor_cap_points
   mcor_buffer eigenvalues;
 };
 
-/* Adds a point at an offset (NULL: 0) from a node; evaluates the batch if it is full. All zero but
- * for `take` and `data`: no points yet. */
+/* Adds a point to the batch, at an offset (NULL: 0) from a node. Evaluates the batch if it is full.
+ * `points` that are all zero, except for `take` and `data`, hold no point yet. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
 /* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if that
@@ -75,7 +75,8 @@ static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
 
 /* ---- mcor_cap_nodes.c: the nodes where caps may be ---- */
 
-/* Corners of a square; side k goes from corner k to the next one. */
+/* Return where corner k of a square is, 0 or 1 along the square's two axes. Side k goes from corner
+ * k to the next corner. */
 static inline int mcor_corner_u(int k)
 {
   return (k + 1) >> 1 & 1;
@@ -97,7 +98,8 @@ typedef struct mcor_cap_brick
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* By lowest nodes: which cells are used; which ambiguous faces join their nodes above. */
+  /* Masks by lowest node: the used cells; the ambiguous faces whose nodes above the iso value are
+   * joined. */
   cl_ulong used, joined[3];
 } mcor_cap_brick;
 
@@ -172,7 +174,7 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 /* ---- mcor_cap_make.c: the squares ---- */
 
 /* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim
- * margin (above 0: it remains). */
+ * margin (above 0: trimming leaves the corner). */
 typedef struct mcor_cap_corner
 {
   int32_t vertex;
@@ -229,16 +231,18 @@ typedef mcor_status (*mcor_clip_side)(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
 typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corners, int count);
 /* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
- * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The most
- * corners are a square's nodes and the vertices of the two lines beside a band. */
+ * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. A polygon
+ * has the most corners if it has a square's nodes and the vertices of the two lines beside a
+ * band. */
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);
-/* Finds the cut with this key, or makes the vertex, where a linear margin would be 0 between two
- * corners; in a plane, it is to be placed exactly. cut->vertex: its index. */
+/* Finds the cut vertex with this key. If there is none, makes it where a linear trim margin would
+ * be 0 between two corners; in a plane, mcor_place_cap_cuts then moves it. cut->vertex: its
+ * index. */
 mcor_status mcor_find_cap_cut(mcor_cap_job* job, uint64_t key, const mcor_cap_corner* low,
   const mcor_cap_corner* high, mcor_cap_vertex vertex, mcor_cap_corner* cut);
-/* Moves the cuts to where the trim margin is 0. */
+/* Moves the cuts in a plane to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
 void mcor_free_cap_job(mcor_cap_job* job);
 

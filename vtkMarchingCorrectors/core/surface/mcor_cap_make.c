@@ -35,7 +35,8 @@ static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
   }
 }
 
-/* Finds the index of the vertex with this key, or makes the vertex, at a place. */
+/* Finds the index of the vertex with this key. If there is none, makes the vertex at the place
+ * `at`, in cubes. */
 static mcor_status mcor_find_cap_vertex(mcor_cap_job* job, mcor_table* map, uint64_t key,
   const double at[3], mcor_cap_vertex vertex, int32_t* index)
 {
@@ -50,8 +51,8 @@ static mcor_status mcor_find_cap_vertex(mcor_cap_job* job, mcor_table* map, uint
   return MCOR_OK;
 }
 
-/* Returns the place on a line at which a linear margin would be 0 between the bracket's ends; or
- * their middle. */
+/* Returns the place on a line where a cut is tried next: where a linear margin between the
+ * bracket's ends would be 0; or, if `halves` is set, the middle between these ends. */
 static double mcor_cut_place(const mcor_cap_line* line, bool halves)
 {
   const double* margin = line->margin;
@@ -82,7 +83,7 @@ mcor_status mcor_find_cap_cut(mcor_cap_job* job, uint64_t key, const mcor_cap_co
 
 /* ---- Corners of a square ---- */
 
-/* Returns a vertex whose key is the next of the square under way. */
+/* Returns a vertex with the next key of the square that is being cut. */
 static mcor_cap_vertex mcor_next_cap_vertex(mcor_cap_job* job, uint8_t flag)
 {
   return (mcor_cap_vertex){ .flag = flag, .key = { job->number, ++job->lookups } };
@@ -238,8 +239,8 @@ mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count,
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a square to the cap. above, margin: of its nodes. apart: its two
- * nodes above, at opposite corners, are in polygons of their own. */
+/* Adds what trimming leaves of a square to the cap. above, margin: of the square's nodes. apart:
+ * the two nodes above, at opposite corners, are in two polygons. */
 static mcor_status mcor_add_cap_square(
   mcor_cap_job* job, const bool above[4], const double margin[4], bool apart)
 {
@@ -321,7 +322,8 @@ static mcor_status mcor_visit_cap_square(
 
 /* ---- Moving cuts ---- */
 
-/* Most steps. They suffice, because every fourth step halves the bracket. */
+/* The most steps in which a cut moves. They suffice, because every fourth step halves the
+ * bracket. */
 #define MCOR_PLACE_STEPS 100
 /* With a margin below this, a few units of rounding in single precision, a cut stays. */
 #define MCOR_PLACE_ROOT 1e-6

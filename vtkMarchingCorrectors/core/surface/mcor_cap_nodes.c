@@ -98,8 +98,9 @@ static mcor_status mcor_add_cap_brick(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two positions, in nodes, that are not in `clusters`: masks of bricks, by
- * the first brick of each cluster. */
+/* Adds the bricks between two positions, in nodes, and marks them in `clusters`; bricks that are
+ * marked already are left out. clusters: masks of bricks, by the key of each cluster's first
+ * brick. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters)
 {
@@ -264,7 +265,7 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Notes the field at node number points->to[i] of a side, or at the node one further in. */
+/* Stores the field at node number points->to[i] of a side, or at the node one further in. */
 static void mcor_take_cap_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -291,8 +292,8 @@ static void mcor_take_cap_node(
 
 /* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
  * above, whose margins are needed, and for nodes of unknown bricks. One node further in, asks for
- * unknown nodes beside valid nodes above: a square without vertices needs to know whether they are
- * valid. */
+ * unknown nodes beside valid nodes above: for a square without vertices, it must be known whether
+ * they are valid. */
 mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner)
 {
   mcor_cap_points points = { .take = mcor_take_cap_node, .data = nodes };

@@ -91,9 +91,9 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
     : 0;
 }
 
-/* Estimates what the device's rounding of sums may add to a residual: a few units of rounding of
- * the greatest term against the iso value. For a plain sum, whose weights may have any size,
- * weights count as 1, as inside the fluid. */
+/* Estimates what the device's rounding of sums may add to a residual: two units of rounding of the
+ * greatest term. In a Shepard mean, terms are relative to the iso value. For a plain sum, whose
+ * weights may have any size, weights count as 1, as inside the fluid. */
 static double mcor_sum_rounding(const mcor_context* context)
 {
   const double iso = context->run.iso.value;
@@ -417,8 +417,8 @@ mcor_status mcor_append_output(
     { &m->curvature, curved ? 2 * n * real : 0, &d.curvature },
     { &m->cut_edges, has_keys ? cuts * sizeof(cl_ulong) : 0, &d.cuts } };
   int count = 0;
-  /* Frees buffers that only the mesh needed, to make room for the output; then the buffers that
-   * only the output needed. */
+  /* Frees buffers that only the mesh needed, to make room for the output. When the output is done,
+   * frees the buffers that only the output needed. */
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_number_vertices(context, all, &count);

@@ -133,7 +133,7 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
   return cut ? (int)(cut - cuts) : -1;
 }
 
-/* Places the cut vertices: first linearly, then by solving both equations together. */
+/* Places the cut vertices: first linearly, then where both the limit and the iso value are met. */
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;

@@ -25,8 +25,8 @@ WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh
 
 
 def drop_privileges():
-    """Drops root's rights, as preexec_fn, so that the modes of files count. The user stays root, because another user may not reach the build
-    tree."""
+    """Drops root's rights, so that the modes of files count; for preexec_fn. The user stays root, because another user may not reach the
+    build tree."""
     if os.geteuid() == 0:
         libc = ctypes.CDLL(None)
         for capability in range(64):
@@ -44,7 +44,7 @@ def column(rows, name):
 
 
 class CommandLineTest(unittest.TestCase):
-    """Runs the program in a directory of its own, with a small good input beside it."""
+    """Runs the program in a temporary directory of each test's own, which holds a small good input."""
 
     program = ""
     preload = ""  # This is the library made of misbehave.c.
@@ -62,8 +62,8 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual([p for p in self.directory.rglob("*") if p.name.startswith((".", "core"))], [])
 
     def run_program(self, *arguments, told=False, display=False, **options):
-        """Runs the program. Unless `told` is true, stderr is returned without the sentence about a driver's first compilation, which may appear in
-        any test."""
+        """Runs the program and returns the result. Unless `told` is true, stderr lacks the line about a driver's first compilation, which
+        may appear in any test."""
         defaults = {"cwd": self.directory, "stdin": subprocess.DEVNULL, "capture_output": True,
                     "text": True, "timeout": 1200}
         result = subprocess.run([*[WITH_DISPLAY] * display, self.program, *map(os.fspath, arguments)], **{**defaults, **options})
@@ -75,7 +75,7 @@ class CommandLineTest(unittest.TestCase):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
     def run_good(self, *arguments, says="^$", **options):
-        """Runs the program, which must succeed. Its stderr must match the last argument, by default nothing."""
+        """Runs the program, which must succeed. Its stderr must match `says`, by default nothing."""
         result = self.run_program(*arguments, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stderr, says)
@@ -92,7 +92,8 @@ class CommandLineTest(unittest.TestCase):
         return json.loads(statistics.read_text())
 
     def refuse(self, result, status, sentence):
-        """Expects a run that failed, with one line on stderr, which matches, and without any output file."""
+        """Checks that the run failed with this status, wrote one line to stderr, which matches `sentence`, and left no
+        output file."""
         self.one_sentence(result, status, sentence)
         left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
         self.assertEqual(left, [])
@@ -105,13 +106,14 @@ class CommandLineTest(unittest.TestCase):
         self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
 
     def refuse_all(self, status, cases, *common, source=None):
-        """Checks that each of `cases`, ([options], sentence), is refused."""
+        """Checks that each of `cases`, pairs of a list of options and a sentence, is refused with this status."""
         for options, sentence in cases:
             with self.subTest(options):
                 self.refuse(self.extract(*common, *options, source=source), status, sentence)
 
     def write_rising_steps(self, count, up, step=0.25, points=None, **arrays):
-        """Writes step_0.vtp, ... and steps.pvd, which lists them. The points (or the block) rise by `up` from step to step."""
+        """Writes step_0.vtp, ... and steps.pvd, which lists these files. The points (by default the block's) rise by `up` from step to
+        step."""
         points, arrays = points or self.points, {**self.arrays, **arrays}
         for i in range(count):
             files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + up * i) for x, y, z in points], arrays)
@@ -133,14 +135,15 @@ class CommandLineTest(unittest.TestCase):
         return [(float(e.get("timestep")), self.directory / e.get("file")) for e in root.iter("DataSet")]
 
     def misbehaving(self, **variables):
-        """Returns the environment for a run with misbehave.c and these variables MCOR_..."""
+        """Returns the environment for a run with misbehave.c; its variables MCOR_... have these names and values."""
         named = {"MCOR_" + name.upper(): str(value) for name, value in variables.items()}
         return {**os.environ, "LD_PRELOAD": self.preload,
                 "MCOR_FAILING_FOLDER": str(self.directory), **named}
 
 
 def main(display=False):
-    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]. display: all pictures share one display."""
+    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]. display: starts one display for all
+    pictures."""
     if display and not os.environ.get("DISPLAY"):
         os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
     CommandLineTest.program = os.path.abspath(sys.argv.pop(1))

@@ -42,7 +42,8 @@ write(HERE / "lattice_poly.vtkhdf", b"PolyData", (2, 0))
 
 
 def write_film(path):
-    """Writes three steps: lattices of 3, 0 and 2 points along each side, the last one in two parts. Kind is stored only once."""
+    """Writes three steps: lattices of 3, 0 and 2 points along each side. The last step has two parts. The array Kind is stored only
+    once."""
     sides, parts = (3, 0, 2), ([27], [0], [5, 3])
     lattices = [files.lattice(side) if side else ([], {}) for side in sides]
     begins = numpy.cumsum([0, *(len(points) for points, _ in lattices)])

@@ -32,8 +32,8 @@ def lattice(n=10):
 
 
 def drop_at(time, n=10, numbers=None, velocity=2.0):
-    """Returns the block at a time while it falls and turns around the z axis: positions and arrays. `numbers` names the particles that are in the
-    file, in their order."""
+    """Returns the positions and arrays of the block at a time: it falls and turns around the z axis. `numbers` names the particles that are
+    in the file, in their order."""
     points, arrays = lattice(n)
     angle = velocity * time
     c, s = math.cos(angle), math.sin(angle)
@@ -69,8 +69,8 @@ def xml_array(name, values, kind="Float64", width=None, form='format="ascii"', t
 
 
 def xml(points, arrays, kind="PolyData", form="ascii", cells=None, extra=""):
-    """Returns the bytes of an XML file. kind: PolyData, or UnstructuredGrid. cells: (type, points) each; by default vertices, as many SPH codes
-    write. form: ascii, inline, compressed or appended (raw). extra: more XML for the point data."""
+    """Returns the bytes of an XML file. kind: PolyData, or UnstructuredGrid. cells: a (type, points) for each cell; by default vertices, as
+    many SPH codes write. form: ascii, inline, compressed or appended (raw). extra: more XML for the point data."""
     appended = b""
 
     def array(name, values, kind="Float64", width=None):
@@ -119,8 +119,8 @@ def write_vtu(path, points, arrays, cells=None):
 
 
 def legacy(points, arrays=(), form="ASCII", fields=0, before="", cells=""):
-    """Returns the bytes of a legacy file. The last `fields` arrays are in a field, all before them are scalars and vectors. Binary numbers are big
-    endian."""
+    """Returns the bytes of a legacy file. The last `fields` arrays are stored in a field, the other ones as scalars and vectors. Binary
+    numbers are big endian."""
     write = (lambda values: text_of(values).encode()) if form == "ASCII" else (lambda values: packed(values, ">"))
     parts = [f"# vtk DataFile Version 3.0\nparticles\n{form}\nDATASET POLYDATA\n{before}POINTS {len(points)} double\n".encode(),
              write(points), f"\n{cells}".encode()]
@@ -140,7 +140,8 @@ def write_legacy(path, points, arrays, **more):
 
 
 def columns(points, arrays, mark):
-    """Returns names of columns and rows of numbers. A vector has three columns: its name, this mark, and x, y or z."""
+    """Returns the names of columns, and rows of numbers. A vector has three columns, each named by the vector's name,
+    `mark`, and x, y or z."""
     names = ["x", "y", "z", *(name + (mark + "xyz"[c] if components(values) > 1 else "")
                               for name, values in arrays.items() for c in range(components(values)))]
     return names, [list(p) + flat(values[i] for values in arrays.values()) for i, p in enumerate(points)]
@@ -160,7 +161,8 @@ def table(points, arrays):
 
 
 def all_forms(points, arrays):
-    """Returns a dictionary from file name to bytes, with one file for each form."""
+    """Returns a dictionary from file name to the file's bytes, with one file for each form in which these functions
+    write particles."""
     forms = {f"{form}.{ending}": xml(points, arrays, kind, form) for form in ("ascii", "inline", "compressed", "appended")
              for ending, kind in (("vtp", "PolyData"), ("vtu", "UnstructuredGrid"))}
     forms = {**forms, "table.csv": table(points, arrays), "ascii.ply": ply(points, arrays, "ascii"),
@@ -169,7 +171,7 @@ def all_forms(points, arrays):
 
 
 def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
-    """Writes one of the `count` files of a snapshot: gas particles with the chosen numbers, and three stars."""
+    """Writes one of the `count` files of a GADGET snapshot: gas particles with the chosen numbers, and three stars."""
     def record(data):
         return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
 
@@ -192,7 +194,8 @@ def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
 
 
 def write_pvd(path, entries):
-    """Writes a .pvd file. entries: (time, file) each. Files of the same time are parts of one set."""
+    """Writes a .pvd file. entries: a (time, file) for each file. Files with the same time are parts of one set of
+    particles."""
     entries = list(entries)
     parts = [sum(time == other for other, _ in entries[:i]) for i, (time, _) in enumerate(entries)]
     path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>' + "".join(
@@ -209,7 +212,8 @@ def write_pieces(path, names):
 
 
 def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
-    """Writes the points of a grid without arrays, as a .vti file, or as a .vtk one, whose extent counts points."""
+    """Writes a grid of points without arrays, as a .vti file, or as a .vtk file, whose `extent` is the number of points
+    along each axis."""
     path.write_text(
         f'<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData WholeExtent="{extent}" '
         f'Origin="{origin}" Spacing="{spacing}"><Piece Extent="{extent}"></Piece></ImageData></VTKFile>'
@@ -218,8 +222,8 @@ def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
 
 
 def unpacked(text):
-    """Unpacks an array that VTK has packed with LZ4. After a header of four numbers there is one block of sequences; each has bytes to copy, and the
-    place and number of earlier bytes to repeat."""
+    """Unpacks an array that VTK has packed with LZ4. A header of four numbers precedes one block of sequences. Each sequence has bytes to
+    copy, and says which earlier bytes to repeat: where they begin, and how many."""
     blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
     assert blocks == 1
     block, at, data = base64.b64decode(text[24:]), 0, bytearray()

@@ -48,8 +48,8 @@ class Usage(CommandLineTest):
     """Tests wrong usage, which has exit status 2."""
 
     def test_help(self):
-        """--help lists the usual options, --help all lists every option, and --help MODE lists the options that act there (test_modes.py compares
-        those). Lines are as long as the terminal is wide."""
+        """--help lists the usual options, --help all lists every option, and --help MODE lists the options that act in this mode
+        (test_modes.py compares these lists with what options do). Lines are as long as the terminal is wide."""
         few, everything = (self.run_good("--help", *words).stdout for words in ([], ["all"]))
         self.assertEqual(self.run_program("-h").stdout, few)
         listed = re.findall(r"(?m)^  (--[\w-]+)", few)
@@ -61,7 +61,7 @@ class Usage(CommandLineTest):
         self.refuse(self.run_program("--help", "slices"), 2, "there is no help on 'slices', but on all, surface, .* and project")
 
     def test_closed_pipe(self):
-        """`--help | head` closes the pipe early, which is no fault."""
+        """A pipe that the reader closes early, as in `--help | head`, is no error."""
         for arguments in (["--help", "all"], [self.input, self.output, *ISO]):
             reader, writer = os.pipe()
             os.close(reader)
@@ -70,8 +70,8 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output, or a sentence refuses it and says what it needs. A surface without a scalar is the free
-        surface."""
+        """A mode as the first word changes no output; or, if the mode lacks what it needs, a sentence refuses it and says what. A surface
+        without a scalar is the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
         self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))
@@ -86,7 +86,7 @@ class Usage(CommandLineTest):
             self.refuse(self.run_program(*arguments), 2, sentence)
 
     def test_options_that_do_not_fit(self):
-        """Options that do not fit are refused. test_modes.py tries the needs in Options.def; other rules are tried here."""
+        """Options that do not fit together are refused. test_modes.py tests the rules in Options.def; here are all other rules."""
         free = ["--free-surface"]
         self.refuse_all(2, [
             *(([*how, "--derive", "Velocity", *more], "what --derive makes is neither the --scalar nor among")
@@ -188,7 +188,7 @@ class BadData(CommandLineTest):
         self.refuse(self.extract(*(options or ISO), **extract_options), 1, sentence)
 
     def test_sentences(self):
-        """Sentences of the filters (tested in test_input.py) name the program's options."""
+        """In the program, messages of the filters name the program's options. test_input.py tests these messages."""
         self.refuse_all(1, [
             (["--scalar", "Temperature", "--iso", "1"], says("NO_SUCH_ARRAY", "'Temperature'", "Radius")),
             (["--derive", "Nonsense", *ISO], says("NO_SUCH_ARRAY", "'Nonsense'", "Radius")), ([*ISO, "--attributes", "Kind,Colour"], "'Colour'"),
@@ -201,7 +201,7 @@ class BadData(CommandLineTest):
         self.refuse_with("particles.vtp holds no points")
 
     def test_no_home(self):
-        """If the home is no folder, PoCL cannot keep its compiled programs. Runs work all the same, and leave nothing behind."""
+        """If HOME names no folder, PoCL cannot keep its compiled programs. Runs work all the same, and leave no files behind."""
         temporary = self.directory / "temporary"
         temporary.mkdir()
         environment = {k: v for k, v in os.environ.items()
@@ -212,7 +212,8 @@ class BadData(CommandLineTest):
         self.assertEqual(list(temporary.iterdir()), [])
 
     def test_no_driver(self):
-        """With this variable Debian's ICD loader finds no driver. The built-in device needs neither a driver nor a home."""
+        """With OCL_ICD_VENDORS set to no folder, Debian's ICD loader finds no driver. The built-in device needs neither a driver nor a
+        home."""
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere"), "HOME": "/nonexistent"}
         environment.pop("MCOR_DEVICE", None)
         self.refuse_with(says("NO_KERNELS", "--precision single"), *ISO, "--precision", "double", env=environment)
@@ -291,7 +292,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
 
     def test_chosen_iso_value(self):
-        """Without --iso the program chooses a value, which core_find tests. A film keeps this value in all its steps."""
+        """Without --iso the program chooses a value; core_find tests the choice. A film keeps the first step's value in all its steps."""
         sentence = r"(?m)^iso value   (\S+), chosen for Radius, whose range is (\S+) \.\. (\S+) \("
         statistics = self.directory / "statistics.json"
         result = self.extract_good("--scalar", "Radius")
@@ -327,7 +328,7 @@ class Options(CommandLineTest):
         self.refuse(self.run_program("--list-arrays", "none.vtp"), 1, "none.vtp")
 
     def test_first_compilation(self):
-        """When a driver has no kept programs, the user hears that compiling takes time."""
+        """If a driver has no programs in its cache, the program says that compiling takes time."""
         if "Portable" not in self.run_program("--list-devices").stdout:
             self.skipTest("there is no PoCL")
         environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}
@@ -336,14 +337,15 @@ class Options(CommandLineTest):
             self.assertEqual(result.stderr, FIRST_COMPILATION)
 
     def test_long_run(self):
-        """A run that computes for seconds does not say that a driver compiles."""
+        """A run that computes for seconds must not say that a driver compiles."""
         if "built in" not in self.run_program("--list-devices").stdout:
             self.skipTest("a driver's programs are compiled")
         self.run_good(self.input, self.directory / "levels.vti", "--gauge-grid", "1000,1000:-1,1,-1,1,-1,1",
                       "--threads", "1", "--device", "built in", told=True)
 
     def test_derive(self):
-        """--derive makes arrays from a particle array, to contour and to carry. They win over stored arrays of the same name."""
+        """--derive makes arrays from a particle array. They may be contoured, and are carried to the surface. They replace stored arrays of
+        the same name."""
         self.arrays["Lambda2"] = [17.0] * len(self.points)
         files.write_vtp(self.input, self.points, self.arrays)
         self.succeed("--derive", "Velocity", *ISO)
@@ -397,7 +399,7 @@ class Options(CommandLineTest):
         self.assertIn("points      262144, 0 of them valid", result.stdout)
 
     def test_line(self):
-        """--line gives the same points as a file of these places, and the distance from the start."""
+        """--line gives the same values as a file with the same points, and the distance from the start."""
         output = self.directory / "line.vtp"
         result = self.run_good(self.input, output, "--line=-0.6,0,0,0.6,0,0", "--resolution", "13")
         files.write_vtp(self.directory / "points.vtp", [(-0.6 + 0.1 * i, 0.0, 0.0) for i in range(13)], {})
@@ -408,7 +410,7 @@ class Options(CommandLineTest):
         self.assertRegex(text, r'Name="arc_length"[^>]*RangeMin="0"[^>]*RangeMax="1.2')
 
     def test_sizes_of_probes(self):
-        """Impossible sizes are refused at once, and the sentence names the file."""
+        """Impossible numbers of points are refused at once, and the sentence names the file."""
         for name, extent, sentence in (
                 ("image.vti", "0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
                 ("image.vti", "0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
@@ -453,7 +455,8 @@ class Options(CommandLineTest):
         self.assertEqual(self.succeed(*ISO)["warnings"], [])
 
     def test_solvers_names(self):
-        """The files of DualSPHysics hold no smoothing length."""
+        """Names of arrays in solvers' files are known. The files of DualSPHysics hold no smoothing length, so an option
+        must give it."""
         arrays, count = self.arrays, len(self.points)
         dual = {"Idp": list(range(count)), "Rhop": arrays["Density"], "Vel": arrays["Velocity"],
                 "Type": [3] * count, "Mass": arrays["Mass"], "Radius": arrays["Radius"]}
@@ -465,7 +468,8 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
 
     def test_settings(self):
-        """Each row has options, the parameters that they give, and other options with the same surface, if there are any. test_modes.py tries each option."""
+        """Each row has options; the parameters that they set in the statistics; and other options that must make the same surface, if there
+        are any. test_modes.py tries each option."""
         half, walls = 5 * files.SPACING, ["--fluid", "Kind=0", "--solids"]
         self.arrays["7"] = self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
@@ -485,7 +489,7 @@ class Options(CommandLineTest):
             (["--periodic", f"{2 * half!r},{2 * half!r},0"], numbers,
              {"periodic_bounds": [-half, half, -half, half, 0, 0]}, f"--periodic={-half!r},{half!r},{-half!r},{half!r},0,0"),
             (["--smoothing-length", "0.13"], arrays, {"smoothing_length_array": ""}, ""),
-            # If both are possible, 7 is the name of an array, not a number.
+            # A value that is both an array's name and a number, here 7, means the array.
             (["--smoothing-length", "7"], arrays, {"smoothing_length_array": "7"}, ""),
             (["--smoothing-length", "0.26", "--support-radius"], numbers, {"smoothing_length_is_support_radius": 1}, ""),
             (["--mass", "1", "--density", "1000"], numbers, {"mass": 1, "density": 1000}, ""),
@@ -528,7 +532,8 @@ class Options(CommandLineTest):
             self.assertFalse(set(missing.split()) & names)
 
     def test_period_of_field_data(self):
-        """Field data with a period are mentioned, and used only with --periodic. core_find tests their forms."""
+        """A period in the field data is mentioned, and used only with --periodic. core_find tests the forms of such
+        data."""
         free, length = ["--free-surface", "--no-attributes"], 10 * files.SPACING
         self.succeed(*free, "--periodic", f"{length!r},{length!r},0")
         expected = self.output.read_bytes()
@@ -586,8 +591,8 @@ class Picture(CommandLineTest):
                 self.assertTrue(drawn[0] < 60 or columns[0] < 60, (drawn[0], columns[0]))
 
     def test_colors(self):
-        """With --color-by, or with several iso values, a picture has many colours; with --color-by a bar, too. A plain surface has shades of one
-        blue."""
+        """With --color-by, or with several iso values, a picture has many colours. With --color-by it also has a colour bar. A plain
+        surface has shades of one blue."""
         def hues(rows, columns):
             return {(r > b, g > b, g > r) for row in rows for r, g, b in row[columns] if max(r, g, b) - min(r, g, b) > 60}
         plain = self.picture("s.vtp", *ISO)[2]
@@ -601,7 +606,7 @@ class Picture(CommandLineTest):
         self.assertGreater(len(hues(several, slice(1130, 1165))), 2)
 
     def test_bands(self):
-        """Bands have a legend of as many steps, the lowest first. z is upwards where particles are those of DualSPHysics."""
+        """The legend of bands has one step for each band, the lowest first. If particles are DualSPHysics', z is upwards in the picture."""
         points, arrays = self.in_plane()
         files.write_vtp(self.input, points, {name: arrays[name] for name in ("Radius", "SmoothingLength")})
         rows = self.picture("s.vtp", "--scalar", "Radius", "--iso=-1,0.2,0.3,0.6", "--filled")[2]

@@ -10,7 +10,8 @@ FREE = ["--free-surface"]
 
 
 class Components(CommandLineTest):
-    """Makes a block of particles with sides of 1 around the origin, and one with sides of 0.5 around (2, 0, 0)."""
+    """Tests pieces of two blocks of particles: one with sides of 1 around the origin, one with sides of 0.5 around (2,
+    0, 0)."""
 
     def setUp(self):
         super().setUp()
@@ -36,7 +37,8 @@ class Components(CommandLineTest):
         self.assertEqual([large["parent"], large["closed"], small["closed"]], ["-1", "1", "1"])
         for row, side in ((large, 1.0), (small, 0.5)):
             self.assertAlmostEqual(float(row["volume"]), side ** 3, delta=0.1 * side ** 2)
-        # The 8 corner particles are missing, because less than half of the space around them is filled.
+        # The 8 particles at corners are not counted, because less than half of the space around them is filled, so they
+        # lie outside the surface.
         self.assertEqual([large["particles"], small["particles"]], ["992", "117"])
         self.assertAlmostEqual(float(large["mass"]), 992, delta=1e-6)
         self.assertEqual([round(float(small[v]), 9) for v in ("vx", "vy", "vz")], [4, 5, 6])
@@ -54,7 +56,7 @@ class Components(CommandLineTest):
         self.assertEqual(self.output.read_bytes(), before)
 
     def test_film(self):
-        """Several files give one table, with the times."""
+        """Several files give one table with a column of times."""
         files.write_vtp(self.directory / "later.vtp", self.points, self.arrays)
         self.run_good(self.input, "later.vtp", "film.pvd", *FREE, "--components", self.table,
                       "--time-step", "0.5")
@@ -62,8 +64,8 @@ class Components(CommandLineTest):
                          [("0", "0"), ("0", "1"), ("0.5", "0")])
 
     def test_numbers_of_a_film(self):
-        """The table has a row for each piece of each step, interpolated steps, too, and the columns of gauges; pieces that are left out have no
-        row."""
+        """The table of pieces has a row for each piece of each step, also of interpolated steps. Pieces that are left out have no row. The
+        table of --numbers has the gauges' columns, too."""
         moving = {**self.all_arrays, "Id": list(range(1125)), "Velocity": [(0.0, 0.0, 0.4)] * 1125}
         self.write_rising_steps(2, 0.1, points=self.all_points, **moving)
         numbers = self.directory / "numbers.csv"

@@ -21,7 +21,7 @@ NUMBERS = [b"0", b"-1", b"1", b"3", b"26", b"28", b"1000000", b"2147483647", b"2
 
 
 def mutated(data, rng):
-    """Returns the data with one random change: another number or word, a lost tag or line, another byte, or some bytes less."""
+    """Returns the data with one random change: another number or word, a lost tag or line, another byte, or some bytes removed."""
     def replaced(match, by):
         return data[:match.start()] + by + data[match.end():]
 
@@ -41,7 +41,7 @@ def mutated(data, rng):
 
 
 class DamagedFiles(CommandLineTest):
-    """A damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
+    """Checks that a damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
 
     def setUp(self):
         super().setUp()
@@ -89,7 +89,7 @@ class DamagedFiles(CommandLineTest):
         self.assertLessEqual({0, 1}, statuses)
 
     def test_counts_that_are_wrong(self):
-        """A damaged count is refused, so that VTK's readers do not crash, and no more memory is taken than a file of some kilobytes can need."""
+        """A damaged count is refused, so that VTK's readers do not crash. No more memory is used than a file of some kilobytes can need."""
         huge = "more than a file of its size can hold; it may be damaged$"
         for name, good, bad, why in (
                 ("inline.vtp", b'NumberOfPoints="27"', b'NumberOfPoints="-1"', "NumberOfPoints is -1; it may be damaged"),
@@ -114,7 +114,7 @@ class DamagedFiles(CommandLineTest):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_crash_of_the_reader(self):
-        """The program survives any crash of VTK's XML library. Here another library replaces it, which aborts, faults or recurses."""
+        """The program survives any crash in VTK's XML library. Here a library that aborts, faults or recurses takes its place."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):
@@ -125,7 +125,7 @@ class DamagedFiles(CommandLineTest):
                             rf"\({why}\); the file may be damaged$")
 
     def test_crash_of_a_driver(self):
-        """A driver may crash in every run, as PoCL does over a damaged file that it has kept. The sentence names the folder of kept files."""
+        """A driver may crash in every run, as PoCL does if a file in its cache is damaged. The sentence names the cache's folder."""
         drivers, kept = self.directory / "drivers", self.directory / "kept"
         drivers.mkdir()
         kept.mkdir()
@@ -138,7 +138,7 @@ class DamagedFiles(CommandLineTest):
         self.extract_good("--free-surface", env=environment)  # A run on the built-in device loads no driver.
 
     def test_damaged_kernels(self):
-        """Files that PoCL has kept are cut off, emptied or overwritten. Whatever PoCL does then, the sentence names its folder."""
+        """Files in PoCL's cache are cut off, emptied or overwritten. Whatever PoCL does then, the sentence names this folder."""
         whole, kept = self.directory / "whole", self.directory / "kept"
         whole.mkdir()
         if self.extract("--free-surface", "--device", "pocl", env={**os.environ, "POCL_CACHE_DIR": str(whole)}).returncode:

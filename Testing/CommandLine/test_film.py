@@ -21,7 +21,7 @@ class Film(CommandLineTest):
         self.film = self.directory / "film.pvd"
 
     def write_steps(self, count, step=0.1, **changes):
-        """Writes drop_000.vtp, ... and steps.pvd, which lists them at the times 0, `step`, ..."""
+        """Writes drop_000.vtp, ... and steps.pvd, which lists these files at the times 0, `step`, ..."""
         entries = []
         for i in range(count):
             path = self.directory / f"drop_{i:03}.vtp"
@@ -50,7 +50,7 @@ class Film(CommandLineTest):
     # Films
 
     def test_ten_steps_by_one_command(self):
-        """Five of the ten times lie between two steps, and are interpolated."""
+        """Of the ten times, five lie between two stored steps, so their particles are interpolated."""
         self.write_steps(6)
         times = [0.05 * i for i in range(10)]  # One of these times is 0.30000000000000004.
         result = self.run_good("steps.pvd", self.film, *FREE, "--times", ",".join(map(repr, times)), "--stats", "s.json")
@@ -71,7 +71,8 @@ class Film(CommandLineTest):
             self.assertGreater(step["wall_seconds"], 0)
 
     def test_steps_are_as_surfaces_alone(self):
-        """A film of several files has the same bytes as single runs, though buffers are reused. Files are taken in the order of their numbers."""
+        """A film of several files has the same bytes as runs for single files, though buffers are reused. Files are taken in the order of
+        the numbers in their names."""
         paths = self.write_steps(3)
         self.good(*paths[::-1])
         self.assertEqual([t for t, _ in self.listed()], [0, 1, 2])
@@ -103,7 +104,7 @@ class Film(CommandLineTest):
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
-        """A range of --times means all times in it. The number of frames follows from the unit of time and the slow motion."""
+        """A range in --times, FROM:TO:STEP, means all times in it. The number of frames by --fps follows from the times and --slow."""
         paths = self.write_steps(3)
         film = [*paths, self.film, *FREE, "--quiet", "--time-step", "0.1"]
         for options, times in ((["--times", "0:0.2:0.05"], [0, 0.05, 0.1, 0.15, 0.2]), (["--times", "0.2,0:0.1:0.04"], [0, 0.04, 0.08, 0.2]),
@@ -152,7 +153,8 @@ class Film(CommandLineTest):
         self.run_good(self.input, "o.vti", "--slice", "z=0", *picture, "--color-by", "WeightSum", display=True)
 
     def test_period_between_steps(self):
-        """Particles that cross a side of the period are interpolated beyond it, not back through the box."""
+        """If particles cross a side of the period between two steps, their path is interpolated beyond the side, not
+        back through the box."""
         points, arrays = files.lattice(6)
         for i, x in enumerate((0.6, 0.8)):
             moved = [((p[0] + x) % 1, p[1] + 0.5, p[2] + 0.5) for p in points]
@@ -193,7 +195,8 @@ class Film(CommandLineTest):
         self.assertEqual(self.listed()[0][1].read_bytes(), whole)
 
     def test_other_formats(self):
-        """With the step's number in the output name there is no list, and files of an earlier run are replaced."""
+        """If the output name has the step's number, no list of files is written, and files of an earlier run are
+        replaced."""
         self.write_steps(3)
         for ending, begin in ((".ply", b"ply\n"), (".obj", b"# by"), (".stl", b"binary"), (".vtp", b"<?xml")):
             with self.subTest(ending):
@@ -244,7 +247,7 @@ class Film(CommandLineTest):
         self.assertEqual([t for t, _ in self.listed()], [0.1, 0.3, 0.35])
 
     def test_crash_of_the_reader(self):
-        """When a step fails, a sentence names the file, and the surfaces made before are listed."""
+        """If a step fails, a sentence names its file, and the surfaces of earlier steps are listed."""
         paths = self.write_steps(3)
         result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault", reader_call=2))
         if result.returncode == 0:
@@ -277,7 +280,7 @@ class Film(CommandLineTest):
         self.good("steps.pvd")
         self.assertEqual(len(self.listed()), 3)
 
-    # ---- Which files a film may replace ----
+    # ---- Files that a film may replace ----
 
     def test_no_file_of_others_is_lost(self):
         paths = self.write_steps(2)
@@ -350,7 +353,7 @@ class Film(CommandLineTest):
     # Costs
 
     def test_memory_is_flat(self):
-        """100 steps, of which 50 are interpolated, need no more memory than the first 20."""
+        """A film of 100 steps, half of them interpolated, needs no more memory at its end than after 20 steps."""
         self.write_steps(51, step=0.01, n=16)
         steps = self.good("steps.pvd", "--times", ",".join(repr(0.005 * i) for i in range(100)))["steps"]
         self.assertEqual(len(steps), 100)

@@ -34,7 +34,7 @@ class Formats(CommandLineTest):
         self.assertGreater(points, 0)
 
     def read_ply(self, *options):
-        """Makes a .ply file, whose triangles must be good. Returns its points, each a dictionary from property to value."""
+        """Makes a .ply file and checks its triangles. Returns its points, each a dictionary from property to value."""
         head, body = self.extract_as(".ply", *options).split(b"end_header\n", 1)
         points, triangles = map(int, re.findall(rb"element \w+ (\d+)", head))
         properties = [line.split()[1:] for line in head.decode().split("element face")[0].splitlines() if line[:8] == "property"]
@@ -55,7 +55,8 @@ class Formats(CommandLineTest):
             self.assertGreater(sum(point[axis] * point["n" + axis] for axis in "xyz"), 0)
 
     def test_ply_arrays(self):
-        """Properties in a .ply file have the types that the arrays have in a .vtp file. An array whose name is taken already gets another one."""
+        """Properties in a .ply file have the types of the arrays in a .vtp file. If an array's name is already used, the property gets
+        another name."""
         self.arrays.update({"x": [1.5] * len(self.points), "a b": list(range(len(self.points)))})
         files.write_vtp(self.input, self.points, self.arrays)
         for point in self.read_ply():
@@ -77,7 +78,7 @@ class Formats(CommandLineTest):
         self.assertLess(abs(min(xs) + max(xs)), 1e-3)
 
     def test_obj_digits(self):
-        """Nine digits are written, so that every float is read back exactly."""
+        """An .obj file has nine digits, so that every float is read back exactly."""
         self.points = [(1e-3 * x + 1.0, y, z) for x, y, z in self.points]
         files.write_vtp(self.input, self.points, self.arrays)
         self.extract_as(".obj", "--output-precision", "single")
@@ -87,7 +88,8 @@ class Formats(CommandLineTest):
         self.assertEqual([single.unpack(single.pack(*place)) for place in found], [(p["x"], p["y"], p["z"]) for p in points])
 
     def test_colors(self):
-        """A .ply file has the array of --color-by as colours. Other formats say that they leave it out."""
+        """In a .ply file the array of --color-by gives the points' colours. Other formats say that they leave colours
+        out."""
         points = self.read_ply("--color-by", "Velocity", "--color-range", "0.46,0.7", "--attributes", "Velocity", "--output-precision", "single")
         self.assertGreater(set(points[0]), {"red", "green", "blue"})
         # The speed is nearly the distance from the centre, and the green of the colours grows with it.
@@ -139,7 +141,8 @@ class Formats(CommandLineTest):
                     self.assertEqual(found["triangles"], expected)
 
     def test_pieces_of_several_types(self):
-        """One piece stores an array as float, another as double; both types hold these numbers exactly."""
+        """One piece stores an array as float, the other as double. Both types hold these numbers exactly, so the
+        surface is the same."""
         path, pieces = self.write_pieces("vtp", files.write_vtp)
         expected = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
         text = pieces[1].read_text()
@@ -172,7 +175,8 @@ class Formats(CommandLineTest):
         self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
 
     def test_gadget(self):
-        """Reads both binary formats in both byte orders; several files are one snapshot. Only gas is read, and h is half of GADGET's."""
+        """Tests GADGET's two binary formats in both byte orders. Several files are one snapshot. Only gas is read, and h is half of
+        GADGET's."""
         points, arrays = files.lattice(4)
         files.write_vtp(self.input, points, {name: arrays[name] for name in ("SmoothingLength", "Mass", "Density")})
         self.succeed("--free-surface", "--no-attributes")

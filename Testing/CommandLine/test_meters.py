@@ -21,7 +21,7 @@ DX = files.SPACING
 
 
 class Meter(CommandLineTest):
-    """Has the tests that gauges and fluxes share."""
+    """The tests that gauges and fluxes share."""
 
     def setUp(self):
         super().setUp()
@@ -47,7 +47,7 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """The time in a single file is used. Where files hold no time, one line tells what this means for velocities."""
+        """The time in a single file is used. If files hold no time, one line says what this means for velocities."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))
@@ -70,7 +70,7 @@ class Meter(CommandLineTest):
             self.assertEqual([float(row["time"]) for row in read_table(self.table)], times)
 
     def test_steps_without_fluid(self):
-        """A step without particles, or without particles of the fluid's type, gives rows like other steps, in a plane, too."""
+        """A step without particles, or without particles of the fluid's type, gives rows like other steps. The same holds in a plane."""
         z = self.points[0][2]
         for flat in (False, True):
             points, arrays = self.in_plane() if flat else (self.points, dict(self.arrays))
@@ -91,8 +91,8 @@ class Meter(CommandLineTest):
                     self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
-        """Checks that these usages (status 2) and data (status 1) are refused, and also all that is wrong for gauges and fluxes alike. The table
-        stays as it was."""
+        """Checks that these usages (status 2) and data (status 1) are refused, and also faults that gauges and fluxes have in common. The
+        table must stay as it was."""
         many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
             (["--iso", "0.2,0.5"], "all but one --iso value"), (["--iso", "0"], "--iso value above 0"),
@@ -154,7 +154,7 @@ class Gauge(Meter):
         self.assertEqual(self.table.read_text(), before)
 
     def test_a_table_that_grows(self):
-        """Rows of measured steps are in the table before the run ends."""
+        """The table has the rows of measured steps before the run ends."""
         program = subprocess.Popen([self.program, *[self.input] * 1000, self.table, "--gauge", UP], cwd=self.directory,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         end = time.monotonic() + 300
@@ -171,7 +171,7 @@ class Gauge(Meter):
             part.unlink()
 
     def test_a_step_that_fails(self):
-        """When one file cannot be read, the table has the rows of all other files."""
+        """If one file cannot be read, the table has the rows of all other files."""
         result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP, "--time-step", "1")
         self.one_sentence(result, 1, "marching-correctors: missing.vtp cannot be read: ")
         self.assertEqual(column(self.read_rows(), "time"), ["0", "2"])
@@ -198,7 +198,8 @@ class Gauge(Meter):
 
 
 class Flux(Meter):
-    """Tests fluxes of a block with sides of 1 around the origin, which moves as one with (1, -2, 3)."""
+    """Tests fluxes of a block with sides of 1 around the origin. All its particles move with the velocity (1, -2,
+    3)."""
 
     one = ["--flux", WALL]
     columns = ["time", "section", "area", "volume_flux", "mass_flux", "velocity", "volume", "mass"]
@@ -234,7 +235,8 @@ class Flux(Meter):
         self.assertEqual(self.rows("--fluxes", "sections.txt", "--flux", WALL), [rows[0], rows[1], rows[4]])
 
     def test_outwards(self):
-        """Where the velocity is the position, 3 times the volume flows out of a closed mesh, whatever the direction of its triangles' normals."""
+        """If each particle's velocity is its position, the flux out of a closed mesh is 3 times its volume, whichever way the triangles
+        face."""
         for turned in (False, True):
             faces = "".join(f"3 {a + 0} {b if turned else d} {d if turned else b}\n" for a, b, d in SIDES)
             (self.directory / "cube.vtk").write_text(
@@ -254,7 +256,7 @@ class Flux(Meter):
         self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
 
     def test_volume_that_has_passed(self):
-        """What has passed between two steps is the mean of their fluxes times the time between them."""
+        """The volume that has passed between two steps is the mean of their fluxes times the time between them."""
         self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],
@@ -288,7 +290,8 @@ class Flux(Meter):
 
 
 class Volumes(CommandLineTest):
-    """Tests the level of a block of 10 x 10 x 10 particles around the origin, whose surface is half a spacing beyond the particles."""
+    """Tests which volumes the level of a block of 10 x 10 x 10 particles around the origin shows. The block's surface is half a spacing
+    beyond the particles."""
 
     def level(self, *options, arrays=()):
         """Returns the level, in spacings above the uppermost particles, and what the program tells about volumes."""
@@ -299,7 +302,7 @@ class Volumes(CommandLineTest):
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):
-        """The level is the same wherever volumes come from, and the program tells where."""
+        """The level is the same whichever arrays or options give the volumes, and the program says which."""
         for options, arrays, told in (
                 (("--smoothing-length", "0.13"), (), "computed from the positions"),
                 (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),
@@ -313,7 +316,7 @@ class Volumes(CommandLineTest):
                 self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
 
     def test_spray(self):
-        """A single particle has a surface only if its volume is computed, or large; a run counts the particles without a surface."""
+        """A single particle has a surface only if its volume is computed, or large. A run says how many particles have no surface."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
         files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})
         given = ("--smoothing-length", "0.13")

@@ -19,7 +19,7 @@ from command_line_test import CommandLineTest, main
 
 OPTIONS = pathlib.Path(__file__).parents[2] / "Examples" / "CommandLine" / "options"
 BOX = "-0.15,0.15,-0.4,0.4,-0.4,0.02"
-# Each mode has its input files, its output and the options that a plain command line needs.
+# For each mode: input files, an output file, and the options that a plain command line needs.
 MODES = {
     "surface": (["step_0.vtp"], "out.vtp", {"--scalar": "Radius", "--iso": "0.3"}),
     "film": (["step_0.vtp", "step_1.vtp"], "out.pvd", {"--scalar": "Radius", "--iso": "0.3"}),
@@ -36,11 +36,11 @@ PICTURE = {"--screenshot": "p.png"}
 
 
 class Trial(collections.namedtuple("Trial", "value context extra output inputs", defaults=("", {}, {}, None, None))):
-    """A trial has an option's value; `context`: options that are there with and without it; options that it needs, or None for an option that it
-    replaces; and other files."""
+    """How an option is tried. value: the option's value. context: options that are there with and without it. extra: options that it needs,
+    or None for an option that it replaces. output, inputs: other files than the mode's."""
 
 
-# These rows say how each option is tried. In each mode, options of `context` that do not act in the mode are left out.
+# How each option is tried. In each mode, options of `context` that do not act in the mode are left out.
 TRIALS = {
     "--scalar": Trial("Noise"), "--component": Trial("0", {"--scalar": "Velocity", "--iso": "0.02"}), "--iso": Trial("0.25"),
     "--free-surface": Trial("", {}, FREE), "--derive": Trial("Velocity"), "--field": Trial("sum"), "--probe": Trial("others.vtp"),
@@ -68,7 +68,7 @@ TRIALS = {
     "--up": Trial("x", PICTURE), "--view": Trial("1,2,3", PICTURE), "--device": Trial("nonesuch"), "--threads": Trial("1"),
     "--memory-limit": Trial("1", {"--cube-size": "0.01"})}
 FILM_PICTURE = {"--screenshot": "p_%04d.png"}
-# These modes need another trial of the option.
+# Trials of options in modes that need another trial than TRIALS has.
 OTHER_TRIALS = {
     ("--gauge-grid", "gauge"): TRIALS["--gauge-grid"]._replace(output="out.vti", inputs=["step_0.vtp"]),
     ("--derive", "project"): Trial("Velocity", {}, {"--scalar": "Divergence"}),
@@ -93,26 +93,27 @@ OTHER_TRIALS = {
        for option in ("--times", "--ids", "--time-step", "--fps", "--slow")
        for mode, output in (("project", "out.pvd"), ("probe", "out.csv"))}}
 QUESTIONS = {"--list-devices", "--list-arrays", "--help", "--version"}  # these need no mode
-# The option's effect is there anyway, or the option changes nothing but the time.
+# (option, mode) whose outputs need not differ: the option's effect is there anyway, or the option changes nothing but
+# the time.
 HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("slice", "line", "probe")),
          *(("--threads", mode) for mode in MODES)}
 
 
 def numbers_of(report):
-    """Returns the statistics, at any depth, that the file of --stats holds."""
+    """Returns the statistics of a --stats report; if it has steps, those of each step, in nested lists."""
     if isinstance(report, list):
         return [numbers_of(each) for each in report]
     return report.get("statistics") or numbers_of(report.get("steps", []))
 
 
 def parameters_of(report):
-    """Returns {parameter: value}, of all groups."""
+    """Returns {parameter: value} of all groups of a report."""
     return {name: value for group in ("parameters", "arrays", "fluid") for name, value in (report.get(group) or {}).items()}
 
 
 def is_shown(option, value, report, base):
-    """Returns whether a parameter named like the option has changed: to the option's value, if this is a number or a word. A number may also replace
-    an array's name. True if the reports have no such parameter."""
+    """Returns whether the report shows the option: a parameter with a name like the option's has changed, to the option's value if this is
+    a number or a word. A number may also replace an array's name. Returns True if the reports have no such parameter."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}
@@ -156,7 +157,8 @@ class Modes(CommandLineTest):
         self.runs = {}
 
     def run_once(self, key):
-        """Returns the exit status, the standard error, and all that a run writes, without seconds."""
+        """Runs the program for a key (inputs, output, options). Returns the exit status, standard error, all that the
+        run writes and prints without seconds, and the report's parameters."""
         inputs, output, options = key
         folder = self.directory / f"run_{len(os.listdir(self.directory))}_{abs(hash(key))}"
         folder.mkdir()
@@ -165,7 +167,7 @@ class Modes(CommandLineTest):
                 (folder / name).symlink_to(self.directory / name)
         words = [word for option, value in options for word in ([option, value] if value else [option])]
         result = self.run_program(*inputs, output, *words, cwd=folder)
-        # The report's parameters differ in any case, so only its statistics are compared.
+        # The parameters in a report differ even if an option has no effect, so only the statistics are compared.
         written = {path.name: path.read_bytes() for path in folder.iterdir() if not path.is_symlink() and path.suffix != ".json"}
         reports = {path.name: json.loads(path.read_text()) for path in folder.glob("*.json")}
         written.update((name, numbers_of(report)) for name, report in reports.items() if name != "parameters.json")
@@ -199,7 +201,7 @@ class Modes(CommandLineTest):
                                             for _, _, base in MODES.values()) or option in ("--gauges", "--gauge-grid", "--fluxes")
 
     def judge(self, option, mode, trial):
-        """Returns (what the option does, what is wrong with it)."""
+        """Judges an option in a mode. Returns two texts: what the option does, and what is wrong with it."""
         status, said, written, report = self.runs[self.key(mode, trial, option)]
         base_status, base_said, base, base_report = self.runs[self.key(mode, trial)]
         if base_status != 0:
@@ -219,7 +221,7 @@ class Modes(CommandLineTest):
         return "?", said or "does nothing"
 
     def test_the_guide_says_it(self):
-        """The table in parameters.md has each option where --help has it."""
+        """The table in parameters.md has a mark for an option and a mode exactly where --help MODE lists the option."""
         acting = self.acting()
         page = (pathlib.Path(__file__).parents[2] / "Documentation" / "Guide" / "parameters.md").read_text(encoding="utf-8")
         rows = re.findall(r"(?m)^\| (`--.*?) \|((?: [x ]? ?\|){8})$", page)
@@ -228,7 +230,8 @@ class Modes(CommandLineTest):
         self.assertEqual(said, listed)
 
     def test_options_that_exclude_each_other(self):
-        """In either order, a sentence names both options of a row of Exclusions in Job.cxx."""
+        """If two options exclude each other by a row of Exclusions in Job.cxx, the sentence names both, in either order
+        on the command line."""
         pairs = re.findall(r'\n  \{ "(--[\w-]+)", "(--[\w-]+)", ', (OPTIONS / "Job.cxx").read_text(encoding="utf-8"))
         self.assertGreater(len(pairs), 9)
         for first, second in pairs:
@@ -238,7 +241,7 @@ class Modes(CommandLineTest):
                     self.one_sentence(self.run_program(*STEPS, "out.pvd", *order), 2, f"{first} and {second} exclude each other: .*; leave out one")
 
     def test_what_options_need(self):
-        """Without what an option needs by its row in Options.def, the sentence names what is needed."""
+        """If an option lacks what it needs by its row in Options.def, the sentence names what is needed."""
         text = (OPTIONS / "Options.def").read_text(encoding="utf-8")
         rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
         self.assertGreater(len(rows), 15)

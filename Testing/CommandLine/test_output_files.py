@@ -37,7 +37,8 @@ class OutputFiles(CommandLineTest):
     # ---- Outputs that are not regular files ----
 
     def device(self, name, minor):
-        """Returns a device file of the test's own, if the user may make one, because a fault would destroy the machine's."""
+        """Returns a device file that the test makes for itself, if the user may make one: a fault of the program would destroy the
+        machine's own file."""
         path = self.directory / name
         try:
             os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, minor))
@@ -82,7 +83,7 @@ class OutputFiles(CommandLineTest):
         self.assertIn("statistics", json.loads(text[text.index("{"):]))
 
     def test_closed_standard_output(self):
-        # With standard output closed, no file that the program opens takes its place.
+        # If standard output is closed, no file that the program opens may get its number.
         result = subprocess.run(["sh", "-c", '"$@" >&-', "sh", self.program, self.input, self.output,
                                  "--free-surface", "--stats", "s.json"], cwd=self.directory,
                                 capture_output=True, text=True, timeout=1200)
@@ -146,7 +147,7 @@ class OutputFiles(CommandLineTest):
         self.good()
         status = self.output.stat()
         self.assertEqual((status.st_uid, status.st_gid, mode_of(self.output)), (12345, 54321, 0o666))
-        # A user who cannot keep owner and group does not pass the old group's rights on to the new one.
+        # A user who cannot keep the old owner and group must not give the old group's rights to the new group.
         self.good(preexec_fn=drop_privileges)
         self.assertEqual((self.output.stat().st_uid, oct(mode_of(self.output))), (0, oct(0o606)))
 
@@ -182,7 +183,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(result, 2, "log.json would be written twice: standard output goes there, too")
 
     def test_no_output_replaces_an_input(self):
-        """Each option that names an output is tried with each way to name an input. The input is refused as output and stays as it was."""
+        """Tries each option that names an output with each way to name an input. The input is refused as output and stays as it was."""
         at = self.directory
         files.write_gadget(at / "snap.0", self.points, self.arrays, range(500), count=2)
         files.write_gadget(at / "snap.1", self.points, self.arrays, range(500, 1000), count=2)
@@ -255,7 +256,8 @@ class OutputFiles(CommandLineTest):
     # ---- Whole or untouched ----
 
     def test_what_may_not_be_written(self):
-        """As a normal user: a file that may not be written is not replaced, and the run fails before it computes."""
+        """A normal user gives an output that may not be written. It is not replaced, and the run fails before it
+        computes."""
         self.output.write_text("old")
         self.output.chmod(0o444)
         refused = self.extract(*FREE, preexec_fn=drop_privileges)
@@ -289,7 +291,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(self.extract(*FREE, source="a/" * 3000 + "a.vtp"), 1, "File name too long")
 
     def test_full_disk(self):
-        """Runs the program on a file system of `pages` pages, one of which holds an older output."""
+        """Runs the program on a full disk: a file system of `pages` pages, one of which holds an older output."""
         script = """mount -t tmpfs -o size=$1 none full || exit 77
             echo old >full/$2; shift 2; "$@"; status=$?; ls -A full; cat full/*; exit $status"""
         unshare = ["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else [])
@@ -344,7 +346,8 @@ class OutputFiles(CommandLineTest):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
                 self.output.write_text("old")
-                # The run starts with default signals, even where the tests run under nohup or in a script's background.
+                # The program gets the default signal handlers, even if the tests run under nohup or in a script's
+                # background.
                 run = self.start_and_wait_for_writing(
                     start_new_session=True, preexec_fn=lambda number=number: signal.signal(number, signal.SIG_DFL))
                 os.killpg(run.pid, number)  # This is what a terminal does on Ctrl-C.

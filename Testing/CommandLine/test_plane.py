@@ -13,7 +13,7 @@ SIDE = 20
 
 
 class Plane(CommandLineTest):
-    """Makes a square of particles with sides of 2 around the origin, in the plane y = 0.25."""
+    """Tests a square of particles with sides of 2 around the origin, in the plane y = 0.25."""
 
     def setUp(self):
         super().setUp()
@@ -55,7 +55,7 @@ class Plane(CommandLineTest):
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
     def test_columns_of_a_table(self):
-        """Tables keep arrays whose names other columns have or which look like formulas, and integers too large for a double."""
+        """Tables keep arrays whose names equal other columns' names or look like formulas, and integers too large for a double."""
         big = 2 ** 60 + 1
         arrays = {**self.arrays, **{name: [7.5] * len(self.points) for name in ("X", "Line", "Velocity:0", "=1+1")}}
         files.write_vtp(self.input, self.points, arrays, files.xml_array("Id", [big] * len(self.points), "Int64") +
@@ -79,7 +79,7 @@ class Plane(CommandLineTest):
             self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
 
     def test_points_as_a_table(self):
-        """Two lines stand one after the other, and a closed line ends with its first point."""
+        """In a table two lines stand one after the other, and a closed line ends with its first point."""
         table = self.directory / "surface.csv"
         self.run_good(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
         rows = read_table(table)
@@ -108,7 +108,8 @@ class Plane(CommandLineTest):
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
 
     def test_what_is_refused(self):
-        """The last sentence comes before lines are made: a few particles with a small smoothing length make all squares small."""
+        """Cases that are refused. The last one is refused before lines are made: one particle with a small smoothing length makes all
+        squares small."""
         stl = self.directory / "surface.stl"
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
         self.arrays["SmoothingLength"][0] *= 5e-4
@@ -135,7 +136,7 @@ class Plane(CommandLineTest):
                 self.assertAlmostEqual(x, y, delta=1e-6)
 
     def test_particle_distance(self):
-        """DualSPHysics' smoothing length depends on the number of dimensions."""
+        """By --dp, DualSPHysics' smoothing length depends on the number of dimensions."""
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]

@@ -11,7 +11,7 @@ from command_line_test import CommandLineTest, main, says
 
 
 class Project(CommandLineTest):
-    """Makes a block of particles with sides of 1 around the origin and a mass of 1000."""
+    """Tests images of a block of particles with sides of 1 around the origin and a mass of 1000."""
 
     def setUp(self):
         super().setUp()
@@ -48,7 +48,7 @@ class Project(CommandLineTest):
         self.assertLess(values[4 * 9 + 2], -0.1)
 
     def test_plane(self):
-        """For particles in a plane, the image shows the field itself."""
+        """If particles lie in a plane, the image shows the field itself, not a sum along a line of sight."""
         points, arrays = self.in_plane()
         files.write_vtp(self.directory / "plane.vtp", points, {**arrays, "Mass": [10.0] * 100})
         name, size, _, values = self.project("--project", "z", "--resolution", "15", source="plane.vtp")
@@ -64,7 +64,8 @@ class Project(CommandLineTest):
             self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
 
     def test_film(self):
-        """Each step gives one image, listed or numbered, with the same bytes as a single run. A step that fails does not end the film."""
+        """A film has one image for each step, in a list or with the step's number in its name. Each has the same bytes as in a single run.
+        A step that fails does not end the film."""
         options = ["--project", "z", "--resolution", "9", "--box=-1,1,-1,1,-1,1"]
         self.project(*options)
         expected = self.image.read_bytes()
@@ -87,7 +88,8 @@ class Project(CommandLineTest):
             self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else "^$")
 
     def test_steps_without_fluid(self):
-        """The image of a step without particles has the neighbouring step's pixels. Their values are 0, or NaN in a mean."""
+        """The image of a step without particles has as many pixels of the same size as the neighbouring step's. The values are 0, or NaN if
+        the image shows a mean."""
         files.write_vtp(self.directory / "none.vtp", [], {})
         options = ["--project", "z", "--resolution", "9", "--scalar", "Kind"]
         for more, empty in (([], lambda value: value == 0), (["--weighted-by", "Mass"], math.isnan)):

@@ -27,11 +27,12 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Expects a run that is refused; the surface of an earlier run may be there."""
+        """Checks that the run is refused with this status and sentence. The surface of an earlier run may be there."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):
-        """Returns the volume, or area, of the free surface. stderr must hold `words`, or be empty if there are none."""
+        """Returns the volume, or in a plane the area, within the free surface. stderr must match `words`, or be empty
+        if there are none."""
         self.statistics = self.succeed(*FREE, *options, source=source, told=words)["statistics"]
         return self.statistics.get("volume", self.statistics.get("area"))
 
@@ -180,8 +181,8 @@ class RealFiles(CommandLineTest):
     # ---- particles among meshes ----
 
     def test_pieces_of_meshes(self):
-        """Among pieces with vertices, points of a piece whose cells are no vertices are not particles. If no piece has vertices, all points are.
-        Points without cells always are."""
+        """If any piece of a file has vertices, points of a piece with only other cells are no particles. If no piece has vertices, all
+        points are particles. Points of a piece without cells always are."""
         tank, corners = block((6, 6, 6)), block((2, 2, 2), 5, (9, 9, 9))
         files.write_vtu(self.directory / "water.vtu", tank, {})
         files.write_vtu(self.directory / "hull.vtu", corners, {}, [(12, range(8))])
@@ -254,7 +255,8 @@ class RealFiles(CommandLineTest):
         return file
 
     def test_csv(self):
-        """Columns become vectors and whole numbers, to contour and to carry. wheel.tables compares what is read, and refused, with Python's reader."""
+        """Columns of a table become vectors and arrays of whole numbers, which may be contoured and are carried to the surface.
+        wheel.tables compares what is read, and refused, with Python's reader."""
         paraview = "\n".join(['"Density","Vel:0","Vel:1","Vel:2","Points:0","Points:1","Points:2","Point ID"'] + [
             f"1000,{p[0]},{2 * p[1]},0,{p[0]},{p[1]},{p[2]},{i}" for i, p in enumerate(block((6, 6, 6)))])
         file = self.check_table("paraview.csv", paraview)

@@ -16,8 +16,8 @@ class Smooth(CommandLineTest):
         self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
 
     def test_factors_in_a_file(self):
-        """Lengths that a file has multiplied by the factors make the same surface, if volumes and cubes are those of the original
-        lengths."""
+        """A file whose smoothing lengths are multiplied by the factors of --widening gives the same surface as --widen, if volumes and
+        cubes are those of the original lengths."""
         for computed in (True, False):
             arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (
                 "Mass", "Density", "Volume")}
@@ -32,7 +32,8 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_gauges_read_the_widened_field(self):
-        """A gauge's level lies on the widened surface, and in a film gauges and pieces read the same field, with computed volumes, too."""
+        """A gauge's level lies on the widened surface. In a film, gauges and pieces read the same field. Both hold with computed volumes,
+        too."""
         files.write_vtp(self.directory / "bare.vtp", self.points, {"SmoothingLength": self.arrays["SmoothingLength"]})
         for source in (self.input, "bare.vtp"):
             levels = []
@@ -50,7 +51,7 @@ class Smooth(CommandLineTest):
             self.assertEqual(len({round(level, 6) for level in levels}), 2, levels)
 
     def test_pieces(self):
-        """Threads at the rims of sheets stay connected."""
+        """--smooth keeps threads at the rims of sheets connected, so the number of pieces stays."""
         table = self.directory / "pieces.csv"
         for options in ([], ["--smooth"]):
             self.extract_good("--free-surface", "--components", table, *options, source=pathlib.Path(__file__).parents[2] / "Examples"
@@ -58,7 +59,7 @@ class Smooth(CommandLineTest):
             self.assertEqual(len(table.read_text().splitlines()), 1 + 9)
 
     def test_empty(self):
-        """Where the field never reaches the iso value, the surface is empty, with smoothing as without."""
+        """If the field never reaches the iso value, the surface is empty, with and without smoothing."""
         for field in (["--free-surface"], ["--scalar", "Density"]):
             for options in ([], ["--compact"], ["--smooth"]):
                 self.run_good(self.input, self.directory / "empty.vtp", *field, "--iso", "5000", *options,

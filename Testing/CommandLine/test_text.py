@@ -9,7 +9,7 @@ import xml.etree.ElementTree
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, main
 
-# These characters act on a terminal: control characters (some take two UTF-8 bytes), line separators, and marks that turn the direction of
+# Characters that act on a terminal: control characters (some take two UTF-8 bytes), line separators, and marks that change the direction of
 # writing.
 UNSAFE = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 
@@ -18,7 +18,8 @@ class Text(CommandLineTest):
     """Tests that printed text cannot steer a terminal, and that every written file is valid."""
 
     def printed(self, result):
-        """Returns standard error and output, which must be UTF-8 without control characters."""
+        """Returns standard error and standard output as text, which must be UTF-8 without characters that act on a
+        terminal."""
         text = (result.stderr + result.stdout).decode("utf-8")
         self.assertIsNone(UNSAFE.search(text), ascii(text))
         return text

@@ -9,7 +9,7 @@ WRITERS = {".vtp": files.write_vtp, ".vtu": files.write_vtu, ".vtk": files.write
 
 
 class Walls(CommandLineTest):
-    """Compares fluid (Kind 0) and walls (Kind 1) in separate files with one file and --fluid."""
+    """Compares fluid (Kind 0) and walls (Kind 1) in separate files with both in one file and --fluid."""
 
     def setUp(self):
         super().setUp()
@@ -39,7 +39,8 @@ class Walls(CommandLineTest):
                          self.surface(*free, "--fluid", "Kind=0"))
 
     def test_several_bodies(self):
-        """Walls may come in all formats and any order. Arrays that walls lack are filled from the fluid, whose particles are all alike here."""
+        """Walls may come in several formats and in any order. Arrays that walls lack get the fluid's value, which is the same for all
+        particles here."""
         wanted = self.surface(*HOW, "--fluid", "Kind=0")
         lacking = ["Density", "Velocity", "SmoothingLength", "Mass", "Radius"]
         low = self.write("Left.vtu", lambda kind, point: kind == 1 and point[1] < 0, lacking[:2])
@@ -58,7 +59,8 @@ class Walls(CommandLineTest):
         self.assertNotIn("IsWall", text)
 
     def test_film(self):
-        """Steps are interpolated though walls and fluid use the same numbers, because each body counts from 0."""
+        """Steps are interpolated even if walls and fluid use the same numbers, because the particles of each body are
+        counted from 0."""
         numbers = {0: 0, 1: 0}
         self.arrays["Idp"] = []
         for kind in self.arrays["Kind"]:
@@ -74,7 +76,7 @@ class Walls(CommandLineTest):
         self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
 
     def test_walls_of_each_step(self):
-        """Walls of the same step are found by the number in the name, or by a list. Walls in a single file stand still."""
+        """The walls of each step are found by the number in the file's name, or by a list. Walls in a single file stand still."""
         steps, wanted = (0, 12), []
         still = self.write("Still.vtp", lambda kind, point: kind == 1 and point[1] < 0)
         for step, fluid in zip(steps, ("Fluid_0000.vtp", "Fluid_0012.vtp")):

@@ -9,7 +9,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-/* Several iso values in one call give the surfaces of single calls. */
+/* Several iso values in one call give the same surfaces as calls for single values. */
 static void test_several_iso_values(void** state)
 {
   CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
@@ -158,8 +158,8 @@ static void test_order_of_input(void** state)
   CORE_CHECK(different == 0, different);
 }
 
-/* A memory limit below the peak fails with a sentence. A limit at the peak suffices, even while the context keeps
- * buffers from other particles. */
+/* With a memory limit below the peak, a call fails with a message. A limit at the peak suffices, even if the context
+ * keeps buffers from other particles. */
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;
@@ -187,8 +187,8 @@ static void test_memory_limit(void** state)
   assert_true(core_hash_of(context, &input, &options) == expected);
 }
 
-/* A large buffer that was released serves the next request of about its size. Other kept buffers are freed if the
- * context would otherwise hold more than this call or the last one needs; a memory limit always holds. */
+/* A large buffer that was released is used for the next request of about its size. Other kept buffers are freed if the
+ * context would otherwise hold more than this call or the last call needs. A memory limit always holds. */
 static void test_kept_buffers(void** state)
 {
   mcor_context* context = *state;
@@ -315,8 +315,8 @@ static void test_statistics(void** state)
   assert_true(s->device[0] && s->platform[0]);
 }
 
-/* The number of lanes follows from the registers that the device's compiler uses, not from the width that the device
- * claims. */
+/* The number of lanes follows from the width of the registers that the device's compiler uses, not from the width that
+ * the device reports. */
 static void test_lanes(void** state)
 {
   mcor_context* context = *state;
@@ -345,8 +345,8 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* In a context's first run with a kernel a driver builds programs, and a message says so; in a later run it does not.
- * The built-in device's programs are built ahead, so there is no message. */
+/* If a driver builds programs for a context's first run with a kernel, a progress message says so; a later run builds
+ * nothing. The built-in device's programs are built ahead, so there is no message. */
 static void test_build(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -418,7 +418,8 @@ static void read_profile(const char* path, int64_t wanted, profiled* found)
   fclose(file);
 }
 
-/* A profile has all phases of each call, and what each of them asks of the device; the surface stays the same. */
+/* A profile has the seconds of all phases of each call, and of the device's commands in each phase. It does not change
+ * the surface. */
 static void test_profile(void** state)
 {
   const char* path = "core_context_profile.csv";
@@ -468,7 +469,8 @@ static void test_profile(void** state)
   /* A call fails if its row of the profile does not fit on the disk. */
   CORE_CONTEXT full = NULL;
   CORE_OK(full, mcor_create_context(NULL, &full));
-  /* Drivers write files, too, when they build programs, so these are built before the limit holds. */
+  /* Drivers also write files when they build programs, so a run builds the programs before the limit of file sizes
+   * holds. */
   CORE_SURFACE built = core_extract(full, &input, &options);
   struct rlimit limit, small = { .rlim_cur = 200 };
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);

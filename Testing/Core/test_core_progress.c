@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests progress reports, and runs that they cancel. */
+/* Tests progress reports, and runs that a report's callback cancels. */
 
 #include "core_fixture.h"
 
@@ -21,7 +21,7 @@ static int on_progress(void* user, double fraction, const char* phase)
   return c->calls++ == c->stop_at;
 }
 
-/* Makes one call of a kind that launches kernels. */
+/* Makes one call of a kind (surface, probe, ...) that launches kernels. Frees the result. */
 static mcor_status run_kind(
   mcor_context* context, int kind, const mcor_input* input, const mcor_options* options)
 {
@@ -47,7 +47,7 @@ static mcor_status run_kind(
 }
 
 /* If each launch reports, there are many reports, and the fraction never falls. After a report whose callback asks to
- * stop, nothing is launched. */
+ * stop, no kernel is launched. */
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;
@@ -96,8 +96,8 @@ static int count_phase(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* Each phase can be cancelled at many places, also where it launches little: loops of the host and copies ask, too.
- * (The built-in device asks somewhat more often than drivers.) */
+/* Each phase reports at many places, where it can be cancelled. Loops of the host and copies report, too, so this holds
+ * for phases with few launches. (The built-in device reports somewhat more often than drivers.) */
 static void test_all_phases_ask(void** state)
 {
   mcor_context* context = *state;
@@ -130,7 +130,8 @@ static void test_all_phases_ask(void** state)
   context->report_interval = interval;
 }
 
-/* Where sums have very many terms, a launch is cut into parts that each report; no bit changes. */
+/* If sums have very many terms, a launch is cut into parts, and each part reports. No bit changes.
+ * */
 static void test_long_launches_are_cut(void** state)
 {
   mcor_context* context = *state;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a context keeps between calls never changes a result. Every parameter is changed alone, right after a call, and
- * changed back; a new context has the same results. */
+/* Checks that data that a context keeps between calls never change a result. Each parameter alone is changed right
+ * after a call, and changed back. Each time a new context must give the same result. */
 
 #include "core_fixture.h"
 
@@ -18,7 +18,7 @@ typedef struct reuse_call
   mcor_options options;
 } reuse_call;
 
-/* Where the particles' sizes come from, and what is contoured. */
+/* Starting points of the tests: where the particles' sizes come from, and what is contoured. */
 typedef enum reuse_base
 {
   REUSE_ARRAYS, /* smoothing lengths and volumes as arrays */
@@ -107,7 +107,7 @@ static void set_base(reuse_call* call, reuse_base base)
   o->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
 }
 
-/* Changes one parameter. Versions only say whether arrays' contents changed; anything else in the input or the options
+/* A change of one parameter. Versions only say whether arrays' contents changed; all else in the input or the options
  * may change without a new version. */
 typedef struct reuse_step
 {
@@ -239,7 +239,7 @@ static uint64_t hash_of(mcor_context* context, const reuse_call* call, const cha
   return hash;
 }
 
-/* Returns the hash from a new context. */
+/* Returns the hash of the same call in a new context. */
 static uint64_t fresh_hash(const reuse_call* call, const char* step)
 {
   CORE_CONTEXT context = NULL;
@@ -250,7 +250,7 @@ static uint64_t fresh_hash(const reuse_call* call, const char* step)
   return hash;
 }
 
-/* Runs the step's base, the change, the change again, and the base. Returns how many results are wrong. */
+/* Runs the step's base, then twice the changed call, then the base again. Returns how many results are wrong. */
 static int check_step(
   mcor_context* context, reuse_call* call, const reuse_step* step, const uint64_t* base)
 {
@@ -297,7 +297,7 @@ static int stop_in(void* user, double fraction, const char* phase)
   return strcmp(phase, (const char*)user) == 0;
 }
 
-/* Makes a call fail: for kind 0 while options are checked, for others in one of the phases. */
+/* Makes a call fail: for kind 0 when options are checked, else in phase `kind`. */
 static void fail_call(mcor_context* context, const reuse_call* call, int kind)
 {
   mcor_options options = call->options;
@@ -312,8 +312,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   assert_true(!surface.points && surface.point_count == 0);
 }
 
-/* The next call does not take data that a failed call announced by new versions, and a failed call does not spoil what
- * the call before it left. */
+/* A failed call may announce other data by new versions. The next call must not take these data for kept ones, and what
+ * the call before the failed one left must stay right. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;
@@ -353,7 +353,7 @@ static void test_failed_calls(void** state)
   end_call(&call);
 }
 
-/* Makes calls that together use every buffer there is. */
+/* Makes calls that together use all the buffers that a context may hold. */
 static void extract_all(mcor_context* context, reuse_call* call)
 {
   for (int kind = 0; kind < 16; ++kind)
@@ -371,7 +371,8 @@ static void extract_all(mcor_context* context, reuse_call* call)
   }
 }
 
-/* After a release only tables are held, whose size does not depend on the input. */
+/* After mcor_release_memory a context holds only tables, whose size does not depend on the input.
+ * */
 static void test_release(void** state)
 {
   CORE_CONTEXT context = NULL;
@@ -397,7 +398,7 @@ static void test_release(void** state)
   end_call(&call);
 }
 
-/* Global values are parameters, too. */
+/* Checks that a change of global values changes the result, even if all else stays. */
 static void test_globals(void** state)
 {
   reuse_call call;

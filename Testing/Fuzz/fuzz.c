@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes numbers from bytes, keeps contexts, and has the checks that all targets share. */
+/* Makes numbers from bytes, keeps contexts for later calls, and has the checks that all targets
+ * share. */
 
 #include "fuzz.h"
 
@@ -35,7 +36,7 @@ unsigned fuzz_byte(fuzz_bytes* bytes)
   return *bytes->at++;
 }
 
-/* Returns a factor: usually an ordinary one, now and then one that nobody should use. */
+/* Returns a factor: usually 1, sometimes one that nobody should use. */
 double fuzz_scale(fuzz_bytes* bytes)
 {
   static const double scales[] = { 1e-30, 1e30, 1e-9, 1e9, 1e-300, 1e300, 1e-20, 1e20 };
@@ -50,7 +51,7 @@ double fuzz_positive(fuzz_bytes* bytes)
   return b < 248 ? 0.25 + 0.25 * (b % 8) : odd[b - 248];
 }
 
-/* Returns one of a few values, so that equal values are frequent. */
+/* Returns a value, usually one of nine, so that equal values are frequent; sometimes an odd one. */
 double fuzz_value(fuzz_bytes* bytes)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 0.1, 1e300 };
@@ -72,8 +73,9 @@ double* fuzz_array(fuzz_call* call, int slot, size_t count)
   return call->arrays[slot];
 }
 
-/* Returns a context from a table of two for each device program, because creating one takes longer
- * than a call. forgetful: returns the context that keeps nothing from its last call. */
+/* Returns a context for the call's device program. It is made once, because making one takes longer
+ * than a call. Each program has two. forgetful: the one whose kept data are released before each
+ * call. */
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
   static mcor_context* contexts[2][2][3][2];
@@ -104,7 +106,8 @@ int fuzz_finite(const void* values, int64_t count, size_t width)
   return 1;
 }
 
-/* A device error would mean that a kernel or a launch is wrong. */
+/* Checks the status and message of a call that failed. A device error is a fault: it would mean
+ * that a kernel or a launch is wrong. */
 void fuzz_check_failure(const mcor_context* context, mcor_status status)
 {
   const char* message = mcor_last_error(context);

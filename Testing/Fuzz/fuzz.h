@@ -55,14 +55,15 @@ typedef struct fuzz_call
 double* fuzz_array(fuzz_call* call, int slot, size_t count);
 
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
-/* Whether all floats, or doubles, by their width in bytes, are finite. */
+/* Returns whether all values are finite. width: bytes of each, 4 for floats, 8 for doubles. */
 int fuzz_finite(const void* values, int64_t count, size_t width);
 void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
-/* In fuzz_modules.c. fuzz_regions sets box, period, walls and cubes of the call; fuzz_flatten moves its particles into a
- * plane; the others test global values, ranks, probe, derivatives and gauges with it. */
+/* In fuzz_modules.c. fuzz_regions sets box, period, walls and cubes of the call. fuzz_flatten moves its particles into
+ * a plane. fuzz_other_calls and fuzz_gauge make other calls with its particles: global values, ranks, probe,
+ * derivatives, gauges. */
 void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_flatten(unsigned how, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);

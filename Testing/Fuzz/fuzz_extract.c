@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes a call of mcor_extract from bytes, and checks what holds for every call: it does not crash;
- * its status is in range; a failure has a sentence and an empty surface; otherwise indices are
- * valid, numbers are finite, and no triangle names a point twice; and a context that keeps what it
- * can gives the same bits as one that keeps nothing. */
+/* Makes a call of mcor_extract from bytes, and checks what must hold for every call. It does not
+ * crash, and its status is in range. If it fails, there is a message and an empty surface. If not,
+ * indices are valid, numbers are finite, and no triangle names a point twice. A context that keeps
+ * data gives the same bits as one that keeps nothing. */
 
 #include "fuzz.h"
 
@@ -64,7 +64,7 @@ static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
   in->solid = kind & 0x80 ? solid : NULL;
 }
 
-/* Chooses which array plays which part. */
+/* Chooses which of the arrays the input has as volume, mass, and so on. */
 static void fuzz_parts(unsigned rules, fuzz_call* call)
 {
   const mcor_array none = { 0 };
@@ -89,7 +89,8 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   mcor_options* o = &call->options;
   const unsigned what = fuzz_byte(bytes), modes = fuzz_byte(bytes);
   mcor_set_default_options(o);
-  /* There are few combinations, because each needs its own device program. */
+  /* Only a few combinations of kernel and field are tried, because each needs its own device
+   * program. */
   o->sph_kernel = (mcor_sph_kernel)(modes % 16 == 15 ? MCOR_SPH_KERNEL_COUNT
       : modes % 16 > 11                              ? MCOR_M_PRIME_4
                                                      : 0);
@@ -187,7 +188,8 @@ static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mc
   return status;
 }
 
-/* Moves all particles; their range stays. */
+/* Moves all particles by exchanging their coordinates: x, y, z become y, z, x. The range of all
+ * coordinates together stays. */
 static void fuzz_move(fuzz_call* call)
 {
   const size_t n = (size_t)call->input.count;
@@ -215,7 +217,7 @@ static void fuzz_other_scalar(fuzz_call* call)
   ++call->input.scalar_version;
 }
 
-/* Changes one thing in a call. Where an array's content changes, its version does, too. */
+/* Changes one thing in a call. If the contents of an array change, so does its version. */
 static void fuzz_change(unsigned what, fuzz_call* call)
 {
   mcor_input* in = &call->input;
@@ -294,7 +296,7 @@ static void fuzz_change(unsigned what, fuzz_call* call)
   }
 }
 
-/* Compares the call on the context that keeps what it can with one on the context that keeps
+/* Compares the call's result on a context that keeps data with the result on a context that keeps
  * nothing. */
 static void fuzz_compare(const fuzz_call* call)
 {
@@ -309,20 +311,21 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Makes a call with these versions fail. */
+/* Makes a call fail that has the versions of the next call. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;
   mcor_surface surface;
   failing.options.iteration_limit = 0;
   const mcor_status status = fuzz_extract(fuzz_context(call, 0), &failing, &surface);
-  /* Particles that lie in no plane, or whose walls lie in another, are refused earlier. */
+  /* Two dimensions may be refused earlier: if particles lie in no plane, or walls in another plane
+   * than the fluid. */
   FUZZ_CHECK(status == MCOR_INVALID_ARGUMENT ||
     (status == MCOR_INVALID_DATA && failing.options.dimension != 3));
   mcor_free_surface(&surface);
 }
 
-/* Makes the call, one that differs in one thing, and the call again. */
+/* Makes the call, then one with a single change, then the first call again. */
 static void fuzz_calls(fuzz_call* call, unsigned change, size_t size)
 {
   static uint64_t version = 0;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Runs the fuzz target without a fuzzer: on the named files, then on the `--random N` random
+/* Runs the fuzz target without a fuzzer: on the named files, then, with --random N, on N random
  * inputs, which are the same on every machine. */
 
 #include <stdint.h>

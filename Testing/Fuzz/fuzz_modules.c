@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the modules beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives, gauges,
- * and particles of two dimensions. */
+/* Tests modules that not every run uses: box, period, walls, adaptive cubes, global values, ranks, probe, derivatives,
+ * gauges, and particles in a plane. */
 
 #include "fuzz.h"
 
@@ -57,7 +57,8 @@ static void fuzz_check_alike(
   mcor_free_surface(&surfaces[1]);
 }
 
-/* A run with global values measured from its own input is the same as a run without. */
+/* Checks that a run with global values measured from its own input is the same as a run without
+ * them. */
 static void fuzz_globals(const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -76,7 +77,8 @@ static void fuzz_globals(const fuzz_call* call)
   mcor_free_globals(&globals);
 }
 
-/* The surfaces of the cells whose centres lie on either side of a plane make the whole. */
+/* Checks that the boxes on both sides of a plane have together as many cells and triangles as the
+ * whole surface. */
 static void fuzz_halves(const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -104,7 +106,7 @@ static void fuzz_halves(const fuzz_call* call)
   FUZZ_CHECK(triangles[1] + triangles[2] == triangles[0]);
 }
 
-/* A single rank, one of whose callbacks fails. */
+/* A single rank. Its callback number `failing` fails. */
 typedef struct fuzz_rank
 {
   int calls, failing;
@@ -137,7 +139,8 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
-/* A single rank measures and extracts what a run without ranks does. Without particles it can measure nothing. */
+/* Checks that a single rank measures and extracts the same as a run without ranks. Without particles it can measure
+ * nothing. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -189,7 +192,8 @@ static void fuzz_check_samples(const fuzz_call* call, const mcor_samples* s)
   }
 }
 
-/* Probes points, some at particles, some odd; a point by itself has the same bits. */
+/* Probes points, some at particles, some odd. Checks that a point alone has the same bits as among
+ * others. */
 static void fuzz_probe(fuzz_bytes* bytes, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);

@@ -18,7 +18,7 @@ def read(file):
 
 
 def corners(surface):
-    """Returns the triangles as rows of points."""
+    """Returns the triangles as rows of three point numbers."""
     return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
@@ -37,7 +37,7 @@ def add(data, **arrays):
 
 
 def take(whole, indices):
-    """Returns these points with their arrays and the time of the whole, but without cells."""
+    """Returns the points with these indices, with their arrays and the time of the whole, but without cells."""
     part = vtkPolyData()
     part.SetFieldData(whole.GetFieldData())
     part.SetPoints(vtkPoints())
@@ -60,7 +60,8 @@ def xml_array(array):
 
 
 def write_pieces(source, folder, count):
-    """Writes the particles of a file, shuffled, into `count` files. Returns the .pvtp file."""
+    """Writes the particles of a file to `count` files, each particle to a random one. Returns the .pvtp file that lists
+    them."""
     whole = read(source)
     owner = np.random.default_rng(7).integers(0, count, whole.GetNumberOfPoints())
     for piece in range(count):
@@ -76,7 +77,8 @@ def write_pieces(source, folder, count):
 
 
 def difference(union, alone):
-    """Returns what differs, bit for bit, between the union of the pieces and the surface of one process, or ''."""
+    """Returns the name of what differs, bit for bit, between the union of the pieces and the surface of one process, or
+    ''."""
     numbers = vtk_to_numpy(union.GetPointData().GetArray("GlobalPointIds"))
     if not np.array_equal(np.unique(numbers), np.arange(alone.GetNumberOfPoints())):
         return "the numbers of the points"

@@ -19,7 +19,7 @@ from particle_pieces import arrays_of, difference, read, write_pieces  # noqa: E
 from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 PARTICLES = os.path.join(os.environ["MCOR_TEST_DATA"], "double_dam_break_small.vtp")
-# ParaView 5.12 gave the filter and its array other names.
+# In ParaView 5.12 this filter and its array got other names.
 PROCESS_IDS, NUMBER = ((simple.ProcessIds, "PointProcessIds") if hasattr(simple, "ProcessIds")
                        else (simple.ProcessIdScalars, "ProcessId"))
 CASES = {
@@ -37,14 +37,14 @@ def extract(particles, name):
 
 
 def probe(particles):
-    """Probes the field and derives the velocity at the particles' own places."""
+    """Makes the derivatives of the speed, then probes the field at the particles' own places."""
     derived = SPHDerivatives(Input=particles, Array=["POINTS", "Speed"])  # noqa: F821
     found = SPHProbe(Points=derived, Particles=derived)  # noqa: F821
     found.UpdatePipeline()
     return found
 
 
-# Files are binary, because small appended data cannot be read with VTK 9.1 and a recent expat.
+# DataMode is "Binary", because VTK 9.1 with a recent expat cannot read small files of appended data.
 def write_alone(folder):
     write_pieces(PARTICLES, folder, 5)
     particles = XMLPolyDataReader(FileName=[PARTICLES])
@@ -82,7 +82,7 @@ def check_ranks(folder, ranks):
         assert alone.GetNumberOfPolys() > 1000, name
         problem = difference(union, alone)
         assert not problem, (name, problem)
-        # Each process has a color, and points on seams appear in two pieces.
+        # The points name all processes as owners, and points on seams appear in two pieces.
         owners = np.unique(vtk_to_numpy(union.GetPointData().GetArray(NUMBER)))
         assert list(owners) == list(range(ranks)), owners
         shared = union.GetNumberOfPoints() - alone.GetNumberOfPoints()

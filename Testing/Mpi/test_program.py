@@ -59,7 +59,8 @@ class Program(unittest.TestCase):
         return done
 
     def sentences(self, done):
-        """Returns the program's lines, except the one about a driver's first compilation, which any run may print."""
+        """Returns the sentences that the program printed, except the one about a driver's first compilation, which any
+        run may print."""
         return [line for line in done.stderr.splitlines()
                 if line.startswith("marching-correctors:") and "for the first time" not in line]
 
@@ -77,7 +78,8 @@ class Program(unittest.TestCase):
                                           array.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
-        """Fails unless processes with pieces of the particles write to one file what one process writes: points, triangles and arrays."""
+        """Fails unless several processes, which read pieces of the particles, write one file with the same points, triangles and arrays as
+        one process."""
         done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
@@ -104,7 +106,8 @@ class Program(unittest.TestCase):
         return self.path("plane.vtp")
 
     def check_same(self, name, particles, pieces, *how):
-        """Fails unless processes with `pieces` pieces (0: with the whole file) write byte for byte the file of one process."""
+        """Fails unless several processes write the same bytes as one process. They read the particles from `pieces` files (0: from one
+        file). Returns both runs."""
         source = write_pieces(particles, self.folder.name, pieces) if pieces else particles
         alone = self.good(self.run_alone(particles, self.path("alone_" + name), *how))
         done = self.good(self.run_ranks(source, self.path(name), *how))
@@ -112,7 +115,7 @@ class Program(unittest.TestCase):
         return alone, done
 
     def test_in_a_plane(self):
-        """Compares files of filled regions with their lines, in one file and in pieces; test_ranks.py compares more surfaces."""
+        """Compares filled regions and their lines, in one file and in pieces; test_ranks.py compares more surfaces."""
         how = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--scalar", "Speed", "--iso", "1,2", "--filled", "--weight-sum", "--gradients",
                "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0"]
         self.check_same("out.vtp", self.write_plane(), 3, *how)
@@ -125,8 +128,8 @@ class Program(unittest.TestCase):
         self.check_point_data(alone, ranks)
 
     def test_same_file(self):
-        """Compares trimmed surfaces, two iso values, and a period in a box, including the order of points and triangles. The first process reads the
-        walls' files, which hold some of the fluid's places here."""
+        """Compares surfaces including the order of points and triangles: trimmed, with two iso values, and with a period in a box. Files of
+        walls, which hold some of the fluid's places here, are read by the first process."""
         write_pieces(PARTICLES, self.folder.name, 4)
         walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
         trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]
@@ -158,7 +161,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "no/o.csv")
 
     def test_types_of_pieces(self):
-        """An array that is int8 in one piece and float64 in the others has the same values, whichever process reads the int8 piece."""
+        """An array that is int8 in one piece and float64 in the others gets the same values, whichever process reads the int8 piece."""
         whole = read(PARTICLES)
         steps = np.floor(vtk_to_numpy(whole.GetPointData().GetArray("Speed")))
         write(add(whole, Steps=steps), self.path("whole.vtp"))
@@ -195,8 +198,8 @@ class Program(unittest.TestCase):
             self.assertEqual(said[0], said[1])
 
     def test_particle_distance(self):
-        """All particles decide the dimension: first each piece lies in a plane of its own; then all lie in one plane, apart from ignored
-        walls."""
+        """The particles of all processes together decide the dimension. First each piece lies in a plane of its own, then all lie in one
+        plane, apart from ignored walls."""
         plane = read(self.write_plane())
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)
@@ -210,7 +213,8 @@ class Program(unittest.TestCase):
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_period_of_data(self):
-        """The period comes from the field data, which one piece may lack. Different periods in two pieces are refused."""
+        """With --periodic auto the period comes from the field data, which one piece may lack. Different periods in two pieces are
+        refused."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
@@ -230,7 +234,7 @@ class Program(unittest.TestCase):
         write(part, self.path(piece))
 
     def test_empty(self):
-        """A surface without points has the arrays that one process writes, in one file and in pieces."""
+        """A surface without points has the same arrays as one process writes, in one file and in pieces."""
         def forms(file):
             surface = read(self.path(file))
             self.assertEqual(surface.GetNumberOfPoints(), 0)
@@ -250,7 +254,7 @@ class Program(unittest.TestCase):
                 self.assertEqual(forms(part), alone)
 
     def test_pieces(self):
-        """Pieces are read and written; there are more pieces than processes."""
+        """Processes read and write pieces. There are more pieces than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
         self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface"))
         self.good(self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface"))
@@ -261,7 +265,7 @@ class Program(unittest.TestCase):
         self.assertEqual(ranks.GetCellData().GetGlobalIds().GetName(), "GlobalCellIds")
 
     def test_probe(self):
-        """Points come from one file, particles from pieces; one process makes the same arrays, to the last byte."""
+        """Probes points of one file in particles of several pieces. The arrays equal one process's to the last byte."""
         image = vtkImageData()
         low, high = np.reshape(read(PARTICLES).GetBounds(), (3, 2)).T
         image.SetOrigin(*low)
@@ -281,8 +285,8 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_factors(self):
-        """--widening: the first process writes all particles in the order of the pieces, with the arrays that one process finds. One particle is so
-        far away that it is left out."""
+        """With --widening, the first process writes all particles in the order of the pieces, with the arrays that one process finds. One
+        particle is so far away that it is left out."""
         particles = read(PARTICLES)
         particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
         for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3", "--no-attributes"]):
@@ -304,7 +308,7 @@ class Program(unittest.TestCase):
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
 
     def test_names_of_factors(self):
-        """Arrays of the particles may have the names of arrays that widening makes; they are contoured and interpolated as usual."""
+        """Arrays of the particles may have the names of arrays that widening makes. They are contoured and interpolated as usual."""
         particles = read(PARTICLES)
         x = vtk_to_numpy(particles.GetPoints().GetData())[:, 0]
         write(add(particles, Widening=x, WideningVolume=x), self.path("in.vtp"))
@@ -339,8 +343,8 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """A film with its tables, at stored times and between, and gauges have the same bytes as one process makes. A step that fails is named once,
-        and all other steps are made."""
+        """A film with its tables, at stored times and between them, and gauges have the same bytes as one process makes. A step that fails
+        is named once, and all other steps are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")
@@ -365,7 +369,7 @@ class Program(unittest.TestCase):
         self.check_fails(picture, "--screenshot")
 
     def test_components(self):
-        """The table of pieces, and the surface with their numbers, have the same bytes as one process makes."""
+        """The table of pieces, and the surface with the pieces' numbers, have the same bytes as one process makes."""
         walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping", "--periodic", "0,0,0.67"]
         for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
                                (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),
@@ -439,7 +443,7 @@ class Program(unittest.TestCase):
             self.assertEqual({name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}, before)
 
     def test_usage(self):
-        """A mistake on the command line is told once, even if the first process is the last to see it."""
+        """A mistake on the command line is reported once, even if the first process is the last to see it."""
         done = self.run_ranks(PARTICLES, self.path("o.vtp"), "--nope", first="test $rank != 0 || sleep 1;")
         self.check_fails(done, "--nope")
 
@@ -449,7 +453,7 @@ class Program(unittest.TestCase):
         self.assertGreater(np.count_nonzero(self.image_arrays(self.path("slice.vti"))["vtkValidPointMask"]), 100)
 
     def test_first_without_particles(self):
-        """Sentences about the particles, and the choice of the active array, do not depend on which process has the particles."""
+        """Messages about the particles, and the choice of the active array, do not depend on which process has the particles."""
         particles = read(PARTICLES)
         write(add(particles, Type=(np.arange(particles.GetNumberOfPoints()) % 5 == 0).astype(np.int32)), self.path("in.vtp"))
         pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
@@ -465,7 +469,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--scalar", "Nope", "--iso", "1"), "Nope")
 
     def test_bad_value(self):
-        """A NaN in one piece fails on all processes, with one sentence."""
+        """A NaN in one piece fails the run on all processes, with one sentence."""
         pieces = write_pieces(PARTICLES, self.folder.name, 2)
         part = read(self.path("piece_1.vtp"))
         part.GetPoints().SetPoint(5, float("nan"), 0, 0)

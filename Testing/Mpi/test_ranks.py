@@ -32,16 +32,16 @@ DAMS, DAM = "double_dam_break_small", "dam_break_45k"  # The second one has wall
 DOUBLE = vtkMarchingCorrectors.DOUBLE_PRECISION
 INDEX = "TestIndex"
 
-# ---- How particles are strewn ----
+# ---- How particles are spread over ranks ----
 
 
 def slab(at, count):
-    """Returns the slab of each place; NaN counts as the first slab."""
+    """Returns which of `count` slabs each place is in. Places are from 0 to 1; NaN counts as the first slab."""
     return np.minimum(np.nan_to_num(at * count, nan=0).astype(int), count - 1)
 
 
 def random_rank(index, count):
-    """Returns numbers that look random but are the same on every machine."""
+    """Returns a rank below `count` for each index. Ranks look random but are the same on every machine."""
     bits = (index * 2654435761) & 0xffffffff
     bits ^= bits >> 15
     return (((bits * 2246822519) & 0xffffffff) >> 8) % count
@@ -58,12 +58,12 @@ WAYS = {
 
 
 def ways_of(number):
-    """Returns the ways in which the case with this number is strewn."""
+    """Returns the ways in which the particles of the case with this number are spread over ranks."""
     return [list(WAYS)[number % len(WAYS)]] if SOME else list(WAYS)
 
 
 def take_part(whole, way, rank=RANK, count=COUNT):
-    """Returns a rank's share. With duplicates, several ranks have the same particles."""
+    """Returns the particles of one rank. In ways named "copies", several ranks have the same particles."""
     x, bounds = vtk_to_numpy(whole.GetPoints().GetData()), np.reshape(whole.GetBounds(), (3, 2))
     index = np.arange(len(x), dtype=np.int64)
     own = WAYS[way](index, (x - bounds[:, 0]) / (bounds[:, 1] - bounds[:, 0] + 1e-9), count) == rank
@@ -89,7 +89,7 @@ def same(found, expected):
 FREE, SPEED, FLUID = {"FreeSurface": 1}, {"Scalar": "Speed", "Values": [2.0]}, {"FluidArrayName": "ParticleType"}
 VARIED = {"Scalar": "Velocity", "Values": [1.0], **FLUID, "SmoothingLengthArrayName": "SmoothingLengthAdaptive", "CubeSizeFactor": 0.8,
           "CubeSizeMode": 1}
-# Particles' areas and smoothing lengths are larger on one side.
+# The particles of PLANE have larger areas and smoothing lengths on one side.
 LINES = {"Scalar": "Speed", "Values": [2.0, 1.0], "SmoothingLengthArrayName": "h", "VolumeArrayName": "area", "CubeSizeFactor": 0.2,
          "ComputeBoundaryFlag": 1, "CubeSizeMode": 1}
 COMPUTED, PERIODS = {"DetectArrays": 0}, {"PeriodicBounds": (-1, 1, 0, 0, -1, 0.5)}
@@ -138,7 +138,8 @@ SURFACES = {
     "filled": (PLANE, {**LINES, "Filled": 1}),
     "filled, period and box": (PLANE, {**LINES, "Filled": 1, "PeriodicBounds": (0, 0, -0.2, 0.9, 0, 0), **BOX})}
 
-# These statistics describe the surface, so they do not depend on how ranks share the work. All but the exact ones may differ by rounding.
+# Statistics that describe the surface do not depend on how ranks share the work. Those in EXACT must be equal, the others equal except for
+# rounding.
 EXACT = ("Area", "Volume", "Length")
 STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
               "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices", "TrimVerticesLinear",
@@ -146,8 +147,8 @@ STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", 
 
 
 def make_two_sizes():
-    """Makes small particles for x < 2 and large ones beyond, whose supports hold many small particles. A rank without large particles must be told
-    how far away its particles are needed."""
+    """Makes small particles for x < 2 and large ones beyond, whose supports hold many small particles. A rank without large particles must
+    learn from others how far away its particles are needed."""
     points, lengths = [], []
     for size, first, along in (0.05, 0.0, 40), (0.8, 2.0, 1):
         x, y, z = np.indices((along, *[round(1.2 / size)] * 2)).reshape(3, -1)
@@ -173,7 +174,8 @@ def make_particles(file):
 
 
 def take_beside_mesh(particles, way):
-    """Returns a rank's share, with vertices; the last rank has triangles of a mesh, and no vertices."""
+    """Returns the particles of one rank, with vertices. The last rank has a mesh's triangles instead, without
+    vertices."""
     is_mesh, cells = RANK == COUNT - 1, vtkCellArray()
     own = take_part(particles, way, RANK % (COUNT - 1), COUNT - 1)
     for i in range(own.GetNumberOfPoints() - 2 * is_mesh):
@@ -183,7 +185,8 @@ def take_beside_mesh(particles, way):
 
 
 def extract(settings, particles, controller):
-    """Returns the surface, and what the filter tells: the ranges and cells of this run and of the next; statistics."""
+    """Returns the surface, and what the filter reports: ranges and numbers of cells of this run and of the next one,
+    and statistics."""
     made, settings = vtkMarchingCorrectors(), dict(settings)
     made.SetController(controller)
     if "Scalar" in settings:
@@ -197,14 +200,15 @@ def extract(settings, particles, controller):
     told = {name: run.GetArray(name).GetComponent(0, 0) if run.HasArray(name) else -1.0 for name in STATISTICS}
     for name in ("FluidScalarRange", "NextScalarRange", "EstimatedCells", "NextCells"):
         told.update(((name, i), value) for i, value in enumerate(np.ravel(getattr(made, "Get" + name)())))
-    # A rank holds others' particles around its own box alone for sums over neighbours.
+    # For sums over neighbours a rank may hold other ranks' particles only around its own box.
     held = run.GetArray("RankNeighbors")
     told["holds too many"] = held is not None and held.GetComponent(0, RANK) > 0.6 * COMM.allreduce(particles.GetNumberOfPoints())
     return made.GetOutput(), told
 
 
 def cells_of(surface, ids=None):
-    """Returns the lines as lists of points, and the triangles as rows; with the points' numbers, if there are any."""
+    """Returns the lines as lists of point numbers, and the triangles as rows of point numbers. ids: other numbers for
+    the points."""
     ids = np.arange(surface.GetNumberOfPoints()) if ids is None else ids
     lines, triangles = surface.GetLines(), vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     ends = vtk_to_numpy(lines.GetOffsetsArray())[1:-1] if lines.GetNumberOfCells() else []
@@ -222,7 +226,8 @@ def part_of(surface):
 
 
 def compare_surfaces(whole, parts):
-    """Returns what differs: the same points under the same numbers with all arrays, and the same triangles and lines, each of them once."""
+    """Returns what differs between a whole surface and its parts: they must have the same points under the same numbers with all arrays,
+    and the same triangles and lines, each of them once."""
     expected, (lines, triangles) = values_of(whole), cells_of(whole)
     seen, cells = [np.empty(0, int)], [np.empty(0, int)]
     for rank, part in enumerate(parts):
@@ -247,14 +252,15 @@ def compare_surfaces(whole, parts):
 
 
 def compare_told(whole, all_told):
-    """Returns the names whose values differ between the ranks and rank 0 alone, and numbers of cells that are 0."""
+    """Returns the names of reported values that differ between the ranks and rank 0 alone, and of numbers of cells that
+    are 0."""
     unknown = [("NextScalarRange", i) for i in range(2) if whole["NextScalarRange", 1] == 0]  # One process does not sum densities ahead.
     return [name for told in all_told for name, value in told.items() if name[0] == "EstimatedCells" and value <= 0
             or name not in unknown and abs(value - whole[name]) > (0 if name in EXACT else 1e-12 * abs(whole[name]))]
 
 
 def check_surface(number, name, file, settings):
-    """Returns what differs, on rank 0."""
+    """Checks one case of surfaces. Returns what differs; only rank 0 returns any."""
     particles, problems = make_particles(file), []
     whole, told = extract(settings, particles, None) if RANK == 0 else (None, None)
     for way in ways_of(number):
@@ -267,12 +273,12 @@ def check_surface(number, name, file, settings):
     return problems
 
 
-# ---- Samples: at points, and at the particles themselves ----
+# ---- Samples of the field: at points, and at the particles themselves ----
 
 DERIVE = {"InputArrayToProcess": (0, 0, 0, 0, "Velocity"), "ComputeStrainRate": 1}
 H = {**COMPUTED, "SmoothingLength": 0.06}
 SOLIDS = {"SmoothingLengthArrayName": "SmoothingLengthAdaptive", **FLUID}
-# {name: (file, axis across which the particles are moved into a plane or None, class, settings)}
+# {name: (file, axis, class, settings)}. Particles are moved into a plane across the axis, unless it is None.
 SAMPLES = {
     "plane": (DAMS, None, vtkSPHProbe, {"ComputeGradients": 1}),
     "sum, computed volumes, M'4": (DAMS, None, vtkSPHProbe, {"ShepardNormalization": 0, **H, "KernelByName": "mprime4", "HScaleFactor": 0.9}),
@@ -290,7 +296,8 @@ SAMPLES = {
 
 
 def make_points(particles, name, constant):
-    """Makes a lattice somewhat larger than the particles' bounds, with NaN points. If the particles lie in a plane, so do most points."""
+    """Makes a lattice of points, somewhat larger than the particles' bounds, and some NaN points. If the particles lie in a plane, so do
+    most points."""
     low, high = np.reshape(particles.GetBounds(), (3, 2)).T
     cell = np.indices((1 if name == "plane" else 27, 29, 31)).reshape(3, -1)[::-1].T
     share = 1.2 * cell / [30, 28, 26] - 0.1
@@ -315,7 +322,7 @@ def sample(kind, settings, particles, points, controller):
 
 
 def check_sample(number, name, file, constant, kind, settings):
-    """Returns what differs, on any rank."""
+    """Checks one case of samples. Returns what differs on any rank."""
     particles = read(os.path.join(FOLDER, file + ".vtp"))
     add(particles, **{INDEX: np.arange(particles.GetNumberOfPoints())})
     if constant is not None:
@@ -339,7 +346,7 @@ def check_sample(number, name, file, constant, kind, settings):
 
 
 def check_without_points():
-    """A probe without points on the last rank fails on all ranks, and no rank waits for it."""
+    """A probe whose input is missing on the last rank fails on all ranks, and no rank waits for it."""
     probe, nothing = vtkSPHProbe(), vtkPolyData()
     probe.SetController(CONTROLLER)
     probe.SetSourceData(nothing)
@@ -350,7 +357,7 @@ def check_without_points():
 
 
 def check_named():
-    """A particle of the last rank that cannot be summed is named by its number there, on all ranks."""
+    """If a particle of the last rank cannot be summed, all ranks name it by its number on that rank."""
     problems = []
     for is_mass in False, True:
         own, filter_ = take_part(make_two_sizes(), "scattered at random"), vtkMarchingCorrectors()

@@ -26,7 +26,7 @@
 namespace
 {
 
-// One surface of one file; zero and nullptr mean the library's defaults.
+// One surface of one file. Zero and nullptr stand for the library's defaults.
 struct DataCase
 {
   const char* File;
@@ -177,7 +177,8 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   if (reader->GetOutput()->GetNumberOfPoints() == 0 ||
     !FillInput(one, reader->GetOutput(), solid, at.input))
   {
-    // Debian 12's ParaView 5.11 cannot read appended data; VTK itself, and inline data, are fine.
+    // A possible cause: Debian 12's ParaView 5.11 cannot read appended data. VTK can, and every
+    // reader can read inline data.
     std::printf("  FAILED: %s: the file cannot be read or lacks an array\n", at.name);
     ++suite.failures;
     return;

@@ -56,7 +56,8 @@ extern "C"
 
   /* Returns zeroed memory; ends the program if there is none. */
   void* oracle_allocate(int64_t count, size_t size);
-  /* Returns the array with room for one element more than `count`. */
+  /* Returns the array, enlarged if needed, with room for one element more than `count`. *capacity:
+   * its room. */
   void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size);
 
   /* The particles of all tests. The struct owns its arrays; particle_set_free frees them. */
@@ -102,10 +103,10 @@ extern "C"
   void oracle_free_field(oracle_field* field);
 
   /* Fills particles->volume. With mass and density: mass / density. With mass alone: m_j / (sum_k m_k W(x_j - x_k, h_j)
-   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is three-dimensional. F_j = 1 for solids; else F_j
-   * = 1 + 5/3 variance h_j^2 |g|^2 / n^2 with n = sum_k h_k^d W(x_j - x_k, h_j) and g = the sum of h_k^d grad W over
-   * the fluid + t times that over the solids, where t from 0 to 1 makes |g| least. Ignored solids are left out of the
-   * sums. */
+   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is three-dimensional. F_j corrects for neighbours on one
+   * side only: F_j = 1 for solids; else F_j = 1 + 5/3 variance h_j^2 |g|^2 / n^2, with the kernel's variance, n = sum_k
+   * h_k^d W(x_j - x_k, h_j) and g = the sum of h_k^d grad W over the fluid + t times the same sum over the solids. t
+   * from 0 to 1 makes |g| least. Ignored solids are left out of the sums. */
   void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int dimensions,
     const double* mass, const double* density);
 
@@ -117,25 +118,25 @@ extern "C"
     double weight_gradient[3];
     double trim_weight; /* the weight of fluid and solids */
     double trim_gradient[3];
-    /* The sum of the magnitudes of the gradient's terms, with A relative to field->center: it shows how much cancels.
-     * The direction of a much smaller gradient is rounding noise. */
+    /* The sum of the magnitudes of the gradient's terms, with A relative to field->center. It shows how much the terms
+     * cancel: if the gradient is much smaller, its direction is rounding noise. */
     double gradient_scale;
   } oracle_sample;
 
-  /* Evaluates the field at a point. scalar: [count], contoured in place of particles->scalar unless NULL. */
+  /* Evaluates the field at a point. scalar: [count], used in place of particles->scalar; may be NULL. */
   void oracle_evaluate(
     const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample);
-  /* Returns value - iso, or a negative number where a mean's weight is below 0. The sum of the terms relative to iso
-   * has this sign, and passes 0 where the value is iso, not at the mean's poles. */
+  /* Returns value - iso or, if a mean's weight is below 0, iso - value. So the result has the sign of sum V (A - iso)
+   * W, which changes where the value is iso, not at the mean's poles. */
   double oracle_side(const oracle_field* field, const oracle_sample* sample, double iso);
 
-  /* Returns the ascending eigenvalues of the symmetric part of sum V (x_j - x) (outer product) grad W, over the
-   * particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
+  /* Writes the eigenvalues, in ascending order, of the symmetric part of sum V (x_j - x) (outer product) grad W, over
+   * the particles that count in trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
   void oracle_boundary_eigenvalues(
     const oracle_field* field, const double point[3], double eigenvalues[3]);
 
-  /* Returns a bound on the error of the value at a point in floating point with unit roundoff `unit`: relative errors
-   * of a few units in W and in the offset to each particle. */
+  /* Returns a bound on the error of the value at a point if it is computed in floating point with unit roundoff `unit`:
+   * W and the offset to each particle have relative errors of a few units. */
   double oracle_rounding(const oracle_field* field, const double point[3], double unit);
 #ifdef __cplusplus
 }

@@ -97,12 +97,13 @@ static void case_check_mesh(case_run* run)
 {
   const oracle_comparison* c = &run->comparison;
   /* In double precision triangles at nodes may be only 1e-9 edges wide. Trimming may cut such slivers near their tips,
-   * which is still above rounding. */
+   * and what remains is still wider than rounding. */
   const int slivers =
     run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 && run->mesh.slimmest > 1e-14;
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
-    /* Two valid cells that touch only in an edge have a vertex each there, in one place. */
+    /* If two valid cells touch only in an edge, each has its own vertex there, both in one place.
+     * */
     const int64_t allowed = fault == MESH_COINCIDENT_POINT ? c->split
       : fault == MESH_ZERO_AREA && slivers                 ? run->mesh.faults[fault]
                                                            : 0;
@@ -112,7 +113,8 @@ static void case_check_mesh(case_run* run)
   CASE_EXPECT(run, c->holes == 0, c->holes, c->first);
 }
 
-/* Checks a periodic box: the surface meets itself at the sides, and ends there only for reasons that end it elsewhere. */
+/* Checks a periodic box: the surface must meet itself at the sides. It may end there only for the reasons that end it
+ * elsewhere. */
 static void case_check_seam(case_run* run)
 {
   if (!oracle_is_periodic(&run->options))
@@ -142,7 +144,7 @@ static void case_check_edges(case_run* run, int pairs)
   CASE_EXPECT(run, run->at->rough || c->noisy == 0, c->noisy);
   if (pairs)
   {
-    /* The paper's seeds may miss components, but must find whole ones. */
+    /* The paper's seeds may miss whole components, but not parts of one. */
     CASE_EXPECT(run, c->components_partial == 0, c->components_partial, c->first);
   }
   else
@@ -185,7 +187,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
   if (!run->at->rough)
   {
-    /* Small pieces that trimming leaves may be too coarse to judge their orientation by the gradient. */
+    /* Pieces of the surface that trimming leaves may be too small to judge their orientation by the gradient. */
     CASE_EXPECT(run, trimmed || c->inverted_components == 0, c->inverted_components);
     CASE_EXPECT(run, c->gradient_error <= (single ? 1e-4 : 1e-9), c->gradient_error);
     /* At a kernel's rim w has few digits in single precision. */
@@ -193,7 +195,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
 }
 
-/* Extracts, checks and prints. The surface and its report stay in *run. */
+/* Extracts, checks and prints. The surface and its report stay in *run. Returns nonzero if all is
+ * right. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
   /* A threshold of 0 trims nothing, except where a mean lacks fluid, or where the kernel has negative lobes and h is
@@ -207,9 +210,11 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
   if (!trimmed)
   {
-    /* Rounding may give a singular matrix an eigenvalue below 0. */
+    /* The eigenvalue must not trim: rounding may make it negative for a singular matrix, which is
+     * below a threshold of 0. */
     run->options.boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM;
-    /* This share ends nothing, but keeps the solids in the free surface's weight. */
+    /* With this wall share the surface ends at no solid, but solids still count in the free
+     * surface's weight. */
     run->options.wall_share =
       run->options.wall_share > 0.0 && run->options.field == MCOR_WEIGHT_SUM ? 1.0 - 1e-9 : 0.0;
   }

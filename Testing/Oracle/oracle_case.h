@@ -27,7 +27,8 @@ extern "C"
   int oracle_end_suite(oracle_suite* suite);
   int oracle_wants_case(const oracle_suite* suite, const char* name);
 
-  /* Returns the defaults of mcor.h with every optional array, and with one iso value, which is borrowed. */
+  /* Returns the default options of mcor.h, with every optional array and one iso value. The pointer to the value is
+   * kept. */
   mcor_options oracle_case_options(const double* iso);
 
   typedef struct oracle_case
@@ -45,8 +46,8 @@ extern "C"
     int has_euler, euler; /* what the Euler number of the untrimmed surface must be */
   } oracle_case;
 
-  /* Runs the case with complete seeds untrimmed, with complete seeds trimmed (not for the weight), and with pairs.
-   * Counts it as failed unless all is right. */
+  /* Runs the case three times: untrimmed with complete seeds, trimmed with complete seeds (not for the weight), and
+   * with pairs. Counts it as failed unless all is right. */
   void oracle_run_case(oracle_suite* suite, const oracle_case* at);
 
 #ifdef __cplusplus

@@ -81,8 +81,8 @@ double oracle_smallest_h(const particle_set* particles)
   return smallest;
 }
 
-/* ---- kd-tree: a node has particles [begin,end) of `order`, split in the middle; a leaf has a few
- * ---- */
+/* ---- kd-tree: a node has the particles order[begin] to order[end - 1], and its children half of
+ * them each; a leaf has a few ---- */
 
 enum
 {
@@ -362,9 +362,9 @@ static void oracle_add_matrix(const oracle_field* field, int64_t j, void* user)
   }
 }
 
-/* Finds the roots of the characteristic polynomial. With m = q + s b, where b has the trace 0 and
- * the sum of squares 6, they are q + 2 s cos(angle) at three angles a third of a turn apart, where
- * cos(3 angle) = det(b) / 2. */
+/* Writes the roots of the characteristic polynomial. Let m = q + s b, where b has the trace 0 and
+ * its entries the sum of squares 6. The roots are q + 2 s cos(angle) at three angles a third of a
+ * turn apart, with cos(3 angle) = det(b) / 2. */
 static void oracle_eigenvalues(double m[3][3], double eigenvalues[3])
 {
   const double q = (m[0][0] + m[1][1] + m[2][2]) / 3.0;
@@ -473,7 +473,7 @@ static double oracle_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Returns 1 + 5/3 D^2. */
+/* Returns the factor F_j of oracle_compute_volumes (oracle.h). */
 static double oracle_one_sided(const oracle_field* field, const oracle_volume_sum* at)
 {
   const double h = field->particles->smoothing_length[at->j];
@@ -506,7 +506,7 @@ void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int d
     oracle_volume_sum at = { .j = j, .dimensions = dimensions, .variance = variance, .mass = mass };
     oracle_visit(&field, &particles->position[3 * j], oracle_reach(&field, j), oracle_add_density,
       &at, 0, 0, particles->count);
-    /* The sum at an ignored solid may be 0; nobody uses its volume. */
+    /* The sum at an ignored solid may be 0; its volume is used nowhere. */
     particles->volume[j] = at.density == 0.0 ? 0.0
                                              : (mass ? mass[j] : 1.0) / at.density /
         (particles->solid[j] ? 1.0 : oracle_one_sided(&field, &at));

@@ -12,8 +12,8 @@ double oracle_support(oracle_kernel kernel)
   return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : kernel == ORACLE_QUARTIC_SPLINE ? 2.5 : 2.0;
 }
 
-/* Integrates by Simpson's rule over a half axis, with r^(d - 1) for a sphere or circle. M'4 is a product of axes, so
- * one axis is enough. */
+/* Integrates over r from 0 on by Simpson's rule, with the factor r^(d - 1) of a sphere or circle. M'4 is a product of
+ * functions of x, y and z, so one axis is enough. */
 double oracle_kernel_variance(oracle_kernel kernel, int dimensions)
 {
   enum
@@ -52,8 +52,8 @@ static double oracle_quadratic(double q, double* slope)
   return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
 }
 
-/* Returns the sum of factor[k] (R - k - q)^n over k = 0, 1, 2 with R - k > q, divided by norm * pi; R is the support
- * radius. */
+/* Returns the sum of factor[k] (R - k - q)^n over k = 0, 1, 2 with R - k > q, divided by norm * pi. R: reach, the
+ * support radius; n: power. */
 static double oracle_spline(
   double reach, int power, const double factor[3], double norm, double q, double* slope)
 {
@@ -72,7 +72,7 @@ static double oracle_spline(
   return value / (norm * ORACLE_PI);
 }
 
-/* Returns (1 - u)^n times a polynomial, as Dehnen and Aly (2012) write it, with u = r / support radius. */
+/* Returns (1 - u)^power times a polynomial of u = r / support radius, as Dehnen and Aly (2012) write it. */
 static double oracle_wendland(
   int power, const double factor[4], double norm, double q, double* slope)
 {
@@ -98,7 +98,7 @@ static double oracle_sinc_6(double q, double* slope)
   return norm * pow(s, 6.0);
 }
 
-/* Returns one axis of M'4: m(u) and its derivative in u, with u = |dx| / h < 2. */
+/* Returns m(u), one factor of M'4, and its derivative in u; u = |dx| / h < 2. */
 static double oracle_m_prime_4(double u, double* slope)
 {
   if (u < 1.0)

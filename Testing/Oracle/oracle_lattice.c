@@ -17,7 +17,7 @@ static int64_t lattice_brick_size(int level)
 
 /* ---- levels from particles ---- */
 
-/* State of the descent from a box around everything, which carries all particles that reach the brick. */
+/* State of the descent: from eight large bricks to their parts, with a list of the particles that reach each brick. */
 typedef struct lattice_descent
 {
   oracle_lattice* lattice;
@@ -32,7 +32,8 @@ static int lattice_counts(const particle_set* p, int64_t j)
   return !p->solid[j] || !p->ignore_solids;
 }
 
-/* Sets each particle's level: the highest at which cubes are fine enough for it. */
+/* Sets each particle's level: the highest level whose cubes are still fine enough for the particle.
+ * */
 static void lattice_set_levels(lattice_descent* descent, int level_limit)
 {
   const particle_set* p = descent->field->particles;
@@ -97,8 +98,8 @@ static int64_t lattice_node_at(oracle_lattice* lattice, const int64_t at[3], int
   return index ? *index : -1;
 }
 
-/* Returns whether bricks of half the size touch a point of the brick's border. sides[axis]: on which side of the brick
- * the point lies; 0: between. */
+/* Returns whether bricks of half the size touch a point of the brick. sides[axis]: on which side of the brick the point
+ * lies (-1, 1); 0: between the sides. */
 static int lattice_touches_finer(
   oracle_lattice* lattice, const lattice_brick* brick, const int sides[3])
 {
@@ -120,8 +121,8 @@ static int lattice_touches_finer(
   return 0;
 }
 
-/* Takes one of the 3 x 3 x 3 places of a cell, half a cell apart. Returns where it is, and on which sides of the brick
- * it lies. */
+/* Writes where one of the 3 x 3 x 3 places of a cell is (p), half a cell apart, and on which sides of the brick it
+ * lies. */
 static void lattice_place_in_brick(
   const lattice_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
 {
@@ -335,8 +336,8 @@ static void lattice_descend_all(lattice_descent* descent)
   free(all);
 }
 
-/* A split brick has parts of level - 1 or less, so all bricks that touch it must be smaller than twice its size.
- * Touching bricks that are larger are split. */
+/* A split brick has parts of level - 1 or less, so a brick that touches it must be smaller than twice its size. Splits
+ * larger bricks that touch it. */
 static void lattice_balance(oracle_lattice* lattice)
 {
   for (int level = 1; level < lattice->top; ++level)

@@ -3,9 +3,9 @@
 #ifndef oracle_lattice_h
 #define oracle_lattice_h
 
-/* Marching Cubes by brute force, on cubes as fine as the particles are or on cubes of one size. It takes the particles
- * one by one, and all nodes and cells of all bricks that a particle reaches, finds which edges are crossed and how
- * faces join them, and makes no triangles. */
+/* Marching Cubes by brute force, on cubes as fine as the particles or on cubes of one size. Takes each particle, and
+ * all nodes and cells of all bricks that it reaches. Finds which edges are crossed and how faces join the crossings.
+ * Makes no triangles. */
 
 #include "oracle.h"
 
@@ -34,12 +34,12 @@ extern "C"
     int64_t capacity, count;
   } oracle_map;
 
-  /* Returns the place of the value. A new entry holds -1 until the caller sets it, which must happen before the next
-   * call. Returns NULL if there is no such key and `add` is 0. Ends the program if memory runs out. */
+  /* Returns where the value of a key is stored. A new entry holds -1 until the caller sets it, which must happen before
+   * the next call. Returns NULL if there is no such key and `add` is 0. Ends the program if memory runs out. */
   int64_t* oracle_map_find(oracle_map* map, const int64_t at[3], int64_t tag, int add);
   void oracle_map_free(oracle_map* map);
 
-  /* Places (at) are in units of the smallest cubes, whose corners are at whole multiples of their edges. */
+  /* Places (at) are in units of the smallest cubes, whose corners lie at whole numbers. */
   typedef struct lattice_node
   {
     int64_t at[3];
@@ -53,7 +53,7 @@ extern "C"
     int level;
   } lattice_brick;
 
-  /* A cell with nodes on both sides, of which none is certainly invalid. */
+  /* A cell with nodes on both sides of iso, none of which is certainly invalid. */
   typedef struct lattice_cell
   {
     int64_t at[3];
@@ -63,7 +63,7 @@ extern "C"
     int64_t component; /* valid cells: the component that shared segments unite */
   } lattice_cell;
 
-  /* An edge between two neighbouring nodes on different sides. */
+  /* An edge between two neighbouring nodes on different sides of iso. */
   typedef struct lattice_edge
   {
     int64_t at[3], length; /* lower end */
@@ -76,7 +76,8 @@ extern "C"
     int64_t component; /* the component of one of its cells; -1: not used */
   } lattice_edge;
 
-  /* A segment from edge to edge on a face, in the direction of a cell's triangles. */
+  /* A segment on a cell's face from one crossed edge to another, in the direction of the triangles
+   * of this cell. */
   typedef struct lattice_segment
   {
     int64_t from, to, cell;
@@ -96,8 +97,8 @@ extern "C"
     lattice_cell* cells;
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, without loops of two */
-    /* Pairs of edges on faces, the lower edge first. doubts: pairs of cells that rounding may make valid or not.
-     * either: pairs that rounding may join or part. The value is the number of valid cells that have the face. */
+    /* Pairs of edges on a face, the lower number first. doubts: pairs in cells that rounding may make valid or not.
+     * either: pairs that rounding may join or not. The map's value is the number of valid cells at the face. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
@@ -115,8 +116,8 @@ extern "C"
     double margin; /* |weight - threshold| up to which a node is excused */
   } oracle_limits;
 
-  /* Topology by the field: how an ambiguous face between two plain cells is joined depends on the field at the saddle
-   * of its values. */
+  /* Decides topology by the field: how an ambiguous face between two plain cells is joined depends on the field at the
+   * saddle point of the face. */
   typedef struct oracle_decider
   {
     const oracle_field* field;
@@ -124,20 +125,21 @@ extern "C"
     double unit; /* roundoff of the working precision */
   } oracle_decider;
 
-  /* Lists the leaves that particles reach and, if with_nodes, evaluates all their nodes. level_limit: no level is
-   * higher. */
+  /* Lists the leaf bricks that particles reach and, if with_nodes, evaluates all their nodes. level_limit: the highest
+   * level that is allowed. */
   void oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field,
     const double edge[3], int level_limit, int with_nodes);
-  /* Classifies the nodes, and finds cells, edges and segments for an iso value. by_field: topology is by the field. */
+  /* Classifies the nodes, and finds cells, edges and segments for an iso value. by_field: the field decides the
+   * topology of faces. */
   void oracle_march(oracle_lattice* lattice, const oracle_field* field, const oracle_limits* limits,
     int by_field, double unit);
   void oracle_free_lattice(oracle_lattice* lattice);
 
-  /* Returns whether the brick of this level with this lowest corner is split. */
+  /* Returns whether the brick that has this level and lowest corner is split. */
   int oracle_is_split(oracle_lattice* lattice, int level, const int64_t at[3]);
   void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double point[3]);
-  /* Returns cell c of brick b and its nodes. Middles are nodes where finer bricks lie beside the brick; they are
-   * created if `add`. */
+  /* Writes cell c of brick b and its nodes. Middles of edges and faces are nodes if finer bricks lie beside them. add:
+   * creates missing nodes. */
   void oracle_cell_at(oracle_lattice* lattice, int64_t b, int c, int add, lattice_cell* cell);
   /* Returns whether a cell of this level exists and no finer brick touches it, not even at a corner. */
   int oracle_is_plain(oracle_lattice* lattice, int level, const int64_t at[3]);

@@ -119,8 +119,8 @@ void oracle_own_period(
 
 /* ---- the surface against itself ---- */
 
-/* A point of the border, moved into the first period. Its place is in units that are too small to
- * matter and larger than rounding. */
+/* A point of the surface's border, moved into the first period. Its place (at) is in whole units
+ * that are larger than rounding, but too small to matter. */
 typedef struct seam_point
 {
   int64_t at[3];
@@ -175,7 +175,7 @@ static int seam_differ(const float* values, int32_t a, int32_t b, size_t compone
       components * sizeof(float)) != 0;
 }
 
-/* Returns whether two points that are joined to one differ in anything they carry. */
+/* Returns whether two points that were joined differ in any array. */
 static int seam_points_differ(
   const mcor_options* options, const mcor_surface* s, int32_t a, int32_t b)
 {
@@ -193,7 +193,7 @@ static int seam_points_differ(
   return differ;
 }
 
-/* Sets one[p]: the point that stands for p and for all points that are joined with p. */
+/* Sets one[p]: the one point that stands for all points joined with p. */
 static void seam_glue(const mcor_options* options, const mcor_surface* surface, seam_point* places,
   int64_t count, int32_t* one, oracle_seam* seam)
 {

@@ -3,8 +3,8 @@
 #ifndef oracle_period_h
 #define oracle_period_h
 
-/* Periodic boxes, for oracle_reference.c and oracle_case.c: images as plain particles, the cells of one period, and the
- * surface joined to itself at opposite sides. */
+/* Periodic boxes, for oracle_reference.c and oracle_case.c: images as particles, the cells of one period, and the
+ * surface joined with itself at opposite sides. */
 
 #include "mcor.h"
 #include "mesh_check.h"
@@ -15,20 +15,20 @@ extern "C"
 {
 #endif
 
-  /* Whether the particles repeat along any axis. */
+  /* Returns whether the particles repeat along any axis. */
   int oracle_is_periodic(const mcor_options* options);
 
-  /* Finds the edges of cubes: the largest that is not larger than `cube` and divides all periods. If that is less than
-   * half of `cube`, each axis gets the largest edge that divides its own period. */
+  /* Writes the edges of cubes along x, y, z: the largest edge up to `cube` that divides all periods. If this is less
+   * than half of `cube`, each axis gets the largest edge that divides its own period. */
   void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
-  /* Moves the particles into the period, and adds all images whose support (h times `support`), or `margin` if that is
-   * larger, reaches the period or two cubes around it. Returns, for each particle, the one of which it is an image;
-   * free the result. */
+  /* Moves the particles into the period, and adds all images that matter. An image reaches as far as its support (h
+   * times `support`), or `margin` if this is larger; it matters if it reaches the period or two cubes around it.
+   * Returns, for each particle, the particle of which it is an image; free the result. */
   int64_t* oracle_add_images(particle_set* particles, const mcor_options* options, double support,
     double margin, double cube);
 
-  /* Returns the cells that have their centres in the period. Axes without a period stay unchanged. */
+  /* Writes the range of cells whose centres are in the period. Axes without a period stay unchanged. */
   void oracle_own_period(
     const mcor_options* options, const double edge[3], int64_t first[3], int64_t end[3]);
 
@@ -40,7 +40,8 @@ extern "C"
     int64_t different; /* points that are not, bit for bit, equal to their partner a period away */
   } oracle_seam;
 
-  /* Joins points of the surface that are a period apart, at opposite sides. edge: of the cubes. */
+  /* Joins points of the surface that are a period apart, at opposite sides, and returns what does
+   * not match. edge: of the cubes, along x, y, z. */
   oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
     const mcor_surface* surface, const mesh_report* mesh);
 

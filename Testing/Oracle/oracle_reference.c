@@ -56,7 +56,8 @@ _Static_assert(
 _Static_assert((int)ORACLE_SUM == (int)MCOR_SUM && (int)ORACLE_WEIGHT == (int)MCOR_WEIGHT_SUM,
   "fields in the core's order");
 
-/* source: for each particle, the one of which it is an image; NULL: there are no images. */
+/* Sets the particles' volumes. source: for each particle, the particle of which it is an image;
+ * NULL: there are no images. */
 static void reference_volumes(
   particle_set* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {
@@ -99,7 +100,7 @@ static int64_t* reference_images(
     largest = fmax(largest, particles->smoothing_length[j]);
   }
   reference_edges(particles, options, edge);
-  /* A computed volume is a sum over the whole support, before scaling. */
+  /* If volumes are computed, images must be kept over the whole support, before h is scaled. */
   return oracle_add_images(particles, options, support * options->h_scale,
     own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])));
 }
@@ -110,8 +111,8 @@ static void reference_particles(
   const oracle_kernel kernel = (oracle_kernel)options->sph_kernel;
   const int has_volume = reference_is_given(&input->volume);
   *particles = particle_set_make(input->count);
-  /* Solids count in the weight that trims. When the weight itself is contoured, only solids may end
-   * the surface. */
+  /* Solids count in the weight that trims. If the weight itself is contoured, they count only if
+   * the surface ends at solids. */
   particles->ignore_solids =
     input->ignore_solids || (options->field == MCOR_WEIGHT_SUM && !(options->wall_share > 0.0));
   for (int64_t j = 0; j < input->count; ++j)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds cells, their crossed edges, and how these are joined. */
+/* Finds cells, their crossed edges, and how faces join the crossings. */
 
 #include "oracle_lattice.h"
 
@@ -16,8 +16,8 @@ static int lattice_above(const oracle_lattice* lattice, int64_t node)
 
 /* ---- edges ---- */
 
-/* Returns which of the four quarters around an edge a cell fills: the one with the cell's middle, or two if the edge
- * runs across the cell's face. */
+/* Returns which of the four quarters around an edge a cell fills, as bits: the one with the cell's middle, or two if
+ * the edge lies within a face of the cell. */
 static int lattice_quadrants(const lattice_cell* cell, const int64_t at[3], int axis)
 {
   const int64_t size = (int64_t)1 << cell->level;
@@ -71,8 +71,9 @@ static int64_t lattice_edge_between(
 
 /* ---- faces ---- */
 
-/* Lists the nodes of a cell around a square of its face, counter-clockwise seen from outside. The face is towards -axis
- * or +axis; the square has its lowest corner at (u, v) and is 1 or 2 half-edges wide. Returns how many nodes there are. */
+/* Lists the nodes around a square of a cell's face, counter-clockwise seen from outside. The face is towards -axis
+ * (side 0) or +axis (side 1). The square's lowest corner is at (u, v) = lowest, and its width is 1 or 2 half-edges.
+ * Returns how many nodes there are. */
 static int lattice_ring(
   const lattice_cell* cell, int axis, int side, const int lowest[2], int width, int64_t ring[8])
 {
@@ -99,8 +100,8 @@ static int lattice_ring(
   return count;
 }
 
-/* Returns whether the nodes above iso are joined on a face: 0 or 1, or -1 where rounding decides. value: at the corners
- * (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: the place of the first. */
+/* Returns whether the nodes above iso are joined on a face: 0 or 1, or -1 if rounding decides. value: at the face's
+ * corners (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: the place of corner (0, 0). */
 static int lattice_decide_face(const oracle_decider* decider, const double value[4],
   const double corner[3], const double edge[3], int u, int v)
 {
@@ -110,7 +111,7 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   point[u] += edge[u] * (value[0] - value[2]) / sum;
   point[v] += edge[v] * (value[0] - value[1]) / sum;
   oracle_evaluate(decider->field, NULL, point, &sample);
-  /* The value may be off by its own rounding, and because the rounding of node values moves the saddle. */
+  /* The value has its own rounding error, and rounding of the nodes' values moves the saddle point. */
   const double moved = fmax(edge[u], edge[v]) * decider->limits->close / fabs(sum);
   const double rounding = decider->limits->close +
     oracle_rounding(decider->field, point, decider->unit) +
@@ -123,7 +124,8 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   return sample.value > decider->limits->iso;
 }
 
-/* Returns what lattice_decide_face says of a cell's face; 0, as in the case table, if the field does not decide. */
+/* Returns what lattice_decide_face returns for a face of a cell, or 0, as in the case table, if the field does not
+ * decide. */
 static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int face)
 {
   static const int stride[3] = { 1, 3, 9 };
@@ -159,8 +161,8 @@ typedef struct lattice_links
   int64_t edge[48], next[48];
 } lattice_links;
 
-/* Links the crossings around a square. A segment leads from where the walk enters "above" to where it leaves. If the
- * nodes above are joined, each of the two nodes below is cut off. */
+/* Links the crossings around a square. A segment leads from where the walk around it enters a run of nodes above iso to
+ * where it leaves this run. If the nodes above are joined, segments cut off each of the two nodes below. */
 static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
   int count, int joined, lattice_links* links)
 {
@@ -251,7 +253,7 @@ static void lattice_link_cell(
   }
 }
 
-/* Adds a segment of the cell that is added next. */
+/* Adds a segment. It belongs to the cell that will be added next. */
 static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t to, int certain)
 {
   lattice->segments = oracle_grow(
@@ -262,7 +264,7 @@ static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t t
   lattice->edges[from].sure |= certain;
 }
 
-/* Joins a valid cell's segments to loops; a loop of two is dropped. */
+/* Joins the segments of a valid cell to loops. A loop of two segments is dropped. */
 static void lattice_close_loops(
   oracle_lattice* lattice, lattice_cell* cell, const lattice_links* links)
 {
@@ -297,7 +299,7 @@ static void lattice_close_loops(
 
 /* ---- cells ---- */
 
-/* Fills in the cell's flags from its nodes. Returns 0 where the surface does not, or cannot, cross the cell. */
+/* Fills in the cell's flags from its nodes. Returns 0 if the surface cannot cross the cell. */
 static int lattice_classify_cell(const oracle_lattice* lattice, lattice_cell* cell)
 {
   int above = 0;
@@ -320,7 +322,8 @@ static int lattice_classify_cell(const oracle_lattice* lattice, lattice_cell* ce
       possible = possible && (valid || margin);
     }
   }
-  /* With more than 8 nodes, one node on the other side may reduce a loop to two edges, so the cell is not certain. */
+  /* A cell with more than 8 nodes may lose a loop if one node changes its side, because a loop of two edges is dropped.
+   * So it is certain only if no node is within rounding of iso. */
   cell->certain = cell->certain && (count == 8 || close == 0);
   return above > 0 && above < count && possible;
 }
@@ -366,7 +369,7 @@ static void lattice_march_cell(oracle_lattice* lattice, lattice_cell* cell)
   lattice->cells[lattice->cell_count++] = *cell;
 }
 
-/* Marks as uncertain the edges of a cell that rounding may change or remove. */
+/* Marks the edges of a cell as uncertain if rounding may decide whether the cell is used. */
 static void lattice_doubt_edges(oracle_lattice* lattice, lattice_cell* cell)
 {
   lattice_classify_cell(lattice, cell);
@@ -395,7 +398,8 @@ static int64_t lattice_root(lattice_cell* cells, int64_t n)
   return n;
 }
 
-/* Finds components of cells that share segments, and gives each edge the component of one of its cells. */
+/* Numbers the components: sets of cells that are connected by common segments. Gives each edge the component of one of
+ * its cells. */
 static void lattice_unite(oracle_lattice* lattice)
 {
   oracle_map seen = { NULL, 0, 0 };

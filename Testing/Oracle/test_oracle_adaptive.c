@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares surfaces of cubes as fine as the particles are with the oracle's. core_tree checks the levels themselves by
- * their definition. */
+/* Compares surfaces with the oracle's, on cubes that are as fine as the particles. core_tree checks the levels of cubes
+ * by their definition. */
 
 #include "oracle_case.h"
 #include "particle_sets.h"

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the library with the oracle on particle sets from formulas: every kernel, field and cube
- * factor on one set; every set with its fields; ways to give volumes and smoothing
- * lengths; scaled and shifted data; single and double precision. */
+/* Compares the library with the oracle on particle sets from formulas: one set with every kernel,
+ * field and cube factor; every set with its fields; ways to give volumes and smoothing lengths;
+ * scaled and shifted data; single and double precision. */
 
 #include "oracle_case.h"
 #include "particle_sets.h"
@@ -13,7 +13,7 @@
 
 static const char* const field_names[3] = { "shepard", "sum", "weight" };
 
-/* Differences from the defaults. Zero means: as in the set, or the library's default. */
+/* Differences of a case from the defaults. Zero means: as in the set, or the library's default. */
 typedef struct variant
 {
   const char* set;
@@ -106,7 +106,8 @@ static void run_variant(
   particle_set_free(&set);
 }
 
-/* ---- every combination of kernel, field and cube factor; h scales take turns, but the first kernel has all ---- */
+/* ---- every combination of kernel, field and cube factor; the first kernel with all scales of h, the others with one
+ * scale each in turn ---- */
 
 static void run_matrix(oracle_suite* suite)
 {
@@ -125,7 +126,7 @@ static void run_matrix(oracle_suite* suite)
     {
       continue;
     }
-    /* there are gaps between the particles */
+    /* supports are so small that there are gaps between the particles */
     v.rough = v.kernel == MCOR_M_PRIME_4 && v.h_scale < 1.0;
     run_variant(suite, &v, NULL);
   }
@@ -187,12 +188,13 @@ static const variant set_variants[] = {
   { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
   { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
   { .set = "single", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
-  /* f and w are the same here, so the iso value and the vertex threshold meet everywhere. */
+  /* In a single particle's sum f and w are the same, so the iso value and the vertex threshold meet
+   * everywhere. */
   { .set = "single", .field = MCOR_SUM, .rough = 1, .at_iso = 1, .suffix = "/tangent" },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },
-  /* Values at nodes equal iso to within rounding. Any of these edges may be crossed, but the mesh
-   * must be whole and every vertex on the surface. */
+  /* At nodes the values equal iso to within rounding, so any edge there may be crossed. The mesh
+   * must still be whole, and every vertex on the surface. */
   { .set = "on_nodes", .rough = 1, .at_iso = 1 },
   { .set = "on_nodes", .field = MCOR_SUM, .rough = 1, .at_iso = 1 },
   { .set = "on_nodes", .rough = 1, .at_iso = 1, .in_double = 1 },
@@ -230,7 +232,7 @@ static void run_eigenvalues(oracle_suite* suite)
 
 /* ---- how data are given ---- */
 
-/* The volume array is used as mass, so that each particle has its own mass. */
+/* Gives the volumes as masses, so that each particle has its own mass. */
 static void mass_alone(particle_set* set, oracle_case* at)
 {
   at->input.volume = (mcor_array){ 0 };
@@ -276,8 +278,8 @@ static void vector_dot(particle_set* set, oracle_case* at)
   at->input.scalar_dot = at->input.scalar;
 }
 
-/* Stores all arrays in single precision, in place: the first half of each array then holds the
- * floats. */
+/* Stores all arrays in single precision, in place: afterwards the first half of each array holds
+ * the floats. */
 static void single_arrays(particle_set* set, oracle_case* at)
 {
   double* const arrays[4] = { set->position, set->smoothing_length, set->volume, set->scalar };
@@ -311,7 +313,8 @@ static void run_inputs(oracle_suite* suite)
         .skip_pairs = 1,
         .wall_share = 0.5 },
       NULL },
-    /* The surface reaches farther into the wall, and with a low threshold only the wall ends it. */
+    /* A larger wall share lets the surface reach farther into the wall, and with a low threshold
+     * only the wall ends it. */
     { { .set = "puddle", .suffix = "/in_wall", .wall_share = 0.85, .threshold = 0.2 }, NULL },
     { { .set = "puddle", .suffix = "/no_volume", .no_volume = 1 }, NULL },
     { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM, .no_volume = 1 }, NULL },
@@ -326,7 +329,8 @@ static void run_inputs(oracle_suite* suite)
     { { .set = "sphere", .suffix = "/component", .has_iso = 1, .iso = 0.123 }, vector_component },
     { { .set = "sphere", .suffix = "/dot", .has_iso = 1, .iso = 0.25 }, vector_dot },
     { { .set = "gyroid", .suffix = "/float32" }, single_arrays },
-    /* A pressure around an ambient 101325, of which only variations of size 1 matter. */
+    /* The scalar is like a pressure around an ambient 101325, of which only variations of size 1
+     * matter. */
     { { .set = "gyroid", .suffix = "/large_scalar", .shift = 101325.0 }, NULL },
     { { .set = "gyroid", .suffix = "/large_scalar", .in_double = 1, .shift = 101325.0 }, NULL },
     { { .set = "gyroid", .suffix = "/far_away", .offset = { 2e6, -1e6, 3e5 } }, NULL },

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The comparison finds planted faults: each kind of damage to a right surface shows in the figure that is meant for it.
- * oracle_analytic checks that right surfaces pass. */
+/* Tests that oracle_compare finds planted faults: each kind of damage to a right surface must show in the figure meant
+ * for it. oracle_analytic checks that right surfaces pass. */
 
 #include "oracle_case.h"
 #include "oracle_check.h"
@@ -20,7 +20,7 @@ typedef struct fixture
   mcor_surface surface; /* arrays with room for a few more points and triangles */
 } fixture;
 
-/* Returns a copy with room for a few more elements. */
+/* Returns a copy of the array with room for 8 more elements. */
 static void* copy_array(const void* data, int64_t count, size_t width)
 {
   return memcpy(oracle_allocate(count + 8, width), data, (size_t)count * width);
@@ -121,7 +121,7 @@ static int edge_axis(const fixture* f, int64_t v)
   return axis;
 }
 
-/* Damages a surface that is compared as a trimmed one; returns the same as damage(). */
+/* Damages a surface in one way, and compares it as a trimmed one. Returns the same as damage(). */
 static double damage_trimmed(fixture* f, int kind)
 {
   double* point = &f->surface.points[30];
@@ -144,7 +144,8 @@ static double damage_trimmed(fixture* f, int kind)
   }
 }
 
-/* Damages a right surface in one way. Returns the figure that must show it, or 0 if it does not. */
+/* Damages a right surface in one way. Returns the figure that must show the damage; 0 means that it
+ * does not. */
 static double damage(fixture* f, int kind)
 {
   double* point = &f->surface.points[30];

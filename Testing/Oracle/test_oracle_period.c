@@ -12,8 +12,9 @@
 
 #define PI 3.14159265358979323846
 
-/* Moves particles that lie evenly at X to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along each
- * axis. So the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)). */
+/* Makes a period of particles, with the fields described here: evenly spaced X become x = X +
+ * AMOUNT L / (2 pi) sin(2 pi X / L) along each axis. So the density at x is the product of 1 / (1 +
+ * AMOUNT cos(2 pi X / L)) over the axes. */
 #define AMOUNT 0.35
 
 static const double lengths[3] = { 12.0, 10.0, 10.0 };
@@ -31,7 +32,7 @@ static particle_set make_period(uint64_t seed)
       const double jitter = 0.25 * (2.0 * random_unit(&seed) - 1.0);
       const double from = (double)at[axis] + 0.5 + jitter, turn = 2.0 * PI * from / lengths[axis];
       const double x = from + AMOUNT * lengths[axis] / (2.0 * PI) * sin(turn);
-      /* with these digits, shifts by 1/2 are exact */
+      /* Coordinates are rounded to multiples of 2^-16, so that shifts by 1/2 are exact. */
       p.position[3 * i + axis] = floor(x * 0x1p16) * 0x1p-16;
       p.volume[i] *= 1.0 + AMOUNT * cos(turn);
     }

@@ -18,7 +18,8 @@ static double pick(uint64_t* state, const double* values, int count)
   return values[random_bits(state) % (uint64_t)count];
 }
 
-/* Seeds that found faults before, with the kernels that existed then. */
+/* Below this seed only the first five kernels are used: these seeds found faults when no others
+ * existed. */
 #define SEEDS_OF_FIVE_KERNELS 1000
 
 static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, double* iso)
@@ -54,7 +55,8 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
     at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
-  /* Computed volumes of the free surface differ with and without solids, so this case is left out. */
+  /* If volumes of the free surface are computed, they differ with and without solids, so such cases have no wall share.
+   * */
   if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };
@@ -62,7 +64,8 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
   }
 }
 
-/* Without fluid there is a sentence instead of a surface. */
+/* Returns whether there is any fluid. Without fluid the library gives an error instead of a
+ * surface. */
 static int has_fluid(const mcor_input* input)
 {
   int64_t solids = 0;

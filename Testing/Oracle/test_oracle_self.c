@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checks the oracle's formulas by hand, and its mesh checker with planted faults. Its lattice and sums share no code
- * with the library's, so these test each other. */
+/* Checks the oracle's formulas against values worked out by hand, and its mesh checker with planted faults. The
+ * oracle's lattice and sums share no code with the library's, so the other tests check these two against each other. */
 
 #include "oracle_check.h"
 #include "oracle_compare.h"
@@ -16,7 +16,8 @@ static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadrat
 
 /* ---- kernels ---- */
 
-/* Integrates by the midpoint rule on a grid; h is not 1, so that its powers are tested. */
+/* Integrates each kernel by the midpoint rule on a grid; h is not 1, so that the powers of h are
+ * tested. */
 static void test_kernel_integrals(void)
 {
   const double h = 0.7;
@@ -90,8 +91,9 @@ static void test_kernel_values(void)
   }
 }
 
-/* The volumes are worked out by hand: pi W of the cubic spline is 1 at q = 0, and 1/4 at 1, where its slope is -3/4;
- * its variance is 3/10 in space and 31/98 in the plane. Solids replace missing fluid on a side, as far as needed. */
+/* Checks volumes worked out by hand. For the cubic spline pi W h^3 is 1 at q = 0, and 1/4 at q = 1, where its slope is
+ * -3/4; its variance is 3/10 in space and 31/98 in the plane. Solids replace missing fluid on a side, as far as needed.
+ * */
 static void test_one_sided_volumes(void)
 {
   static const struct

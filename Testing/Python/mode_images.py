@@ -119,7 +119,7 @@ def make_actor(surface, color_by, low, high, cells=False):
 
 
 def make_filled(surface):
-    """Makes lines over bands."""
+    """Returns an actor for the bands, and one for the lines above them."""
     bands = make_actor(surface, "BandValue", 0.0, 1.0, cells=True)
     lines = vtkPolyData()
     lines.SetPoints(surface.GetPoints())
@@ -136,7 +136,7 @@ def make_filled(surface):
 
 
 def draw(actors, path, size, zoom, *places):
-    """Draws actors. places: of the camera, of what it looks at, and its upward direction."""
+    """Draws actors into a picture. places: of the camera, of the point that it looks at, and its upward direction."""
     renderer = vtkRenderer()
     for actor in actors:
         renderer.AddActor(actor)

@@ -23,7 +23,7 @@ def active(data):
 
 class TestPlaces(unittest.TestCase):
     def test_far_particles(self):
-        """A few particles far away do not stretch the bounds that span the fluid."""
+        """A few particles far away do not change the bounds that filters fit to the fluid."""
         near = lattice(20, 12, 8)
         for far in ([], [[1e5, 0, 0]], [[0, 0, -3e4], [50, 60, 70]]):
             particles = block(numpy.concatenate([near, numpy.array(far).reshape(-1, 3)]))
@@ -32,12 +32,13 @@ class TestPlaces(unittest.TestCase):
             self.assertTrue(numpy.allclose(gauge.GetNextBounds(), [0, 1.9, 0, 1.1, 0, 0.7]), gauge.GetNextBounds())
             cut, _ = run(vtkSPHResample(), particles, Resolution=100)
             self.assertLess(max(abs(b) for b in cut.GetBounds()), 2.1)
-        # A splash is close to the fluid, so all of it counts.
+        # A splash is close to the fluid, so it counts in the bounds.
         gauge.SetInputData(block(numpy.concatenate([near, [[0, 0, 2.5]]])))
         self.assertAlmostEqual(gauge.GetNextBounds()[5], 2.5)
 
     def test_densest(self):
-        """A line goes through the pool in a corner, not through the air in the middle of all, nor through walls."""
+        """The default line of a gauge goes through the pool in a corner, not through the air in the middle of all
+        particles, nor through walls."""
         pool, tower = lattice(40, 40, 4), lattice(4, 4, 20) + [3.6, 0, 0]
         walls = numpy.concatenate([lattice(4, 4, 60)] * 9) + [0, 3.6, 0]
         points = numpy.concatenate([pool, tower, walls])
@@ -51,7 +52,7 @@ class TestPlaces(unittest.TestCase):
             self.assertTrue((place > low - 0.1).all() and (place < high + 0.1).all(), (axis, places))
 
     def test_plane(self):
-        """Particles in a plane have only one slice, and a volume of one layer."""
+        """For particles in a plane, a slice is this plane, and a volume has one layer of points."""
         for axis in range(3):
             points = numpy.insert(lattice(20, 12, 1)[:, :2], axis, 0.25, axis=1)
             for fit in (0, 1):
@@ -77,7 +78,7 @@ class TestPlaces(unittest.TestCase):
 
 class TestColours(unittest.TestCase):
     def test_not_what_is_contoured(self):
-        """On an isosurface of the speed, the speed is noise, even as an array of its own, so another array gives the colours."""
+        """On an isosurface of the speed, the speed shows only noise, even as an array of its own, so another array gives the colours."""
         particles = block()
         speed = numpy.linalg.norm(values_of(particles, "Velocity"), axis=1)
         particles = block(Speed=speed)
@@ -101,7 +102,7 @@ class TestColours(unittest.TestCase):
             pieces = vtkSPHComponents()
             pieces.SetInputData(1, inputs[1])
             found, told = run(pieces, inputs[0])
-            # There is one piece, so colours by its number would all be alike.
+            # There is only one piece, so colours by the piece's number would all be alike.
             self.assertEqual((told, active(found)), ([], "Velocity"))
             self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1912)
 
@@ -111,7 +112,7 @@ class TestColours(unittest.TestCase):
         return {name: (float(low), float(high)) for low, high, name in lines}
 
     def test_ranges(self):
-        """A fast drop, a sharp edge, and walls do not decide the colours of the rest."""
+        """The ranges of colours are not widened by a fast drop, a sharp edge, or walls."""
         water, drop = lattice(20, 20, 20), lattice(2, 2, 2) + [0, 0, 5]
         heat = numpy.concatenate([water[:, 0], numpy.linspace(400, 600, 8)])
         particles = block(numpy.concatenate([water, drop]), Heat=heat)
@@ -137,13 +138,13 @@ class TestColours(unittest.TestCase):
         walls = (water[:, 2] < 0.25).astype(float)
         derive = vtkSPHDerivatives()
         run(derive, block(water, Type=walls), FluidArrayName="Type")
-        # Walls have a vorticity of 0; it is 2 in all of the fluid.
+        # The vorticity is 0 at walls, and 2 in all of the fluid.
         self.assertTrue(numpy.allclose(self.ranges(derive)["Vorticity"], 2, atol=1e-3), self.ranges(derive)["Vorticity"])
 
 
 class TestForgotten(unittest.TestCase):
     def test_pieces(self):
-        """Without particles nothing is said about them; without a surface one sentence is."""
+        """If the particles' input is missing, no message says so. If the surface is missing, one message does."""
         surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
         pieces = vtkSPHComponents()
         _, told = run(pieces, surface)
@@ -160,7 +161,7 @@ class TestForgotten(unittest.TestCase):
         self.assertRegex(told[0], "SPH Contour")
 
     def test_smoothing_length(self):
-        """The sentence begins with the remedy, in the words of the panel."""
+        """The message about a missing smoothing length begins with the remedy, in the words of the panel."""
         bare = particles_of(lattice(10, 10, 10))
         surface = vtkMarchingCorrectors()
         _, told = run(surface, bare, FreeSurface=1)
@@ -172,7 +173,7 @@ class TestForgotten(unittest.TestCase):
 
 class TestChoices(unittest.TestCase):
     def test_blocks_are_fluid(self):
-        """A block that is chosen as fluid is the fluid, whatever its name."""
+        """A block that is named as the fluid is the fluid, whatever its name."""
         x = lattice(20, 12, 8)
         wall = x[:, 2] < 0.25
         blocks = blocks_of(water=block(x[~wall]), bed=block(x[wall]))

@@ -33,7 +33,8 @@ class TestApart(unittest.TestCase):
         cls.alone = surface_of(run(sphere())[0])
 
     def test_messages(self):
-        """Makes blocks that are broken, good, an image, empty, missing, broken and nameless within a block, and good."""
+        """Extracts blocks that are broken, good, an image, empty, missing, broken and nameless within a block, and good. Each broken one
+        gives a message."""
         blocks = blocks_of(broken(), timed(cube()), vtkImageData(), vtkPolyData(), None, blocks_of(broken()), cube())
         for i, name in ((0, "first"), (2, "picture")):
             blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
@@ -50,7 +51,7 @@ class TestApart(unittest.TestCase):
             self.assertTrue(surface_of(output.GetBlock(i)) == self.alone)
         data = output.GetBlock(1).GetFieldData()
         self.assertTrue(data.HasArray("TimeValue") and data.HasArray("IsoValues"))
-        # With good data again, and with other kinds of output, no error is left.
+        # No error is left if data are good again, also with other kinds of output.
         blocks.SetBlock(0, cube())
         blocks.SetBlock(5, None)
         run(extract)
@@ -58,13 +59,14 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, cube())[0]) == self.alone)
 
     def told_once(self, words, extract, **settings):
-        """Expects a run that gives one sentence, which matches, or none if there are no words."""
+        """Checks that a run gives one message, which matches `words`, or none if there are no words."""
         told = run(extract, **settings)[1]
         self.assertEqual(len(told), 1 if words else 0, told)
         self.assertRegex("".join(told), words or "^$")
 
     def test_warnings(self):
-        """A warning comes once in a run and names its block; names of walls are told for blocks apart and together."""
+        """A warning comes once in a run and names its block. Blocks whose names mean walls are mentioned, whether
+        blocks are extracted apart or together."""
         extract = sphere(blocks_of(a=cube(), b=cube()))
         for _ in range(2):
             self.told_once("Block 'a', index 1: " + says("NEIGHBOURS_UNUSUAL", "Smoothing Length Is Support Radius"), extract, **APART,
@@ -76,7 +78,7 @@ class TestApart(unittest.TestCase):
             self.told_once("", sphere(blocks_of(Bound1=cube(), Bound2=cube())), Blocks=apart)
 
     def test_partitions(self):
-        """A part without a name is called by the name of what it belongs to."""
+        """A partition without a name is called by the name of the data set that it belongs to."""
         walls, water, collection = vtkPartitionedDataSet(), vtkPartitionedDataSet(), vtkPartitionedDataSetCollection()
         walls.SetPartition(0, cube())
         water.SetPartition(0, cube())
@@ -94,7 +96,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, water)[0].GetPartition(0)) == self.alone)
 
     def test_sums(self):
-        """Costs are summed over all blocks, and the fraction of the progress never falls."""
+        """Statistics of a run's costs are summed over all blocks, and the fraction of the progress never falls."""
         extract, seen = sphere(), [0]
         run(extract, **APART, KeepDeviceData=0)
         bricks, peak = statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")
@@ -113,7 +115,7 @@ class TestApart(unittest.TestCase):
         self.assertEqual((output.GetNumberOfPoints(), told, extract.GetErrorMessage()), (0, [], ""))
 
     def test_no_point_sets(self):
-        """Blocks of cells without points of their own are refused; they do not crash."""
+        """Data sets without explicit points (AMR, tables) are refused, and do not crash the filter."""
         amr, extract = vtkOverlappingAMR(), sphere()
         amr.Initialize(1, [1])
         messages = []
@@ -129,8 +131,8 @@ class TestApart(unittest.TestCase):
 
 class TestTogether(unittest.TestCase):
     def test_one_set(self):
-        """Blocks that are one set, in any order and beside empty ones, give the surface of this set to the last bit. An array that one block lacks is
-        left out. The joined set is kept while the blocks stay the same."""
+        """If blocks are one set, in any order and beside empty ones, the surface equals this set's to the last bit. An array that one block
+        lacks is left out. The joined set is kept as long as the blocks stay the same."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         first, second = take(data, ~left), timed(take(data, left))
@@ -160,7 +162,7 @@ class TestTogether(unittest.TestCase):
         self.assertFalse(surface.GetPointData().HasArray("Pair"))
 
     def test_walls(self):
-        """Walls are in a block of their own, which its name tells, and lack the scalar. They are solid where the filter is asked for that."""
+        """Walls are in a block of their own, recognised by its name, and lack the scalar. They are solids if the filter is set so."""
         data = cube()
         wall = points_of(data)[:, 2] < -0.45
         walls = take(data, wall)

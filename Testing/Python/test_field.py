@@ -15,7 +15,7 @@ from vtk_test import (
 
 
 def off_lattice(n, jitter):
-    """Returns n^3 places in [0, 1]^3, moved from a lattice by up to `jitter` spacings."""
+    """Returns n^3 places in [0, 1]^3: a lattice, with each coordinate changed by up to `jitter` spacings."""
     at = numpy.stack(numpy.meshgrid(*[numpy.arange(n)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5
     return (at + jitter * numpy.random.default_rng(n).uniform(-1, 1, at.shape)) / n
 
@@ -35,7 +35,8 @@ def derive(particles):
 
 
 class TestPeriod(unittest.TestCase):
-    """The Taylor-Green vortex repeats, with a period that is given or found in the field data; core_period_fields tests the field."""
+    """Tests a period that is given, or found in the field data, with the Taylor-Green vortex, which repeats. core_period_fields tests the
+    field."""
 
     def make_filters(self, particles):
         plane = vtkImageData()
@@ -79,7 +80,7 @@ class TestPeriod(unittest.TestCase):
 
 class TestDerivatives(unittest.TestCase):
     def test_refused(self):
-        """Each fault gives a sentence and an empty output; an empty input is no fault."""
+        """Each fault gives a message and an empty output. An empty input is no fault."""
         data, told = run(vtkSPHDerivatives(), vtkPolyData())
         self.assertEqual((data.GetNumberOfPoints(), told), (0, []))
         broken, bare = cube(), cube()
@@ -110,7 +111,8 @@ class TestDerivatives(unittest.TestCase):
                     self.assertLess(abs(values_of(data, name) - expected).max(), 4 * tolerance, name)
 
     def test_solids(self):
-        """Walls have zeros and do not count. Arrays of the file stay, unless they are to be replaced."""
+        """At walls derivatives are 0, and walls do not change the fluid's. Arrays of the input stay, unless a result
+        has the same name."""
         x = points_of(cube())
         solid = x[:, 2] < -0.5
         velocity = numpy.stack([numpy.where(solid, math.nan, 2 * x[:, 1]), *0 * x[:, 1:].T], axis=1)
@@ -141,7 +143,7 @@ class TestDerivatives(unittest.TestCase):
             self.assertEqual((run(made, DetectFluid=1)[1], made.GetUsedFluid()), ([], "ParticleType = 0"))
 
     def test_outputs(self):
-        """Tests a run that is stopped, input of another class, and the standard form of the gradient."""
+        """Tests input of another class, the standard form of the gradient, and a run that is stopped."""
         grid, made = vtkUnstructuredGrid(), vtkSPHDerivatives()
         grid.SetPoints(cube().GetPoints())
         grid.GetPointData().ShallowCopy(cube().GetPointData())
@@ -151,7 +153,7 @@ class TestDerivatives(unittest.TestCase):
         self.assertEqual(aborted(made).GetNumberOfPoints(), 0)
 
     def test_derivatives(self):
-        """Particles stay in their blocks, and are neighbours across blocks."""
+        """Particles stay in their blocks, and particles of different blocks are neighbours."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         outputs = []
@@ -196,7 +198,8 @@ class TestProbe(unittest.TestCase):
         self.assertTrue(results[0] == results[1])
 
     def test_point_sets(self):
-        """Points without cells work, alone and as a block, though VTK 9.1 cannot make their class by its name."""
+        """A vtkPointSet, points without cells, works alone and as a block, though VTK 9.1 cannot make an object of this
+        class by its name."""
         points = vtkPointSet()
         points.ShallowCopy(self.make().GetSource())
         for filter_ in (self.make(), vtkSPHDerivatives()):
@@ -208,7 +211,7 @@ class TestProbe(unittest.TestCase):
                 self.assertTrue(bytes_of(found) == expected)
 
     def test_changed_arrays(self):
-        """Arrays that a probe keeps are not mistaken for others."""
+        """A probe keeps arrays between runs, but does not use them if an array was replaced or changed."""
         probe = self.make()
         before = values_of(run(probe)[0], "Velocity").copy()
         velocity = probe.GetSource().GetPointData().GetArray("Velocity")
@@ -227,13 +230,13 @@ class TestProbe(unittest.TestCase):
         return run(self.made, points, **settings)[0]
 
     def places(self, count):
-        """Returns places in and around the cube; every fiftieth is far away."""
+        """Returns `count` places in and around the cube; every fiftieth place is far away."""
         places = numpy.random.default_rng(7).uniform(-1.3, 1.3, (count, 3))
         places[::50] *= 4e5
         return places
 
     def test_bits(self):
-        """Bits are the same in any order, for points of any class, with device data kept or not, and for particles in blocks."""
+        """No bit depends on the order of points, their class, whether device data are kept, or whether particles are in blocks."""
         particles, places = cube(), self.places(5000)
         expected = self.probe(particles_of(places), particles)
         back = self.probe(particles_of(places[::-1]), particles, KeepDeviceData=0)
@@ -264,7 +267,8 @@ class TestProbe(unittest.TestCase):
         self.assertFalse(data.GetPointData().HasArray("Type"))
 
     def test_refused(self):
-        """Without points, without particles, with input that cannot be used, and when stopped, the filter behaves."""
+        """The filter gives empty results or errors, and does not crash: without points, without particles, with input
+        that cannot be used, and if it is stopped."""
         data = self.probe(particles_of(self.places(100)), vtkPolyData())
         self.assertEqual((values_of(data, "vtkValidPointMask").tolist(), self.made.GetErrorMessage()), ([0] * 100, ""))
         data = self.probe(vtkPolyData(), cube())
@@ -286,7 +290,8 @@ class TestProbe(unittest.TestCase):
         self.assertIsNone(vtkSPHProbe().GetSource())
 
     def test_particles_among_meshes(self):
-        """Vertices beside other cells are the particles. Derivatives are made for these alone; the output has the input's class."""
+        """If there are vertices beside other cells, the vertices' points are the particles. Derivatives are made for these points alone.
+        The output has the input's class."""
         particles, mesh = make_vortex(8), vtkUnstructuredGrid()
         count = particles.GetNumberOfPoints()
         mesh.SetPoints(particles.GetPoints())
@@ -331,7 +336,7 @@ class TestResample(unittest.TestCase):
         self.assertTrue(abs(low[1]) < 0.02 and low[1] == high[1] and -1.2 < low[0] < -1 and 1 < high[2] < 1.2)
         self.assertTrue(900 < made.GetNumberOfCells() < 40 * 39)  # Quads end where the fluid ends.
         self.assertGreaterEqual(run(self.made, OnlyFluid=0)[0].GetNumberOfCells(), 40 * 39)
-        # An inclined plane: its points are on it, and the cube's corner is cut off.
+        # An inclined plane: its points lie on it, and it cuts off the cube's corner.
         x = points_of(self.check_values(FitBounds=0, Origin=(0.5, 0.5, 0.5), Normal=(1, 1, 1)))
         self.assertLess(abs(x.sum(axis=1) - 1.5).max(), 1e-12)
         self.assertTrue(x[:, 0].min() < 0 and x[:, 0].max() > 1)
@@ -354,7 +359,8 @@ class TestResample(unittest.TestCase):
         self.assertTrue(run(self.made, Shape=vtkSPHResample.SLICE)[0].IsA("vtkPolyData"))  # The output has another class.
 
     def test_inputs(self):
-        """Walls do not count, nor are they in the bounds; blocks are one set; without particles there is no error."""
+        """Walls count neither in the field nor in the bounds. Blocks are one set. Without particles there is no
+        error."""
         add(self.particles, ParticleType=(points_of(self.particles)[:, 0] > 0.05).astype(int))
         made, _ = run(self.made, blocks_of(self.particles), DetectFluid=1)
         self.assertEqual(self.made.GetUsedFluid(), "ParticleType = 0")

@@ -22,7 +22,7 @@ CELLS = 1331 * (SPACING / 0.065) ** 3  # On this lattice a particle takes 0.1^3.
 
 
 def make_particles(chosen=slice(None), **arrays):
-    """Returns some of the particles; Radius is the distance from the origin."""
+    """Returns the chosen particles. Radius is the distance from the origin."""
     return particles_of(X[chosen], Radius=RADIUS[chosen], hsml=numpy.full(len(X[chosen]), 1.3 * SPACING), **arrays)
 
 
@@ -63,7 +63,8 @@ class TestPoints(FilterTest):
         return abs((total / weight if mean else total) - 0.6).max()
 
     def test_sphere(self):
-        """Radius grows outward. Normals point to lower values, as vtkContourFilter's do, and triangles face as normals do."""
+        """The scalar Radius grows outwards. Normals point to lower values, as vtkContourFilter's do, and triangles face as the normals
+        do."""
         extract = sphere()
         self.assertLess(self.residual(extract), 1e-5 * math.sqrt(3))
         normals = values_of(self.surface, "Normals")[corners_of(self.surface)[:, 0]]
@@ -83,7 +84,8 @@ class TestPoints(FilterTest):
         self.assertEqual(set(values_of(self.good(extract, FreeSurface=1), "IsoValue")), {0.3, 0.6})
 
     def test_value_that_is_not_given(self):
-        """The default iso value is told before the run; core_name tests its choice. A NaN stands for an empty row of the panel."""
+        """The default iso value is known before the run; core_name tests how it is chosen. A NaN stands for an empty row of the panel's
+        list."""
         extract = sphere()
         for settings, value in (({"NumberOfContours": 0}, extract.GetNextIsoValue()), ({"NumberOfContours": 1, "Value": (0, math.nan)}, extract.GetNextIsoValue()),
                                 ({"FreeSurface": 1, "NumberOfFreeSurfaceValues": 0}, 0.5)):
@@ -97,7 +99,7 @@ class TestPoints(FilterTest):
         self.assertAlmostEqual(statistic(extract, "SmoothingLengthRange"), H, delta=0.03)
 
     def test_by_neighbours(self):
-        """Sums over neighbours are kept for the next run, and computed anew for other particles."""
+        """Results of sums over neighbours are kept for the next run, and computed anew for other particles."""
         particles = particles_of(lattice(7, 7, 7))
         extract = make_filter(particles, "Density", 0.5)
         found = []
@@ -119,7 +121,7 @@ class TestPoints(FilterTest):
         self.assertTrue(0.05 < least[1] < 0.4, least)
 
     def make_plane(self):
-        """Makes a filter on 21^2 particles in the plane y = 0.5, with two isolines and a least value below all values."""
+        """Makes a filter on 21^2 particles in the plane y = 0.5, with three iso values, the least of which lies below all values."""
         places = lattice(21, 1, 21, around_origin=True) + [0, 0.5, 0]
         extract = sphere(particles_of(places, SmoothingLength=numpy.full(441, H), Volume=numpy.full(441, SPACING ** 2),
                                       Radius=numpy.hypot(*places[:, ::2].T)))
@@ -180,8 +182,7 @@ class TestArrays(FilterTest):
         self.has(self.good(extract, InterpolateAttributes=0), "Radius", "Position Id")
 
     def test_left_out(self):
-        """An array is missing on the surface if the user excludes it or, with a warning, if it is not finite where there is
-        fluid."""
+        """The surface lacks an array if the user excludes it or, with a warning, if it is not finite somewhere in the fluid."""
         wall = points_of(cube())[:, 0] < -0.9
         broken = numpy.where(wall, math.inf, 1)
         particles = self.make_particles(Broken=numpy.ones((COUNT, 3)), BrokenWall=broken, Wall=wall.astype(float))
@@ -202,7 +203,7 @@ class TestArrays(FilterTest):
         self.has(run(extract)[0], "Id")
 
     def test_names(self):
-        """A computed array keeps its name whatever the input's arrays are called, the contoured one included."""
+        """A computed array keeps its name whatever names the input's arrays have, also the contoured one."""
         radius = values_of(cube(), "Radius").astype(numpy.float32)
         particles = cube(Normals=radius, WeightSum=radius, IsoValue=radius)
         extract = sphere(particles)
@@ -223,7 +224,8 @@ class TestArrays(FilterTest):
             self.assertIn(("Scalar", [scalar]), statistics_of(extract))
         surface, iso, _ = extracted("WeightSum", ComputeWeightSum=1)
         self.assertEqual((iso, values_of(surface, "WeightSum").max() > 0.9), (["IsoValue"], True))
-        # If these are not computed, the input's array is carried like all others, and there are no normals.
+        # If normals and weight sums are not computed, the input's arrays of these names are carried like all others,
+        # and the surface has no normals.
         surface, _, _ = extracted("Radius", ComputeNormals=0, ComputeWeightSum=0)
         self.assertIsNone(surface.GetPointData().GetNormals())
         self.assertEqual(values_of(surface, "Normals").ndim, 1)
@@ -253,7 +255,7 @@ class TestArrays(FilterTest):
         self.assertIsNone(surface.GetPointData().GetNormals())
 
     def test_coarse_points(self):
-        """Float coordinates that are too coarse for the surface give a warning: their steps are 0.0625, the cubes 0.065."""
+        """A warning says that float coordinates are too coarse for the surface: their steps are 0.0625, the cubes 0.065."""
         extract, far = sphere(), particles_of(points_of(cube()) - [0, 1e6, 0]).GetPoints()
         self.good(extract, OutputPointsPrecision=0)
         extract.GetInput().SetPoints(far)
@@ -262,7 +264,8 @@ class TestArrays(FilterTest):
             self.assertEqual((len(told), surface.GetNumberOfCells() > 100), (count, True))
 
     def test_statistics(self):
-        """Costs of a run are not stored with the surface, because another run for the same surface may have others."""
+        """The surface's field data do not hold the costs of the run, because another run for the same surface may have
+        other costs."""
         self.assertEqual(vtkMarchingCorrectors().GetRunStatistics().GetNumberOfArrays(), 0)
         extract = sphere(self.make_particles())
         surface = self.good(extract, OutputPointsPrecision=1)
@@ -287,7 +290,7 @@ class TestArrays(FilterTest):
         self.assertGreater(seconds.GetComponent(0, len(names) - 1), 0)
         for name in ("DeviceBytesPeak", "Bricks", "NodesEvaluated", "MarchRounds"):
             self.assertEqual((statistic(extract, name) > 0, data.HasArray(name)), (True, 0))
-        # VTK's filters measure the same; a cut surface has no volume.
+        # vtkMassProperties measures the same area and volume. A surface that is cut off has no volume.
         masses = vtkMassProperties()
         masses.SetInputData(surface)
         self.assertAlmostEqual(numbers["Area"] / masses.GetSurfaceArea(), 1, delta=1e-5)
@@ -371,7 +374,7 @@ class TestTold(FilterTest):
         self.assertEqual(extract.GetFluidScalarRange(), (0, 0))  # Nothing has run yet.
 
     def test_huge_run_is_announced(self):
-        """The warning about many cells comes before the run begins; here the run is stopped at its first sign of progress."""
+        """The warning about many cells comes before the run begins. This run is stopped as soon as it has come."""
         extract = make_filter()
         warnings = []
         extract.AddObserver("WarningEvent", lambda *_: warnings.append(extract.GetEstimatedCells()))
@@ -408,7 +411,7 @@ class TestTold(FilterTest):
             self.assertRegex(str(extract), words + "\n")
 
     def test_mode(self):
-        """If nobody chooses, the free surface is made, but not for a gas that fills its bounds."""
+        """If the user chooses nothing, the filter makes the free surface, but not for a gas that fills its bounds."""
         x = lattice(20, 12, 8)
         there = x[(x[:, 2] < 0.4) | (x[:, 0] < 1)]  # a dam
         varying = 0.13 * (1 + 0.3 * numpy.sin(x[:, 0]))

@@ -20,7 +20,7 @@ BARE = {"InterpolateAttributes": 0, "ComputeScalars": 0}
 
 
 def bare(data=None, *scalar, **settings):
-    """Returns the surface without interpolated arrays, for comparisons of inputs."""
+    """Returns the points and triangles of a surface without interpolated arrays, to compare inputs."""
     extract = sphere(data, *scalar)
     surface, told = run(extract, **BARE, **settings)
     assert told == [] and surface.GetNumberOfCells() > 100, told
@@ -61,7 +61,7 @@ class TestWeird(unittest.TestCase):
                 *((says("NO_SUCH_ARRAY", "'NoSuch'", role), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
                     ("Fluid", "fluid"))),
-                # Sentences of the core reach the user; core_input tests every sentence.
+                # Messages of the core reach the user; core_input tests every message.
                 (says("ARRAY_VALUE", "SmoothingLength", "17"), changed("SmoothingLength", 17, math.nan), {}),
                 (says("POSITION_NOT_FINITE", "20") + "|" + says("ARRAY_VALUE", "20"), moved, {}),
                 (says("BLOCKS_TOO_MANY"), cube(), {"CubeSize": 1e-4}), (says("NO_SUCH_DEVICE", "NoSuchDevice"), cube(), {"Device": "NoSuchDevice"})):
@@ -118,7 +118,7 @@ class TestKinds(unittest.TestCase):
         return array
 
     def test_scalars(self):
-        """The values are whole numbers, which every type can hold."""
+        """Arrays of all types give the same surface. The values are whole numbers, which every type can hold."""
         values = numpy.floor(100 * values_of(cube(), "Radius"))
         expected = bare(cube(Count=values), "Count", 60.5)
         for kind in ("f4", "i4", "i2", "i8", "u1"):
@@ -138,8 +138,8 @@ class TestKinds(unittest.TestCase):
         self.assertTrue(run(named, ScalarComponent=1)[0].GetPointData().HasArray("Vector_Y"))
 
     def test_rare_arrays(self):
-        """Each type works as scalar, and is carried to the surface; one array may have several roles, and arrays without values or name do no
-        harm."""
+        """Arrays of rare types work as scalar, and are carried to the surface. One array may have several roles. Arrays without values or
+        name do no harm."""
         data, bits, variants, none = cube(), vtkBitArray(), vtkVariantArray(), vtkFloatArray()
         inside = (values_of(data, "Radius") < 0.6).astype(numpy.uint8)
         for i, value in enumerate(inside):
@@ -163,7 +163,7 @@ class TestKinds(unittest.TestCase):
         self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # The field is nowhere half the smoothing length.
 
     def test_points(self):
-        """Coordinates may be whole numbers; the surface's points have the type of the particles' points."""
+        """Coordinates may be of an integer type. The surface's points have the type of the particles' points."""
         whole, surfaces = vtkPoints(), []
         whole.SetDataTypeToInt()
         for place in numpy.rint(lattice(10, 10, 10) / SPACING):
@@ -196,8 +196,8 @@ class TestKinds(unittest.TestCase):
         self.assertTrue(all(surface_of(apart.GetBlock(i)) == expected for i in range(2)))
 
     def make_mesh(self, particles, arrays):
-        """Makes hexahedra with points of their own before the particles' vertices, if there are any. `arrays` says whether all cells or all points
-        have the particles' arrays."""
+        """Makes hexahedra with points of their own, followed by the particles' vertices, if there are any. `arrays` ("cells" or "points")
+        says which of the two carry the particles' arrays."""
         places = numpy.array([(i & 1, i >> 1 & 1, i >> 2) for i in (0, 1, 3, 2, 4, 5, 7, 6)], float)
         grid, count = vtkUnstructuredGrid(), COUNT if particles else 0
         grid.SetPoints(particles_of(numpy.concatenate([places, points_of(particles)] if particles else [places])).GetPoints())
@@ -212,7 +212,8 @@ class TestKinds(unittest.TestCase):
         return grid
 
     def test_particles_among_meshes(self):
-        """Vertices beside other cells are the particles, also where some blocks have vertices and others have other cells."""
+        """If there are vertices beside other cells, the vertices' points are the particles, also if some blocks have vertices and others
+        have other cells."""
         particles, mesh = cube(), self.make_mesh(None, "points")
         particles.GetPointData().RemoveArray("Volume")
         expected = run(sphere(particles))[0].GetNumberOfCells()
@@ -238,10 +239,11 @@ class TestKinds(unittest.TestCase):
 
 
 class TestFound(unittest.TestCase):
-    """Settings reach the core; core_find tests what the core finds, and wheel.both compares the interfaces."""
+    """Tests that settings reach the core. core_find tests what the core finds, and wheel.both compares the
+    interfaces."""
 
     def test_named(self):
-        """Fluid that is detected gives the same surface as fluid that is named, and a named array wins."""
+        """Fluid that is detected gives the same surface as fluid that is named. A named array has precedence."""
         particles = cube(ParticleType=(points_of(cube())[:, 2] < -0.45).astype(numpy.int32))
         named, found = sphere(particles), sphere(particles)
         surfaces = [surface_of(run(named, FluidArrayName="ParticleType")[0]),
@@ -253,7 +255,8 @@ class TestFound(unittest.TestCase):
         self.assertEqual(named.GetUsedFluid(), "ParticleType = 1")
 
     def test_scalar(self):
-        """The active array is taken if it fits. An array that equals the iso value everywhere is not made active."""
+        """The active array is contoured if it fits. An array that equals the iso value everywhere does not become
+        active on the surface."""
         data, x = cube(Idp=numpy.arange(COUNT), Height=points_of(cube())[:, 2]), points_of(cube())
         data.GetPointData().RemoveArray("Radius")
         extract = vtkMarchingCorrectors()

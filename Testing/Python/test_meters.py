@@ -24,7 +24,7 @@ def made_by(source, **settings):
 
 
 def named(data, *names):
-    """Returns the array that names the cells."""
+    """Gives each cell of the data a name, and returns the data."""
     array = vtkStringArray()
     array.SetName("Name")
     for name in names:
@@ -66,7 +66,7 @@ class TestGauge(MeterTest):
         return gauge
 
     def check_row(self, row, level=0.5):
-        """Compares the row of an upright line: the line is in fluid from the cube's lower to its upper side."""
+        """Checks the row of an upright line: it is in fluid from the cube's lower to its upper side."""
         weight = sums_at(cube(), values_of(cube(), "Radius"), [[row[axis] for axis in "xyz"]])[0][0]
         self.assertEqual((row["state"], row["crossings"], row["first"]), ("wet", 2, row["last"]))
         self.assertTrue(0.9 < row["z"] < 1.2)
@@ -93,7 +93,8 @@ class TestGauge(MeterTest):
             self.assertEqual((inside["state"], inside["last"]), ("full", 0.5))
 
     def test_lines(self):
-        """Lines come from the second input, with and without names; two points alone are a line, too."""
+        """Lines come from the second input, with and without names. A gauge without this input has a line between two
+        points."""
         line = made_by(vtkLineSource(), Point1=(0.3, 0.1, -2), Point2=(0.3, 0.1, 2), Resolution=7)  # This is one line, so one gauge.
         gauge = self.gauge(self.MAST)
         rows = self.measured(gauge, cube(), LinesData=line)
@@ -142,7 +143,7 @@ class TestFlux(MeterTest):
             self.refuse(flux, words, data, VelocityArrayName=velocity)
 
     def test_sections(self):
-        """Sections are added by methods, or come from the second input with their names, closed or not; and a disc alone works."""
+        """Sections are added by methods, or come from the second input with their names, closed or not. A disc alone works, too."""
         flux = vtkSPHFlux()
         flux.AddRectangle(*self.WALL)
         flux.AddDisc("disc", (0, 0, 0.1), (0, 0, -3), 0.5)
@@ -199,7 +200,8 @@ class TestComponents(MeterTest):
         self.assertEqual(len(run(vtkSPHComponents(), made_by(vtkPlaneSource()))[1]), 1)  # a quad
 
     def test_parents(self):
-        """The surface has a shell with a cavity, in which a drop with a bubble flies, another ball, and an open ball."""
+        """Checks pieces that contain each other: a shell with a cavity, in which a drop with a bubble flies; another ball; and an open
+        ball."""
         opened = self.sphere(0.4, 0, 8)
         opened.GetPolys().ReplaceCellAtId(7, 3, [0, 0, 0])
         surface = self.together(self.sphere(0.5, 5), self.sphere(2), self.sphere(0.6, 0.1), self.sphere(0.3, 0.1, inwards=True),
@@ -223,7 +225,7 @@ class TestComponents(MeterTest):
         for i, name, value, delta in ((0, "vy", 0, 1e-12), (0, "vz", 0.1, 1e-12), (3, "vx", 10, 0), (3, "x", 5, 1e-9),
                                       (3, "xmax", 5.5, 0.01), (3, "zmin", -0.5, 0.01)):
             self.assertAlmostEqual(rows[i][name], value, delta=delta)
-        # With LeastParticles the drop goes with its bubble, and so does the ball of one particle.
+        # LeastParticles = 2 drops the drop together with its bubble, and the ball of one particle.
         rows = self.measured(split, LeastParticles=2)
         self.assertEqual([(row["component"], row["closed"]) for row in rows], [(0, 1), (1, 1), (2, 0)])
         rows = self.measured(split, LeastParticles=0, LeastVolume=4 / 3 * math.pi * 0.55 ** 3)
@@ -231,7 +233,7 @@ class TestComponents(MeterTest):
         self.assertEqual((len(rows), len(ids), ids.max()), (4, split.GetOutput().GetNumberOfPoints(), 3))
 
     def test_fluid(self):
-        """Walls do not count where they are detected. Blocks of particles are one set, and their names may tell walls."""
+        """Walls that are detected do not count as a piece's particles. Blocks of particles are one set, and their names may mean walls."""
         surface, places = self.together(self.sphere(2), self.sphere(0.5, 5)), ((0, 1.7, 0), (0, -1, 0.1), (5, 0, 0))
         whole = self.particles(*places, ParticleType=numpy.array([0, 1, 0]))
         blocks = blocks_of(self.particles(places[0]), self.particles(places[2]), Walls=self.particles(places[1]))
@@ -244,7 +246,7 @@ class TestComponents(MeterTest):
                 self.assertEqual([row["particles"] for row in rows], counts)
 
     def test_against_vtk(self):
-        """A surface of noise is compared piece by piece."""
+        """Compares the pieces of a noisy surface, one by one, with VTK's filters."""
         particles, extract, split = cube(), vtkMarchingCorrectors(), vtkSPHComponents()
         wave = numpy.sin(points_of(particles) * [7, 8, 6]).prod(axis=1)
         surface, _ = run(extract, cube(Wave=wave), InputArrayToProcess=(0, 0, 0, 0, "Wave"), Value=(0, 0.3), OutputPointsPrecision=1)
@@ -278,7 +280,8 @@ class TestComponents(MeterTest):
         self.assertGreater(closed, 10)
 
     def pieces_of(self, shift, wanted, period, **settings):
-        """Returns particles of a lattice of spacing 0.1 in the period 2, moved by `shift`. `wanted` chooses them by their place before the shift."""
+        """Returns the rows of the pieces of some particles, and the particles' places before they are moved by `shift`. `wanted` chooses
+        these places from a lattice of spacing 0.1 in the period 2."""
         way = numpy.remainder(lattice(20, 20, 20) + 1, 2) - 1
         chosen = way[wanted(way)]
         particles = self.particles(*(chosen + shift))
@@ -287,7 +290,7 @@ class TestComponents(MeterTest):
         return self.measured(vtkSPHComponents(), surface, particles, PeriodicBounds=period), chosen
 
     def test_sides(self):
-        """The period may begin anywhere: its sides, where the surface ends, need not be planes of the lattice."""
+        """The period may begin anywhere. The surface ends at its sides, which need not be planes of the lattice."""
         def wanted(way):
             return (numpy.linalg.norm(way, axis=1) < 0.45) | (numpy.linalg.norm(way - 0.8, axis=1) < 0.3)
 
@@ -306,7 +309,8 @@ class TestComponents(MeterTest):
                     self.assertTrue(period[2 * a] - 1e-3 < row[axis] < period[2 * a + 1] + 1e-3)
 
     def test_caps(self):
-        """Caps end pieces at the sides of a period: together they hold what the ball holds, which lies outside the period's bounds, too."""
+        """Caps end pieces at the sides of a period. The pieces of a ball together hold as much as the ball, also if it lies outside the
+        period's bounds."""
         def wanted(way):
             return numpy.linalg.norm(way, axis=1) < 0.65
 
@@ -325,7 +329,8 @@ class TestComponents(MeterTest):
                 self.assertAlmostEqual(momentum / ball["mass"], ball["v" + axis], delta=1e-9)
 
     def test_drops_in_bubbles(self):
-        """The pieces of a ball, and of a layer without an end, hold all their particles wherever sides cut them."""
+        """The pieces of a ball, and of a layer without an end, hold all their particles wherever the period's sides cut
+        them."""
         for is_layer in (False, True):
             def wanted(way, is_layer=is_layer):
                 r = numpy.linalg.norm(way, axis=1)

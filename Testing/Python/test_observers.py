@@ -28,7 +28,8 @@ class TestObservers(unittest.TestCase):
         return extract
 
     def observed(self, extract, act):
-        """Returns the surface of a run with an observer that acts at each call but the first; VTK makes the first before the filter runs."""
+        """Returns the surface of a run with an observer that acts at each call but the first. VTK makes the first call before the filter
+        runs."""
         calls, acting = [], []
 
         def respond(made):
@@ -67,7 +68,7 @@ class TestObservers(unittest.TestCase):
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
 
     def test_blocks(self):
-        """Blocks that an observer removes or changes still have their surfaces."""
+        """Blocks still have their surfaces if an observer removes or changes them."""
         expected = surface_of(run(sphere())[0])
         for change in (lambda blocks: blocks.SetNumberOfBlocks(0), lambda blocks: blocks.GetBlock(1).Initialize(),
                        lambda blocks: blocks.GetBlock(1).GetPointData().RemoveArray("Radius")):
@@ -80,7 +81,7 @@ class TestObservers(unittest.TestCase):
                 self.assertTrue(surface_of(output.GetBlock(i)) == expected)
 
     def test_update_within(self):
-        """VTK refuses an update within an update, and nothing changes; a later one works."""
+        """VTK refuses an update within an update; the outer update does not change. A later update works."""
         extract, errors = self.make(), []
         expected = surface_of(run(extract)[0])
         extract.Modified()
@@ -91,7 +92,7 @@ class TestObservers(unittest.TestCase):
         self.assertTrue(after != expected and len(after["corners"]) > 0)
 
     def test_release_within(self):
-        """If an observer releases memory, that happens at the end of the update."""
+        """Memory that an observer releases is freed at the end of the update."""
         def peak(extract):
             surface, _ = run(extract, particles_of([[0.0, 0.0, 0.0]]), FluidArrayName="", SmoothingLength=0.1, FreeSurface=1)
             self.assertGreater(surface.GetNumberOfCells(), 0)

@@ -48,8 +48,8 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # The default is the free surface. Without it the filter contours velocities at their median in the fluid, which it detects, and the surface
-    # ends at the walls.
+    # The default is the free surface. If it is switched off, the filter contours velocities at their median in the fluid, which it detects,
+    # and the surface ends at the walls.
     assert list(extract.Isosurfaces) == []
     extract.UpdatePipeline()
     extract.UpdatePropertyInformation()
@@ -106,7 +106,7 @@ def value_of(proxy, name):
 
 
 def check_in_use(reader):
-    """Looks at the panel after Apply: with walls left out, for a component, and for a dot product."""
+    """Checks what the panel shows after Apply: with walls left out, for a component, and for a dot product."""
     extract = MarchingCorrectors(Input=reader)  # noqa: F821
     extract.FluidArray = "ParticleType"
     extract.ContourBy = ["POINTS", "Velocity"]
@@ -116,7 +116,7 @@ def check_in_use(reader):
             extract.DotProductWith = ["POINTS", "Vorticity"]
         else:
             extract.Component = choice
-        # These are known before the run, as is the range that the list of iso values offers.
+        # The range and the number of cells are known before the run. The list of iso values offers the same range.
         extract.UpdateVTKObjects()
         extract.UpdatePropertyInformation()
         ahead = value_of(extract, "NextScalarRange")
@@ -155,7 +155,7 @@ def check_undo(extract):
     def now():
         return [extract.CubeSizeFactor, extract.Trim, list(extract.Isosurfaces), str(extract.Kernel).strip("'")]
 
-    # From here on undo keeps states: the next change is relative to the first one.
+    # From here on the undo stack records states: the next change is relative to the first one.
     extract.CubeSizeFactor = 0.75
     before = now()
     builder.Begin("changes")
@@ -181,7 +181,7 @@ def check_refusal(extract):
 
 
 def check_blocks(reader):
-    """Blocks of one input are one set of particles, unless they are extracted one by one."""
+    """The blocks of one input are one set of particles, unless they are extracted apart."""
     halves = [Clip(Input=reader, ClipType="Plane", Invert=side) for side in (0, 1)]
     for half in halves:
         half.ClipType.Origin, half.ClipType.Normal = [1.5, 0, 0], [1, 0, 0]
@@ -222,7 +222,7 @@ def check_plugin():
 
 
 def turned(time):
-    """Returns a lattice, turned around the z axis: points and velocities."""
+    """Returns the points and velocities of a lattice that turns around the z axis."""
     x, y, z = (numpy.mgrid[0:SIDE, 0:SIDE, 0:SIDE].reshape(3, -1) - SIDE // 2) * SPACING
     c, s = math.cos(RATE * time), math.sin(RATE * time)
     x, y = c * x - s * y, s * x + c * y
@@ -259,7 +259,7 @@ def arrays_of(proxy, time=None):
 
 
 def check_probe(reader, plane):
-    """Points come from one input. Particles, and the names in the panel, come from the other."""
+    """A probe's points come from one input. The particles, and the names that the panel offers, come from the other."""
     probe = SPHProbe(Points=plane, Particles=reader)  # noqa: F821, LoadPlugin made it
     data, found = arrays_of(probe)
     assert data.IsA("vtkPolyData") and data.GetNumberOfPoints() == 21 * 21
@@ -292,7 +292,7 @@ def check_probe(reader, plane):
 
 
 def check_slices(reader):
-    """With particles and the panel's default place nothing else need be chosen."""
+    """With particles and the panel's default places, nothing else has to be chosen."""
     cut = SPHSlice(Input=reader)  # noqa: F821
     data, found = arrays_of(cut)
     points = vtk_to_numpy(data.GetPoints().GetData())
@@ -322,7 +322,7 @@ def check_slices(reader):
 
 
 def check_gauge(reader):
-    """A line runs upright through the particles, and is read over time as in the guide."""
+    """A gauge's line runs upright through the particles, and is read over time as the guide says."""
     gauge = SPHGauge(Particles=reader, Point1=[0.0, 0.0, 0.0], Point2=[0.0, 0.0, 1.0])  # noqa: F821
     assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # These are not the bounds of the particles.
     gauge.Point1 = [0.0, 0.0, -1.0]
@@ -339,7 +339,7 @@ def check_gauge(reader):
 
 
 def check_flux(reader):
-    """One Apply is enough: through the middle of a body that turns, the inflow and the outflow are equal."""
+    """A flux needs only one Apply. Through a disc in the middle of a body that turns, the inflow equals the outflow."""
     flux = SPHFlux(Particles=reader)  # noqa: F821
     flux.UpdatePipeline(reader.TimestepValues[0])  # the body lies along the axes then
     assert numpy.allclose(flux.Origin, 0, atol=1e-6) and abs(flux.Radius - (SIDE - 1) * SPACING) < 1e-6, (flux.Origin, flux.Radius)
@@ -397,7 +397,7 @@ def check_real_data():
     found = arrays_of(derive)[1]
     wall = found["ParticleType"] != 0
     assert not found["Vorticity"][wall].any() and found["Vorticity"][~wall].any()
-    # Files with a single step pass through.
+    # A file with a single step passes through the interpolator unchanged.
     film = SPHTemporalInterpolator(Input=reader)  # noqa: F821
     assert (arrays_of(film)[1]["Velocity"] == found["Velocity"]).all()
 

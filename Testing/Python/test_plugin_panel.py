@@ -76,7 +76,7 @@ def run(paraview, events, folder):
 
 
 def first_apply(folder):
-    """The panel shows the effect of choices before Apply: the box, the number of cells, the red warning."""
+    """Before Apply the panel shows the effect of choices: the box, the number of cells, the red warning."""
     return [
         FILTERS, ADVANCED, PAUSE,
         *greyed("ContourValues", "Filled"),  # Walls are detected, so the water is shown first.
@@ -112,14 +112,15 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """The panel also tells that the first output is empty. The first output that is not empty gets the usual colours of a first output."""
+    """The panel says that the first output is empty. The first output that is not empty gets the colours that a first output usually
+    gets."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),
         change(value, "set_string", "1000"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Solid Color"),
         shown("sph_in_use/Show", "text", "The output is empty: what was found, and what is used"),
         change(value, "set_string", "0.5"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
-        # The colour follows the mode, until a person takes another one.
+        # The array that gives the colours follows the mode until the user chooses another one.
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Vorticity"),
         change("FreeSurface/CheckBox", "set_boolean", "true"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
         (COLOUR, "set_string", "Pressure"), PAUSE,
@@ -129,7 +130,7 @@ def empty_first(folder):
 
 
 def later_applies(folder):
-    """An Apply with several changes is undone and redone; a second array is chosen and given up again; iso values are typed."""
+    """Undoes and redoes an Apply with several changes; chooses a second array and gives it up again; types iso values."""
     return [
         change("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "set_string", "1"),
         change("CubeSizeMode/ComboBox", "set_string", "Adaptive"),
@@ -152,7 +153,7 @@ def later_applies(folder):
 
 
 def plot_over_time(folder):
-    """One button draws the level of a gauge at all times, and nothing else."""
+    """The panel's button draws the level of a gauge at all times, and nothing else."""
     return [DELETE, PAUSE, GAUGE, PAUSE, APPLY, PAUSE, change("sph_in_use/Plot", "activate", ""), PAUSE, *save_state(f"{folder}/chart.pvsm")]
 
 
@@ -163,19 +164,20 @@ def check_chart(file):
     assert len(series) > 10 and len(drawn) == 1 and drawn.pop().startswith("last"), series
     gauge = {p.get("name"): [float(e.get("value")) for e in p.findall("Element")] for p in
              state.findall(".//Proxy[@type='SPHGauge']/Property") if p.get("name") in ("Point1", "Point2")}
-    # The gauge is upright, and stands in the water, which is at one side of the tank.
+    # The gauge is upright and stands in the water, which fills one side of the tank.
     assert gauge["Point1"][::2] == gauge["Point2"][::2] and gauge["Point1"][1] < 0 < gauge["Point2"][1], gauge
 
 
 def check_colours(file):
-    """The colours span the speeds of most of the area in the box, though drops have speeds from 0.1 to 4."""
+    """The range of colours covers the speeds of most of the surface in the box, though drops have speeds from 0.1 to
+    4."""
     state = xml.parse(file)
     colours = state.find(".//ProxyCollection[@name='lookup_tables']/Item[@name='Velocity.PVLookupTable']").get("id")
     points = [float(e.get("value")) for e in state.findall(f".//Proxy[@id='{colours}']/Property[@name='RGBPoints']/Element")]
     assert abs(points[0] - 0.748) < 0.01 and abs(points[-4] - 2.185) < 0.01, points
 
 
-# The names of properties that the panel only shows begin like this.
+# Beginnings of the names of properties that the panel only shows.
 SHOWN = ("Next", "Used", "Estimated", "ColorRanges", "MessageCount", "FluidScalarRange", "Statistics", "SurfaceMeasures")
 
 
@@ -194,10 +196,10 @@ def check_states(states):
     applied = states["applied"]
     wanted = {"FreeSurface": ["1"], "FluidArray": ["ParticleType"], "CubeSizeMode": ["0"], "CubeSize": ["0"], "UseBox": ["1"]}
     assert {name: applied[name] for name in wanted} == wanted, applied
-    # The box began with the particles' bounds.
+    # The box had the particles' bounds before it was changed.
     assert applied["BoxPosition"] == ["0.75", "0", "-0.5"] and applied["BoxLength"][0] == "1.5", applied
     assert abs(float(applied["BoxLength"][1]) - 1.2) < 1e-6, applied
-    # A new filter begins with an array and the array's median in the fluid.
+    # A new filter contours an array at its median in the fluid.
     assert applied["SelectInputScalars"][4] == "Velocity", applied
     assert [abs(float(value) - 1.06648) < 1e-5 for value in applied["ContourValues"]] == [True], applied
     changes = {"CubeSizeFactor", "CubeSizeMode", "BoxPosition"}

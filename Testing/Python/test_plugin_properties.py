@@ -43,7 +43,7 @@ def other_text(found, before):
 
 
 def change(found):
-    """Sets another value than the present one for all elements."""
+    """Sets all elements of the property to other values than they have."""
     count = found.GetNumberOfElements()
     if count == 0:  # a list of any length
         found.SetNumberOfElements(1)
@@ -116,7 +116,7 @@ def run_alone(script):
 
 
 def check_python_state():
-    """To load a state saved as Python, the line that the guide gives is needed, and nothing else."""
+    """A state saved as Python loads after the one line that the guide gives."""
     source = PointSource(NumberOfPoints=100)
     made = SPHContourIsosurfaceFreeSurface(registrationName="found", Input=source)  # noqa: F821, pylint: disable=undefined-variable
     state = smstate.get_state() + '\nprint("found:", FindSource("found").CubeSizeFactor)\n'

@@ -22,16 +22,16 @@ def show_panel(source, **properties):
 
 def main():
     LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())
-    # Without any array, every list of arrays is empty.
+    # These points have no arrays, so every list of arrays is empty.
     show_panel(PointSource(NumberOfPoints=2000, Radius=1.0), FreeSurface=1,
                EstimateSmoothingLength=1)
-    # These arrays are not known yet when the panel is built.
+    # When the panel is built, this file's arrays are not known yet.
     data = os.path.join(os.environ["MCOR_TEST_DATA"], "double_dam_break_small.vtp")
     show_panel(XMLPolyDataReader(FileName=[data]), ContourBy=["POINTS", "Speed"], Preview=1)
     print("the panel works", flush=True)
 
 
-# Without this, ParaView would keep its window open after the script.
+# ParaView would keep its window open after the script, so the process is ended below.
 status = 1
 try:
     main()

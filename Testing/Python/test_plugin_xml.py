@@ -18,9 +18,9 @@ NO_NAMES = ("(automatic)", "(none)", "(density)")  # These texts stand for an em
 NOT_SCALAR = ("SetInputArrayToProcess", "SetValue", "AddExcludedArray", "SetPanelBoxPosition", "SetPanelBoxLength",
               "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory", "SetOrigin", "SetNormal", "SetRadius", "SetPoint1",
               "SetPoint2", "SetBounds", "SetDimensions", "SetDirection", "SetBox")
-# These defaults differ from the filters' own, which stand here: a panel shows what was found.
+# Defaults of the filters that differ from the plugin's, because a panel shows what was found.
 DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
-# These setters have no property, for the reason given.
+# Setters without a property, and why.
 NOT_IN_XML = {
     "SetController": "ParaView's processes have one, which is the default",
     "SetDetectArrays": "(automatic) in the panel's lists of arrays",
@@ -40,7 +40,7 @@ def get(made, command):
 
 
 def domain_values(element):
-    """Yields the texts of all values that the property's domains name."""
+    """Yields all values that the property's domains name, as texts."""
     for domain in element:
         if domain.tag == "BooleanDomain":
             yield from ("0", "1")
@@ -65,7 +65,7 @@ class TestPluginXml(unittest.TestCase):
                 e for e in proxy if e.tag.endswith("Property") and not e.get("information_only")]
 
     def scalars(self):
-        """Yields the class, the setter, its type and the XML element of all properties with one value."""
+        """Yields, for each property with one value, the class, the setter, its type and the XML element."""
         for kind, _, elements in self.filters():
             for element in elements:
                 if element.tag in TYPES and element.get("command") not in NOT_SCALAR:
@@ -91,7 +91,7 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(lacking, allowed)
 
     def test_label_is_found(self):
-        """ParaView's quick search finds only words of the label."""
+        """ParaView's quick search looks only at labels, so the label must have these words."""
         label = self.main.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
@@ -102,7 +102,8 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)
 
     def test_guide_names_it(self):
-        """ParaView's traces name the filter by the letters and digits of its label, and the guide has this name."""
+        """In ParaView's traces the filter's name is the letters and digits of its label. The guide must use this
+        name."""
         guide = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "Guide" / "paraview.md"
         self.assertIn("`" + re.sub("[^A-Za-z0-9]", "", self.main.get("label")) + "`", guide.read_text(encoding="utf-8"))
 
@@ -117,7 +118,7 @@ class TestPluginXml(unittest.TestCase):
                         self.assertRegex(text, "." if element.tag == "InputProperty" else "Default:")
 
     def test_menus(self):
-        """SPH Slice, SPH Line and SPH Volume are one filter with its shape chosen, which is in no menu itself."""
+        """SPH Slice, SPH Line and SPH Volume are SPHResample with a chosen shape. SPHResample itself is in no menu."""
         proxies = {proxy.get("name"): proxy for proxy in self.proxies}
         for shape, name in enumerate(("SPHSlice", "SPHLine", "SPHVolume")):
             self.assertEqual(proxies[name].get("base_proxyname"), "SPHResample")
@@ -158,7 +159,7 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(made, command), value, where)
 
     def test_limits(self):
-        """Enumerations and ranges in the XML end where the filters clamp. The filter in Python takes its limits from the XML."""
+        """Enumerations and ranges in the XML end where the filters clamp values. The Python package takes its limits from the XML."""
         for kind, command, number, element in self.scalars():
             if number is not int or element.find("BooleanDomain") is not None:
                 continue
@@ -171,7 +172,7 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(made, command), legal, element.get("name"))
 
     def test_box(self):
-        """The widget's position is the lower corner, its scale the lengths, in any order."""
+        """The box widget's position is the lower corner, and its scale the lengths. They may be set in any order."""
         group = self.main.find("PropertyGroup[@panel_widget='InteractiveBox']")
         functions = {e.get("function"): e.get("name") for e in group.findall("Property")}
         self.assertEqual(functions, {"Position": "BoxPosition", "Scale": "BoxLength"})
@@ -184,7 +185,7 @@ class TestPluginXml(unittest.TestCase):
             self.assertEqual(extract.GetBox(), (1.0, 1.5, 2.0, 2.25, 3.0, 7.0))
 
     def test_list_of_names(self):
-        """A property with any number of names clears the list and adds them one by one."""
+        """To set a property with any number of names, ParaView clears the list and adds the names one by one."""
         extract = marchingcorrectors.vtkMarchingCorrectors()
         element, = [e for e in self.main if e.get("clean_command")]
         self.assertEqual(element.get("name"), "ExcludedArrays")
@@ -195,8 +196,8 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([extract.GetExcludedArray(i) for i in range(extract.GetNumberOfExcludedArrays())], ["Density", "Id"])
 
     def test_places(self):
-        """ParaView fits a property to the particles' bounds while it equals its default. So these have no default, and every value that a user sets
-        is kept."""
+        """As long as a property equals its default, ParaView fits it to the particles' bounds. So these properties have no default, and
+        every value that a user sets is kept."""
         fitted = [e for proxy in self.proxies for e in proxy.iter("DoubleVectorProperty") if e.find("BoundsDomain") is not None]
         self.assertEqual({e.get("default_values") for e in fitted}, {"none"})
         self.assertEqual(len(fitted), 9)

@@ -25,7 +25,7 @@ def grow(_, data):
     data.GetPointData().GetArray("Other").Modified()
 
 
-# These steps change arrays or their versions; core_reuse tests all options.
+# Changes of arrays, versions and settings, one after the other; core_reuse tests all options.
 STEPS = (
     {}, {"Value": (0, 0.5)}, {"InputArrayToProcess": (0, 0, 0, POINTS, "Other")}, {"CubeLevelLimit": 1},
     {"CubeSizeModeToUniform": ()}, {"CubeSizeModeToAdaptive": ()}, {"Box": (-2, 0.1, -0.2, 0.6, -2, 2), "UseBox": 1}, {"UseBox": 0},
@@ -38,7 +38,7 @@ STEPS = (
 
 class TestReuse(unittest.TestCase):
     def test_steps(self):
-        """Compares a filter that goes through all steps with a new filter for each step."""
+        """Compares a filter that makes all changes one after the other with a new filter after each change."""
         x = points_of(cube())
         data = cube(Other=(values_of(cube(), "Radius") + 0.1 * x[:, 0]).astype(numpy.float32),
                     Type=(x[:, 1] > 0.3).astype(numpy.float32), Sort=(x[:, 1] > 0.2).astype(numpy.float32))
@@ -60,7 +60,7 @@ class TestReuse(unittest.TestCase):
                 before = new
 
     def test_widening(self):
-        """Factors, and the search grid, are kept for another iso value, but not for moved particles."""
+        """The factors and the search grid are kept for another iso value, but not for moved particles."""
         phases, data = [], cube()
         extract = sphere(data)
         extract.SetWidening(2)
@@ -79,7 +79,8 @@ class TestReuse(unittest.TestCase):
         self.assertTrue(surface_of(run(extract)[0]) == surface_of(run(sphere())[0]))
 
     def test_release(self):
-        """The peak memory of a run for one particle includes what was kept of a run for many."""
+        """The peak memory of a run for one particle includes what the filter has kept from a run for many particles,
+        unless it was released."""
         particle, data = particles_of([[0.0, 0.0, 0.0]]), cube()
 
         def peak(first, change=lambda extract: None):

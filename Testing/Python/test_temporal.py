@@ -18,7 +18,7 @@ START = lattice(7, 7, 7, around_origin=True)
 
 
 def turned(time):
-    """Returns where the particles of START are at this time, rotating around the z axis while they fall, and their velocities."""
+    """Returns the places and velocities of the particles of START at this time. They turn around the z axis and fall."""
     c, s = math.cos(RATE * time), math.sin(RATE * time)
     x, y, z = START.T
     a, b = c * x - s * y, s * x + c * y
@@ -41,7 +41,7 @@ def few(places, ids, velocities, **arrays):
 
 
 class Steps(VTKPythonAlgorithmBase):
-    """Is a reader of {time: data}. `read` lists the times that were read; times in `broken` fail."""
+    """A reader of the data in {time: data}. `read` lists the times that were read; times in `broken` fail."""
 
     def __init__(self, steps):
         kind = next(iter(steps.values())).GetClassName()
@@ -80,7 +80,7 @@ def interpolator(steps):
 
 class TestTemporal(unittest.TestCase):
     def told(self, film, time, **settings):
-        """Returns the filter's sentences at this time."""
+        """Returns the filter's messages in an update to this time."""
         film.UpdateInformation()
         film.GetOutputInformation(0).Set(Pipeline.UPDATE_TIME_STEP(), time)
         return run(film, **settings)[1]

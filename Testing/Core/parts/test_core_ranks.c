@@ -62,7 +62,7 @@ static particle_set take_part(const particle_set* set, split_function split, int
 
 /* ---- Global values ---- */
 
-/* An input's parts besides its set of particles. */
+/* What an input and its options have besides the set of particles. */
 typedef struct measure_case
 {
   const char* name;
@@ -184,8 +184,7 @@ static void global_values(void** state)
   {
     check_globals(*state, &set, &cases[i]);
   }
-  /* Outliers make the search for the median narrow its bins. One rank alone knows that an attribute varies, and another
-   * attribute is not finite on one rank. */
+  /* An outlier of the scalar makes the search for the median narrow its bins. */
   const measure_case rough = { "outliers", 0, 1, MCOR_SHEPARD };
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -201,7 +200,8 @@ static void not_finite_attributes(void** state)
   CORE_SET set = make_set();
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* With the uneven split each rank has a single value, but not all the same. */
+    /* With the uneven split, all values of a rank are equal, but rank 1 has another value than the
+     * other ranks. */
     set.scalar[i] = i == 1 ? 1 : 2;
   }
   check_globals(*state, &set, &what);
@@ -209,7 +209,7 @@ static void not_finite_attributes(void** state)
   check_globals(*state, &set, &what);
 }
 
-/* One rank's fault is an error on all ranks, and no rank waits. */
+/* A fault on one rank must be an error on all ranks, and no rank may wait for ever. */
 static void faults(void** state)
 {
   const measure_case what = { "fault", 0, 0, MCOR_SHEPARD };
@@ -261,7 +261,7 @@ static mcor_status extract_part(core_rank* rank, void* data)
   return mcor_extract(rank->context, &input, &options, &job->surface[r]);
 }
 
-/* Makes a surface that winds. */
+/* Makes particles whose surface is a band that winds from part to part. */
 static particle_set make_band(void)
 {
   particle_set set = core_make_block(14, 0.2, 3, core_slope);
@@ -317,7 +317,8 @@ static void parts_of_a_band(void** state)
   check_parts(*state, &set, &options, 8, eight, 14, 1000);
 }
 
-/* Compares lines in the plane, on squares of one size and of several. */
+/* Compares the lines of parts with the whole lines for particles in a plane, with squares of one
+ * size and of several. */
 static void lines_of_parts(void** state)
 {
   const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };
@@ -361,8 +362,8 @@ typedef struct rank_sums
   int64_t wrong[CORE_MOST_RANKS], held[CORE_MOST_RANKS];
 } rank_sums;
 
-/* Finds the lengths of a slab's particles, first from these particles alone, then with all particles within 1.25 times
- * the supports found. */
+/* Finds the smoothing lengths of the particles in this rank's slab: first from these particles alone, then with all
+ * particles within 1.25 times the supports that were found. Counts the lengths that differ from one process's. */
 static mcor_status sum_on_rank(core_rank* rank, void* data)
 {
   rank_sums* job = data;
@@ -420,7 +421,8 @@ static mcor_status sum_on_rank(core_rank* rank, void* data)
   return status;
 }
 
-/* Ranks that have all particles around their own find the lengths by neighbours of one process, to the last bit. */
+/* Checks that ranks that also have all particles around their own find the same lengths by neighbours as one process,
+ * to the last bit. */
 static void lengths_by_neighbours(void** state)
 {
   (void)state;

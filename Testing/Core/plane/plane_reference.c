@@ -9,8 +9,8 @@ double plane_u(const plane_field* f, int64_t i, int a)
   return f->set->position[3 * i + (f->axis + 1 + a) % 3];
 }
 
-/* Returns how far the point is inside of the trimmed surface: by the weight, or by the lower eigenvalue of the
- * symmetric matrix m (uu, uv, vv); at walls by the solids' share, too. */
+/* Returns how far the point is inside of the trimmed surface; below 0, it is outside. The measure is the weight, or the
+ * lower eigenvalue of the symmetric matrix m (uu, uv, vv), less the threshold; and, at walls, the solids' share. */
 static double plane_margin(const plane_field* f, const plane_sample* s, const double m[3])
 {
   const mcor_options* o = f->options;
@@ -23,7 +23,7 @@ static double plane_margin(const plane_field* f, const plane_sample* s, const do
   return o->field == MCOR_WEIGHT_SUM ? wall : fmin(margin, wall);
 }
 
-/* The volumes of particles are areas here. */
+/* A particle's volume is its area in the plane. */
 plane_sample plane_evaluate(const plane_field* f, double u, double v)
 {
   const particle_set* set = f->set;

@@ -3,9 +3,9 @@
 #ifndef plane_reference_h
 #define plane_reference_h
 
-/* A reference for two dimensions: the field and its squares, as fine as the particles are, in double precision, at all
- * nodes. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in cyclic order,
- * are u and v. */
+/* A reference for particles in a plane: the field and its squares, which are as fine as the particles, at all nodes in
+ * double precision. The plane lies across `axis` (0 x, 1 y, 2 z) at the coordinate `at`. The other two coordinates, in
+ * cyclic order, are u and v. */
 
 #include "core_fixture.h"
 
@@ -25,26 +25,26 @@ typedef struct plane_sample
   double margin; /* how far inside of the trimmed surface */
 } plane_sample;
 
-/* Coordinate u or v of a particle. */
+/* Returns coordinate u (a = 0) or v (a = 1) of particle i. */
 double plane_u(const plane_field* field, int64_t i, int a);
 /* Returns the range of the field's values. */
 double plane_range(const plane_field* field);
-/* The kernel in the plane is the library's plane_factor h times the oracle's; test_core_plane checks that its integral
- * is 1. */
+/* Evaluates the field at (u, v). The kernel in the plane is the oracle's kernel times h and the library's plane_factor;
+ * test_core_plane checks that its integral is 1. */
 plane_sample plane_evaluate(const plane_field* field, double u, double v);
 
-/* Compares the surface with the squares of all levels (plane_squares.c): its vertices on sides of squares with the
- * crossed sides, how lines join these vertices, and all vertices with the field. The test fails where a vertex is
- * missing or one too many. Returns how many sides are crossed. */
+/* Compares the surface with the squares of all levels (plane_squares.c): vertices on sides of squares with the crossed
+ * sides, how lines join these vertices, and all vertices with the field. The test fails if a vertex is missing, or if
+ * there is one too many. Returns how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
-/* Does what plane_compare does, and checks the lines' directions, ends and normals. closed: all lines must be closed. */
+/* Like plane_compare, and checks the lines' directions, ends and normals. closed: all lines must be closed. */
 void plane_check_lines(const plane_field* field, const mcor_surface* surface, int closed);
 
-/* Options for one iso value; lines are not trimmed. */
+/* Returns options for one iso value and lines that are not trimmed. */
 mcor_options plane_options(const double* iso);
 
-/* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length
- * from 1.3 to 1.3 * spread, volume 1. */
+/* Makes n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane. Smoothing lengths are
+ * from 1.3 to 1.3 * spread, volumes 1. */
 particle_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  /* Valid: a square that has the edge is valid; close: rounding may decide that. */
+  /* valid: a square at the edge is valid. close: rounding may decide whether it is. */
   int valid, close;
   int found;
   int64_t next; /* the edge where the line that begins here ends, or -1 */
@@ -58,7 +58,8 @@ static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
   return n;
 }
 
-/* Returns the number of the edge between a and b. A new edge has no squares yet. */
+/* Returns the number of the edge between nodes a and b. Adds the edge if it is new; no square has
+ * yet made it valid. */
 static int64_t plane_edge_at(
   plane_squares* s, const int64_t a[2], const int64_t b[2], int a_is_above)
 {
@@ -79,8 +80,8 @@ static int64_t plane_edge_at(
   return *place;
 }
 
-/* Adds a square. The walk around the square has the square on its left. half: which sides are halved, as bits (below,
- * right, above, left). */
+/* Adds a square. Its nodes are taken counter-clockwise, so the square is on the left of the walk. half: bits of the
+ * sides that have a node in their middle (below, right, above, left). */
 static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
 {
   static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
@@ -124,8 +125,8 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
       s->edges[edge[i]].close |= close;
     }
   }
-  /* A line cuts off each part above: it begins where the walk leaves the part, and leads back to where the walk entered
-   * the part. */
+  /* A line cuts off each run of nodes above iso: it begins where the walk leaves the run, and ends where the walk
+   * entered it. */
   for (int i = 0; i < count && valid; ++i)
   {
     if (edge[i] >= 0 && node[i].above)
@@ -183,7 +184,8 @@ static void plane_add_squares(plane_squares* s)
   }
 }
 
-/* Returns whether the field at the edge's crossing has too little fluid for a mean, so that the vertex is trimmed away. */
+/* Returns whether the vertex at the edge's crossing is trimmed away: by the trimming limits, or because there is too
+ * little fluid for a mean. */
 static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
 {
   const mcor_options* o = s->field->options;
@@ -226,7 +228,8 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
   return -1;
 }
 
-/* Checks that lines lead from edge to edge as the squares say, where nothing is doubtful. */
+/* Checks that lines lead from edge to edge as the squares say. Edges at which rounding may decide
+ * are left out. */
 static void plane_compare_lines(
   const plane_squares* s, const int64_t* of, const mcor_surface* surface)
 {

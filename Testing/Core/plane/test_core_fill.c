@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests filled regions and bands of two dimensions. */
+/* Tests filled regions and bands between iso values for particles in a plane. */
 
 #include "core_parts.h"
 #include "plane_reference.h"
@@ -11,7 +11,7 @@
 typedef struct fill_report
 {
   double area,
-    /* Area of the triangles; area that the lines of the lowest iso value enclose, 0 unless all are closed. */
+    /* area: of the triangles. enclosed: by the lines of the lowest iso value; 0 unless all are closed. */
     enclosed;
   double inverted; /* area of triangles that run round in the wrong direction */
   int64_t loose;   /* edges on the border that are not lines */
@@ -44,7 +44,7 @@ static double fill_cross(
   return 0.5 * ((q[u] - p[u]) * (r[v] - p[v]) - (r[u] - p[u]) * (q[v] - p[v]));
 }
 
-/* Checks the edges between the same two points. */
+/* Checks all edges between the same two points, and adds to the report. */
 static void fill_check_edge(const plane_field* f, const mcor_surface* s, const fill_edge* edges,
   int64_t count, double least, fill_report* report)
 {
@@ -59,7 +59,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
   if (line && !sides[0] && !sides[1])
   {
-    /* Of equal iso values, only one has bands beside its line. */
+    /* If iso values are equal, only one of them has bands beside its line. */
     int times = 0;
     for (int i = 0; i < f->options->iso_count; ++i)
     {
@@ -86,9 +86,9 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
 }
 
-/* Fails unless each edge has two triangles, or one triangle and the border; all triangles run round in the same
- * direction; lines of the lowest iso value are on the border, and all other lines lie between their two bands; and no
- * other edge separates bands. */
+/* Fails unless each edge has two triangles, or one and lies on the border; all triangles have the same orientation;
+ * lines of the lowest iso value are on the border, and each other line lies between the band above its value and the
+ * band below it; and no other edge separates bands. */
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };
@@ -185,7 +185,7 @@ static void fill_check_points(const plane_field* f, const mcor_surface* s)
   assert_true(nodes > 0);
 }
 
-/* Returns the area by sampling n x n points. */
+/* Returns the area of the region above iso, by sampling n x n points. */
 static double fill_sample_area(const plane_field* f, double iso, int n)
 {
   double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
@@ -235,7 +235,8 @@ static void check_close(double a, double b, double tolerance, const char* what)
   CORE_CHECK(fabs(a - b) <= tolerance * fabs(b), what, a, b);
 }
 
-/* The region that the lines enclose is filled, and its border is these lines alone. */
+/* The region that the free surface's lines enclose is filled, and these lines are its whole border.
+ * */
 static void test_free_surface(void** state)
 {
   const double iso = 0.5;
@@ -262,7 +263,8 @@ static void test_free_surface(void** state)
   }
 }
 
-/* The bands' areas add up to the area above the lowest value, whatever the order of the values. */
+/* The areas of all bands add up to the area above the lowest iso value, whatever the order of the
+ * values. */
 static void test_bands(void** state)
 {
   const double isos[7] = { 3, -60, 5.5, -20, 3, 1e9, 0 };
@@ -306,7 +308,7 @@ static void test_bands(void** state)
   }
 }
 
-/* Regions end where trimming does: by weight, by eigenvalue, at walls. */
+/* Filled regions end where trimming ends them: by weight, by eigenvalue, at walls. */
 static void test_trimming(void** state)
 {
   const double isos[3] = { -1e3, -2.2, 3.1 };
@@ -347,7 +349,8 @@ static void test_trimming(void** state)
   }
 }
 
-/* Regions of random fields have no gaps: with noise, walls, and all options that move lines. */
+/* Filled regions of random fields have no gaps: with noise, walls, and all options that move lines.
+ * */
 static void test_random(void** state)
 {
   uint64_t seed = 21;
@@ -384,11 +387,13 @@ static void test_random(void** state)
     area += report.area;
     inverted += report.inverted;
   }
-  /* Noise may cross two values more than once on one edge. */
+  /* A noisy field may cross two iso values more than once on one edge, which turns a few triangles
+   * round. */
   CORE_CHECK(inverted < 1e-4 * area, inverted, area);
 }
 
-/* Boxes side by side make the whole: the same triangles and lines, with all that their points carry. */
+/* The results of boxes side by side make up the whole result: the same triangles and lines, with all arrays of their
+ * points. */
 static void test_boxes(void** state)
 {
   static const core_cut cuts[] = { { "4 boxes", { 0, 1, 1 }, { { 0 }, { 0.1 }, { -0.7 } } },
@@ -401,7 +406,7 @@ static void test_boxes(void** state)
   core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
 }
 
-/* One period is filled from side to side; where there is fluid everywhere, the whole period is filled. */
+/* A period is filled from side to side; with fluid everywhere, the whole period is filled. */
 static void test_period(void** state)
 {
   const double isos[2] = { -1e3, 2 };
@@ -419,7 +424,7 @@ static void test_period(void** state)
   CORE_CHECK(fabs(strip.area - 144) < 8, strip.area);
 }
 
-/* The bits do not depend on seeds, order of particles, kept data or the plane. */
+/* No bit depends on the kind of seeds, the order of particles, kept data, or the plane's axis. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };
@@ -442,7 +447,7 @@ static void test_bits(void** state)
   }
 }
 
-/* A node has the attributes that a probe finds at its place. */
+/* At a node in the filled region, attributes equal those that a probe finds there. */
 static void test_attributes(void** state)
 {
   mcor_context* context = *state;

@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests two dimensions: kernels, weights, what counts as a plane, derivatives and gauges, kept data, bits.
+/* Tests particles in a plane: kernels, weights, what counts as a plane, derivatives and gauges, kept data, bits.
  * test_core_plane_lines compares lines. */
 
 #include "mcor_plane.h"
 #include "plane_reference.h"
 
-/* Each kernel, normalised as the library does, integrates to 1: midpoint rule over the square of its support. */
+/* Checks that each kernel, normalised by the library for a plane, has the integral 1. The midpoint rule sums over the
+ * square around its support. */
 static void test_kernels_integrate_to_1(void** state)
 {
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
@@ -25,7 +26,7 @@ static void test_kernels_integrate_to_1(void** state)
   }
 }
 
-/* Inside of a lattice of particles the weight is 1, by given and by computed volumes. */
+/* Within a lattice of particles the weight sum is 1, with given volumes and with computed ones. */
 static void test_weight_is_1_inside(void** state)
 {
   mcor_context* context = *state;
@@ -59,7 +60,7 @@ static void test_weight_is_1_inside(void** state)
   }
 }
 
-/* A coordinate of -0 counts as 0, wherever the particles with -0 are in the order. */
+/* A coordinate of -0 counts as 0, whichever particles have it. */
 static void test_minus_zero(void** state)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -123,8 +124,8 @@ static void test_what_is_no_plane(void** state)
   expect_error(*state, &input, &options, "ARRAY_VALUE|particle 1");
 }
 
-/* Where steps of single precision are longer than the distance of particles, rounding may lay all layers of a block in
- * one plane. The particles then lie in space. */
+/* If steps of single precision are longer than the particles' distances, rounding may put all layers of a block into
+ * one plane. The particles must still count as lying in space. */
 static void test_rounded_plane(void** state)
 {
   const double iso = 0;
@@ -144,7 +145,8 @@ static void test_rounded_plane(void** state)
   }
 }
 
-/* Sentences name the caller's axes. A flat box around the particles is a box. */
+/* Messages name the caller's axes, not the turned ones. A flat box around the particles is still a
+ * box. */
 static void test_sentences_of_sides(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, 1, 7);
@@ -172,7 +174,7 @@ static void test_sentences_of_sides(void** state)
   assert_int_equal(flat.line_count, 0);
 }
 
-/* Walls in another plane than the fluid are refused, also where the dimension is found; but not if the walls are
+/* Walls in another plane than the fluid are refused, also if the dimension is automatic. They are allowed if walls are
  * ignored, or lie in no plane. */
 static void test_walls_in_another_plane(void** state)
 {
@@ -261,7 +263,8 @@ static void test_derivatives_and_gauges(void** state)
   }
 }
 
-/* With a smooth scalar, pairs find what complete seeds find, and what is kept serves another iso value. */
+/* If the scalar is smooth, pairs and complete seeds give the same lines. Data kept from one call serve another iso
+ * value. */
 static void test_pairs_and_reuse(void** state)
 {
   CORE_SET set = plane_make(20, 0.2, 1, 2, -1, 4);
@@ -290,7 +293,7 @@ static void test_pairs_and_reuse(void** state)
   }
 }
 
-/* Bits do not depend on the order of the particles, nor on the plane, except that coordinates change places. */
+/* No bit depends on the order of the particles, or on the plane's axis, except that coordinates change places. */
 static void test_bits(void** state)
 {
   const double iso = 0.4;

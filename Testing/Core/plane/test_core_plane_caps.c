@@ -1,11 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps of two dimensions: lines along the sides of periods and boxes, where there is fluid beside the side. */
+/* Tests caps of particles in a plane: lines along the sides of periods and boxes, wherever there is fluid at the side.
+ * */
 
 #include "plane_reference.h"
 
-/* A call, and the places of its caps on the plane's two axes; infinite where there is no cap. */
+/* A call, and the coordinates of its capped sides on the plane's two axes. A side is infinite if it
+ * has no cap. */
 typedef struct caps_case
 {
   const particle_set* set;
@@ -19,7 +21,7 @@ static double caps_at(const caps_case* c, const mcor_surface* s, int32_t p, int 
   return s->points[3 * (int64_t)p + (c->axis + 1 + a) % 3];
 }
 
-/* Returns the side that two points are on, or -1. */
+/* Returns the number of the side (index in c->side) that points p and q both lie on, or -1. */
 static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, int32_t q)
 {
   for (int i = 0; i < 4; ++i)
@@ -33,7 +35,7 @@ static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, in
   return -1;
 }
 
-/* Returns the length along side i; positive if the inside is on the left. */
+/* Returns the distance from p to q along side i; it is positive if the inside is on the left. */
 static double caps_length(const caps_case* c, const mcor_surface* s, int i, int32_t p, int32_t q)
 {
   const int along = 1 - i / 2;
@@ -41,7 +43,7 @@ static double caps_length(const caps_case* c, const mcor_surface* s, int i, int3
   return (i % 2 == along) == 1 ? forward : -forward;
 }
 
-/* Measures, from triangles, how much of each side is filled. */
+/* Adds to length[i] how much of side i the triangles of a filled region cover. */
 static void caps_filled(const caps_case* c, const mcor_surface* s, double length[4])
 {
   for (int64_t t = 0; t < 3 * s->triangle_count; ++t)
@@ -73,7 +75,7 @@ static void caps_lines(const caps_case* c, const mcor_surface* s, double length[
   }
 }
 
-/* Finds the sides: of the cells of a box, or of the period. */
+/* Sets the case's sides: sides of the period, or the sides of the cells that a box owns. */
 static void caps_place(caps_case* c, const mcor_surface* s)
 {
   const mcor_options* o = &c->options;
@@ -91,8 +93,9 @@ static void caps_place(caps_case* c, const mcor_surface* s)
   }
 }
 
-/* Checks that the lines without caps come first and are unchanged; that caps are as long as the filled part of sides;
- * and that, where nothing is trimmed, caps close the lines around the filled area. */
+/* Checks that capped lines begin with the points of the lines without caps, unchanged; that caps are as long as the
+ * filled part of sides; and that, if nothing is trimmed, caps close the lines around the filled area. Returns the
+ * length of all caps. */
 static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
 {
   const mcor_input input = core_input(c->set);
@@ -151,7 +154,7 @@ static void set_sides(double sides[6], int axis, double u0, double u1, double v0
   }
 }
 
-/* Caps of periods along one axis or both, of boxes, and of boxes in a period. */
+/* Checks caps of periods along one axis or both, of boxes, and of boxes in a period. */
 static void test_sides(void** state)
 {
   double all = 0;
@@ -184,7 +187,7 @@ static void test_sides(void** state)
       c.options.box[2 * axis + 1] = INFINITY;
     }
     c.options.capping = where == 1 || where == 2 ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
-    /* A whole period has fluid everywhere; in all other cases, lines of a scalar end at the edge of the fluid. */
+    /* A whole period has fluid everywhere. In all other cases lines of a scalar end where the fluid ends. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
   }
@@ -219,7 +222,7 @@ static void test_trimmed_sides(void** state)
   }
 }
 
-/* Each of several iso values has its own caps, and boxes side by side have the caps of the whole. */
+/* Each of several iso values has caps of its own, and boxes side by side make the caps of the whole. */
 static void test_values_and_order(void** state)
 {
   const double isos[2] = { 0.9, 0.6 };

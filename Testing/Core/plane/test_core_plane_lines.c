@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares lines of two dimensions with a reference of all squares. */
+/* Compares lines of particles in a plane with a reference that has all squares. */
 
 #include "core_period.h"
 #include "mcor_plane.h"
 #include "plane_reference.h"
 
-/* Extracts the lines of these particles and compares them with the reference's, whose set is field->set. */
+/* Extracts the lines of the input and compares them with the reference's, whose particles are field->set. Returns how
+ * many sides of squares are crossed. */
 static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
 {
@@ -26,7 +27,8 @@ static int64_t compare_set(
   return compare(context, &input, &field, closed);
 }
 
-/* The oracle's W is three-dimensional; W in the plane is plane_factor h times as large. */
+/* Computes the areas of particles in a plane. The oracle's W is three-dimensional; W in the plane
+ * is plane_factor h times as large. */
 static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
 {
   oracle_compute_volumes(set, (oracle_kernel)kernel, 2, NULL, NULL);
@@ -36,8 +38,8 @@ static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
   }
 }
 
-/* Random cases: all kernels, fields and precisions, noise, walls of all kinds, computed volumes, all options that move
- * lines. */
+/* Checks random cases: all kernels, fields and precisions, noise, walls of all kinds, computed volumes, all options
+ * that move lines. */
 static void test_random_lines(void** state)
 {
   const double shares[3] = { 0, 0.5, 0.8 };
@@ -92,7 +94,7 @@ static void test_random_lines(void** state)
   }
 }
 
-/* The smoothing length is estimated from particles that are about one apart. */
+/* Checks lines with smoothing lengths that are estimated from particles about 1 apart. */
 static void test_estimated_length(void** state)
 {
   const double iso = 0.5;
@@ -114,7 +116,8 @@ static void test_estimated_length(void** state)
   assert_true(compare(*state, &input, &field, 1) > 60);
 }
 
-/* Squares of several sizes: smoothing lengths grow along u, or are mixed. Free surfaces are closed across levels. */
+/* Checks squares of several sizes: smoothing lengths grow along u, or are mixed. Lines of the free surface are closed
+ * across levels. */
 static void test_adaptive_lines(void** state)
 {
   uint64_t seed = 21;
@@ -160,7 +163,8 @@ static void test_adaptive_lines(void** state)
   assert_true(deep > 10);
 }
 
-/* Squares of one size and of several in periods, and in boxes of a period. The reference has all images, but no caps. */
+/* Checks squares of one size and of several in periods, and in boxes of a period. The reference has all images as
+ * particles, but no caps. */
 static void test_periods(void** state)
 {
   const double period = 32, ends[2] = { -16, 16 };
@@ -203,7 +207,8 @@ static void test_periods(void** state)
       for (int i = 0; i < 4; ++i)
       {
         options.box[2 * ((axis + 1 + i / 2) % 3) + i % 2] = box[i];
-        /* Along the first axis the box crosses a side, and the period is moved so that it holds the box. */
+        /* Along the first axis the box crosses a side of the period, so the library moves the period until it holds the
+         * box. */
         region[i] = i < 2 ? box[i] : i % 2 ? fmin(region[i], box[i]) : fmax(region[i], box[i]);
       }
       options.box[2 * axis] = -INFINITY;
@@ -221,7 +226,7 @@ static void test_periods(void** state)
   assert_true(several > 10);
 }
 
-/* One point, and particles on a line, are two-dimensional if the caller says so. */
+/* One particle, or particles on a line, count as lying in a plane if the caller says so. */
 static void test_points_and_rows(void** state)
 {
   const double iso = 0.1;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the boundary eigenvalue: first the solver alone; then arrays and trimmed surfaces, by sums in double precision
- * on the host. */
+/* Tests the boundary eigenvalue: first the solver for matrices alone; then the surface's array and trimmed surfaces,
+ * against sums in double precision on the host. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -29,8 +29,8 @@ static const double matrices[][6] = { { 0, 0, 0, 0, 0, 0 }, { 1, 1, 1, 0, 0, 0 }
   { 0, 0, 0, 1e-25, 1e-30, 1e-25 }, { 0, 0, 0, 1, 0, 0 }, { 1e6, 1, 1e-6, 1, 1, 1 },
   { -1, 0.5, 2, 0.3, -0.7, 0.1 }, { 0.9, 1.1, 0.5, 0.01, 0.02, -0.03 }, { 4, 9, 1, 6, 3, 2 } };
 
-/* Checks that m e = value e with |e| = 1, and that m - value has no negative eigenvalue. Entries whose squares vanish
- * in single precision count as 0. */
+/* Checks the lowest eigenvalue (found[0]) and its vector e (found + 1): m e = value e, |e| = 1, and m - value has no
+ * negative eigenvalue. Entries whose squares vanish in single precision count as 0. */
 static void check_eigen(const double m[6], const double found[4], double tolerance)
 {
   const double full[3][3] = { { m[0], m[3], m[5] }, { m[3], m[1], m[4] }, { m[5], m[4], m[2] } };
@@ -98,13 +98,13 @@ static void test_eigenvalues(void** state)
   }
 }
 
-/* The array is there on request, whatever trims the surface, and has the reference's values. Where the eigenvalue
- * trims, nearly all Newton steps along the eigenvalue's gradient end at the threshold. */
+/* Checks that the array of eigenvalues has the reference's values, whether the eigenvalue or the weight trims. If the
+ * eigenvalue trims, nearly all Newton steps along its gradient must end at the threshold. */
 static void check_surface(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, mcor_field field_kind)
 {
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
-  /* Each combination needs its own device program, so there are few. */
+  /* Each combination with solids needs its own device program, so only one has solids. */
   set.has_solids = kernel == MCOR_CUBIC_SPLINE && field_kind == MCOR_SHEPARD;
   for (int64_t j = 0; j < set.count; ++j)
   {

@@ -1,13 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps at the sides of periods and boxes close the surface, and leave its own points and triangles unchanged. */
+/* Tests caps: at the sides of periods and boxes they close the surface, and leave its own points and triangles
+ * unchanged. */
 
 #include "core_parts.h"
 #include "core_period.h"
 #include "mcor_vector.h"
 
-/* Fails unless the surface with caps begins with the surface without. */
+/* Fails unless the points and triangles of the surface with caps begin with those of the surface
+ * without caps. */
 static void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
 {
   const size_t points = (size_t)open->point_count, triangles = (size_t)open->triangle_count;
@@ -19,8 +21,8 @@ static void cap_check_prefix(const mcor_surface* open, const mcor_surface* close
   assert_true(closed->statistics.residual_max == open->statistics.residual_max);
 }
 
-/* Fails unless the surface encloses as much as the region between `planes` where the oracle's field is above the iso
- * value, by random samples. */
+/* Fails unless the closed surface has the same volume as the region between `planes` where the oracle's field is above
+ * iso. Random samples measure this region. */
 static void cap_check_volume(const mcor_surface* closed, const particle_set* set,
   const mcor_options* options, const double planes[6])
 {
@@ -63,7 +65,8 @@ typedef struct cap_case
   mcor_type precision;
 } cap_case;
 
-/* Checks that points of caps alone are on planes and have the oracle's values, and that their normals point outwards. */
+/* Checks points that only caps have: they lie on `planes`, have the oracle's values, and their normals point outwards.
+ * */
 static void check_points(const particle_set* all, const mcor_options* options,
   const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {
@@ -87,8 +90,8 @@ static void check_points(const particle_set* all, const mcor_options* options,
   }
 }
 
-/* Checks that along each axis as many triangles, of the same total area, face up as down: a period's two caps are
- * alike. */
+/* Checks that a period's two caps across each axis are alike: as many triangles face up as down, with the same total
+ * area. */
 static void check_opposite_caps(const mcor_surface* open, const mcor_surface* s)
 {
   double area[3][2] = { { 0 } };
@@ -112,13 +115,15 @@ static void check_opposite_caps(const mcor_surface* open, const mcor_surface* s)
   }
 }
 
-/* Returns whether the surface ends at a point, by trimming or for lack of weight. */
+/* Returns whether the surface ends at a point, because it is trimmed there or because the weight is
+ * low. */
 static int ends_at(const mcor_surface* s, int32_t p)
 {
   return s->boundary_flag[p] % 8 != 0 || s->weight_sum[p] < 0.5f;
 }
 
-/* is_closed: nothing is trimmed. */
+/* Checks a surface with caps against the same surface without. is_closed: nothing is trimmed, so
+ * the surface must be closed. */
 static void check_caps(
   mcor_context* context, const particle_set* set, mcor_options options, int is_closed)
 {
@@ -168,7 +173,7 @@ static void check_caps(
   }
 }
 
-/* Periods with cubes of one edge, and with a different edge along each axis. */
+/* Checks caps of periods, with cubes of one edge, and with a different edge along each axis. */
 static void test_periods(void** state)
 {
   static const cap_case cases[] = {
@@ -211,8 +216,8 @@ static void test_periods(void** state)
   }
 }
 
-/* The fluid is a lattice with holes in it; boxes are alone and in a period. A box that lies within the fluid has the
- * volume of its cells. */
+/* Checks caps of boxes, alone and in a period. The fluid is a lattice with holes in it. The surface of a box that lies
+ * within the fluid has the volume of the box's cells. */
 static void test_boxes(void** state)
 {
   static const double iso = 0.5, period[6] = { -8, 8, 0, 0, 0, 0 };

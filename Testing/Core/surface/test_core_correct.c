@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the correction: every particle counts, reported numbers, limits, poles. The oracle checks that vertices stay
- * on their edges and are within the tolerance, in fields of any kind. */
+/* Tests the correction of vertices: every particle counts, reported numbers, limits, poles. The oracle checks that
+ * vertices stay on their edges and are within the tolerance, in fields of any kind. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -15,15 +15,15 @@ static double steep(const double x[3])
   return tanh(20 * (x[0] + 0.3 * x[1]));
 }
 
-/* A field in which about every other particle is above: many kinks and crossings. */
+/* A field that is above iso at about every other particle: many kinks and crossings. */
 static double rough(const double x[3])
 {
   return sin(50 * x[0] + 31 * x[1] + 77 * x[2]);
 }
 
-/* In double precision the residual reveals any particle that was left out, even at its kernel's rim. Cubes are coarse,
- * so that vertices move far from where neighbours were gathered; kernels have all sizes; each set is mirrored, too, so
- * that vertices move both ways. */
+/* In double precision the residual shows if any particle was left out, even one at whose kernel's rim the vertex lies.
+ * Cubes are coarse, so vertices move far from where their neighbours were gathered. Each set is mirrored, too, so that
+ * vertices move in both directions. */
 static void test_every_particle_counts(void** state)
 {
   static const struct
@@ -66,8 +66,8 @@ static void test_every_particle_counts(void** state)
   }
 }
 
-/* The points have the reported residuals and lengths, which include what rounded positions and sums may add, so
- * that the true ones are not greater. */
+/* Checks the reported residuals and correction lengths against the points. Reported numbers include what rounding may
+ * add, so the true ones must not be greater. */
 static void test_reported_numbers(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
@@ -115,7 +115,8 @@ static void test_reported_numbers(void** state)
   assert_true(preview.statistics.correction_max == 0);
 }
 
-/* More steps never make the worst residual larger, and the limit is never exceeded. */
+/* More Newton steps must never make the worst residual larger, and their limit must never be
+ * exceeded. */
 static void test_iteration_limit(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, steep);
@@ -140,7 +141,7 @@ static void test_iteration_limit(void** state)
   CORE_CHECK(last < 1e-5, last);
 }
 
-/* A looser tolerance is also met, and costs fewer evaluations. */
+/* A looser tolerance must be met as well, with fewer evaluations. */
 static void test_tolerance(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
@@ -166,8 +167,8 @@ static double core_waves(const double x[3])
   return sin(1.3 * x[0]) + cos(0.9 * x[1]) + 0.7 * sin(1.1 * x[2]);
 }
 
-/* Half of the particles are solid, and the kernel has negative lobes, so the fluid's weight passes 0 where the weight
- * of both is about 1. There the mean has a pole, which must not become a part of the surface. */
+/* Half of the particles are solids, and the kernel has negative lobes, so the fluid's weight passes 0 where the weight
+ * of fluid and solids is about 1. The mean has a pole there, which must not become a part of the surface. */
 static void check_poles(mcor_context* context, uint64_t seed, double spread, int level_limit)
 {
   CORE_SET set = core_make_block(12, 0.45, seed, core_waves);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests normals by triangles, attributes and nearest particles. The oracle compares normals by the field, and
- * gradients. */
+/* Tests normals by triangles, attributes and nearest particles. The oracle checks normals by the field, and gradients.
+ * */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -13,7 +13,8 @@ static double length_of(const double x[3])
   return sqrt(mcor_dot(x, x));
 }
 
-/* Checks normals by triangles: the sum of the cross products around each point, scaled to length 1. */
+/* Checks normals by triangles: each is the sum of the cross products of the triangles around its point, scaled to
+ * length 1. */
 static void check_triangle_normals(const mcor_surface* surface)
 {
   CORE_FREED double* sums = oracle_allocate(surface->point_count, 3 * sizeof(double));
@@ -41,7 +42,7 @@ static void check_triangle_normals(const mcor_surface* surface)
   }
 }
 
-/* Normals by triangles are the sums of cross products, and point outwards. */
+/* Checks that normals by triangles are right and point outwards. */
 static void test_triangle_normals(void** state)
 {
   CORE_SET set = core_make_block(10, 0.1, 3, core_ball);
@@ -70,8 +71,8 @@ static void test_triangle_normals(void** state)
     !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle);
 }
 
-/* Attributes: a constant, a linear function, a vector, more components than one round takes, and a single-precision
- * array; all are compared with the mean in double precision. */
+/* Compares attributes with means in double precision: a constant, a linear function, a vector, more components than one
+ * round sums, and a single-precision array. */
 static void check_attributes(mcor_context* context, int solids)
 {
   CORE_SET set = core_make_block(10, 0.2, 3, core_ball);
@@ -177,7 +178,8 @@ static void test_nearest(void** state)
   check_nearest(*state, 4, 0);
 }
 
-/* The greatest terms are found, whichever slices they are in. */
+/* Checks that the greatest terms of area and volume are found, whichever slices of the triangles
+ * they are in. */
 static void test_greatest_terms(void** state)
 {
   enum

@@ -5,8 +5,8 @@
 
 #include "core_fixture.h"
 
-/* A threshold of 0 trims nothing, a high one everything; in between the surface shrinks. Points where it ends are
- * flagged. */
+/* A threshold of 0 trims nothing, and a high one trims everything; thresholds between shrink the surface. Points where
+ * it ends are flagged. */
 static void test_thresholds(void** state)
 {
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
@@ -33,7 +33,8 @@ static void test_thresholds(void** state)
   assert_int_equal(surface.triangle_count, 0);
 }
 
-/* Vertices of the trimmed border count on top of the surface's own. */
+/* The limit of vertices counts the surface's own vertices and those that trimming adds at the
+ * border. */
 static void test_vertex_limit(void** state)
 {
   mcor_context* context = *state;

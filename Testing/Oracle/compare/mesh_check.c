@@ -17,7 +17,8 @@ const char* mesh_fault_name(mesh_fault fault)
   return fault < MESH_FAULT_COUNT ? names[fault] : "unknown";
 }
 
-/* Counts a fault. Keeps the numbers of points or triangles where the first one of its kind is. */
+/* Counts a fault. For the first fault of each kind, keeps the numbers of the two points or
+ * triangles. */
 static void mesh_add_fault(mesh_report* report, mesh_fault fault, int64_t one, int64_t other)
 {
   if (report->faults[fault]++ == 0)
@@ -113,7 +114,7 @@ static int64_t mesh_corner(const int32_t* triangles, int64_t t, int32_t point)
   return 3 * t + (triangles[3 * t] == point ? 0 : triangles[3 * t + 1] == point ? 1 : 2);
 }
 
-/* Walks over the sides that share an edge, one group after the other. */
+/* Checks all groups of triangle sides that lie on the same edge. */
 static void mesh_check_edges(
   const int32_t* triangles, mesh_report* report, int64_t* corner_parent, int64_t* parent)
 {
@@ -197,7 +198,8 @@ static int mesh_compare_triples(const void* x, const void* y)
   return (p[3] > q[3]) - (p[3] < q[3]);
 }
 
-/* Finds equal triples. quads: [count][4], a triple and the number of its owner. */
+/* Counts a fault for equal triples. quads: [count][4], a triple and the number of the point or
+ * triangle that it belongs to. */
 static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, mesh_report* report)
 {
   qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);

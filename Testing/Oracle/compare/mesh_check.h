@@ -39,7 +39,7 @@ extern "C"
   typedef struct mesh_report
   {
     int64_t faults[MESH_FAULT_COUNT];
-    /* Numbers of points and triangles of the first fault of each kind. */
+    /* For each kind of fault, the numbers of the points or triangles of the first one, as text. */
     char first[MESH_FAULT_COUNT][48];
     int64_t points, triangles, edges; /* edges: each undirected edge counts once */
     int64_t boundary_edges;           /* edges with one triangle */

@@ -15,7 +15,7 @@ extern "C"
 {
 #endif
 
-/* A point with less fluid weight than this is at the rim of a kernel. */
+/* If a point has less fluid weight than this, it counts as at the rim of a kernel. */
 #define COMPARE_RIM 1e-6
 
   /* A field on its lattice, classified for one iso value. */
@@ -65,7 +65,8 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     int64_t
       trim_avoidable; /* linear cuts for which an exact one (f = iso, w = threshold) exists within a cube */
-    /* Errors of exact trim vertices. Here and below, weight means the eigenvalue where the eigenvalue trims. */
+    /* Errors of vertices that trimming cut exactly. If the eigenvalue trims, "weight" here and below means the
+     * eigenvalue. */
     double trim_weight_error, trim_residual;
     int64_t below_threshold; /* vertices kept although their weight is too low */
     int64_t unsettled;       /* nodes and cells at the surface whose state rounding decides */
@@ -74,8 +75,8 @@ extern "C"
     char first[240];           /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 
-  /* Compares. trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must have a vertex.
-   * mesh: the report on this surface. */
+  /* Fills in the comparison. trimmed: the surface was trimmed at options->vertex_threshold; otherwise every crossed
+   * edge must have a vertex. mesh: the report on the surface. */
   void oracle_compare(const oracle_reference* reference, const mcor_options* options,
     const mcor_surface* surface, const mesh_report* mesh, int trimmed,
     oracle_comparison* comparison);

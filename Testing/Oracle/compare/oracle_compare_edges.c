@@ -15,7 +15,8 @@ enum
   COMPARE_CANDIDATES = 16
 };
 
-/* Returns whether two valid cells touch only in this edge. */
+/* Returns whether only two of the four cells around the edge are valid, and these lie opposite each
+ * other. */
 static int compare_pinched(const lattice_edge* edge)
 {
   return edge->quadrants == 6 || edge->quadrants == 9;
@@ -37,8 +38,9 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Finds the crossed edges, still without a vertex, on which a point may lie, ends included. Returns how many. *axis:
- * the axis of the edge inside which the point lies; -1: it lies on a node; -2: it lies on no line of the lattice. */
+/* Finds the crossed edges without a vertex so far on which a point may lie, ends included. Returns how many there are.
+ * *axis: the axis of the edge inside which the point lies; -1: the point lies on a node; -2: on no line of the lattice.
+ * */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {
@@ -148,8 +150,9 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Returns whether a flagged vertex where no crossing is expected is a cut. If rounding decides about a crossing there,
- * the vertex is a cut only if its weight is the threshold or it was cut linearly (flag 2). */
+/* Returns whether a vertex at a place without an expected crossing is a cut, as its flag says. close: rounding decides
+ * whether there is a crossing; the vertex is then a cut only if its weight is the threshold or it was cut linearly
+ * (flag 2). */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;
@@ -164,8 +167,8 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
     surface->boundary_flag[v] == 2;
 }
 
-/* Judges a vertex without an unmatched crossed edge: it is a cut, the second vertex on its edge, or one vertex too
- * many. */
+/* Judges a vertex that could not be matched with a crossed edge: it is a cut, a second vertex on its edge, excused by
+ * rounding, or one vertex too many. */
 static void compare_unmatched(compare_state* state, int64_t v, int axis)
 {
   const double* point = &state->surface->points[3 * v];
@@ -183,7 +186,7 @@ static void compare_unmatched(compare_state* state, int64_t v, int axis)
       (long long)v, point[0], point[1], point[2]);
     return;
   }
-  /* Numbers from edge_count on mean edges that are not crossed. */
+  /* Edge numbers of at least edge_count stand for edges that are not crossed. */
   state->vertex_edge[v] = 3 * state->reference->lattice.edge_count + (axis < 0 ? 0 : axis);
   if (!place.taken && (place.crossed || place.close))
   {
@@ -297,7 +300,8 @@ static void compare_missing(compare_state* state, int64_t* present, int64_t* abs
 
 /* ---- faces ---- */
 
-/* Counts a segment, or a triangle's side, under the two edges that it joins. */
+/* Adds `more` to the count of segments or triangle sides from one edge to another. Returns the
+ * count. */
 static int64_t compare_count(oracle_map* map, int64_t from, int64_t to, int more)
 {
   const int64_t at[3] = { from, to, 0 };
@@ -323,7 +327,8 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Checks that every segment is a side of one triangle for each cell that has the segment, in the right direction. */
+/* Checks that every segment of the oracle's is a side of one triangle for each cell that has the segment, in the same
+ * direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
@@ -345,8 +350,8 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   {
     const int64_t from = lattice->segments[s].from;
     const int64_t to = lattice->segments[s].to;
-    /* Where rounding decides, nothing is checked. With the paper's seeds a component may be missing although a face's
-     * crossings have vertices: they may belong to another component that touches it in pinched edges. */
+    /* Segments that rounding decides are not checked. With the paper's seeds a component may be missing although its
+     * crossings on a face have vertices: these may belong to another component that touches it in pinched edges. */
     const int may_lack = state->options->seeds == MCOR_PAIRS &&
       compare_pinched(&lattice->edges[from]) && compare_pinched(&lattice->edges[to]);
     if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || may_lack ||
@@ -364,7 +369,7 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   }
 }
 
-/* Checks that a side with one triangle is a cut, or a segment with a cell on one side only. */
+/* Checks sides with only one triangle: each must be a cut, or a segment that only one cell has. */
 static void compare_boundary(compare_state* state, oracle_map* wanted)
 {
   const mesh_report* mesh = state->mesh;
@@ -380,7 +385,7 @@ static void compare_boundary(compare_state* state, oracle_map* wanted)
     int explained = a < 0 && b < 0;
     if (a >= 0 && b >= 0)
     {
-      /* Rounding may join the face either way, but both of its cells the same way. */
+      /* If rounding may join the face either way, both cells at it join it in the same way. */
       const oracle_lattice* lattice = &state->reference->lattice;
       const int64_t either = compare_pair(&lattice->either, a, b);
       const int64_t cells =
@@ -421,8 +426,8 @@ void compare_edges(compare_state* state, int64_t* present, int64_t* absent)
   {
     result->unsettled += !lattice->cells[c].certain;
   }
-  /* The triangle counts: a tunnel between loops of a and b sides has a + b triangles; the loops alone have a - 2 and b
-   * - 2. */
+  /* Compares the numbers of triangles. Two loops of a and b sides have a - 2 and b - 2 triangles; a tunnel between them
+   * has a + b, which is 4 more. */
   const int64_t triangles = lattice->triangle_count + 4 * state->surface->statistics.tunnels;
   if (!state->trimmed && state->options->seeds != MCOR_PAIRS &&
     lattice->doubts.count + lattice->either.count == 0 && result->unsettled == 0 &&

@@ -3,8 +3,8 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* What oracle_compare.c, oracle_compare_edges.c and oracle_compare_mesh.c share. The first file calls the other two,
- * which do not call each other. */
+/* Declarations that oracle_compare.c, oracle_compare_edges.c and oracle_compare_mesh.c share. oracle_compare.c calls
+ * the other two files, which do not call each other. */
 
 #include "oracle_compare.h"
 
@@ -24,8 +24,8 @@ typedef struct compare_state
   oracle_comparison* result;
   /* [point_count]: an edge of the lattice (3 * number + axis), or COMPARE_*. */
   int64_t* vertex_edge;
-  /* [edge_count] of the lattice: a point or -1. A pinched edge has a second vertex, because the triangles of its two
-   * cells do not meet there. */
+  /* [edge_count] of the lattice: the number of a point, or -1. A pinched edge has a second vertex, because the
+   * triangles of its two cells do not meet on it. */
   int64_t *edge_vertex, *second_vertex;
   double* gradient;    /* [point_count][3], by the oracle */
   double* vertex_cube; /* [point_count], length of the vertex's edge */
@@ -33,22 +33,24 @@ typedef struct compare_state
 
 /* ---- oracle_compare.c ---- */
 
-/* Return how far a point is inside of a limit of the trimmed surface: the threshold of the trimming weight or boundary
- * eigenvalue; the end at solids, in the unit of the weight; the least fluid weight of a mean. The last one returns the
- * least of the three. */
+/* Each returns how far a point is inside of a limit of the trimmed surface: the threshold of the trimming weight or
+ * boundary eigenvalue; the end at solids, in the unit of the weight; the least fluid weight of a mean.
+ * compare_trim_margin returns the least of these three. */
 double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 double compare_wall_margin(const compare_state* state, const oracle_sample* sample);
 double compare_fluid_margin(const compare_state* state, const oracle_sample* sample);
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
-/* Returns whether trimming cuts away any of the places on an edge where the field passes iso. */
+/* Returns whether trimming cuts away any of the places on an edge at which the field crosses iso.
+ * */
 int compare_rightly_trimmed(
   const compare_state* state, const double start[3], int axis, double length);
-/* Keeps the first fault's words. */
+/* Keeps the description of the first fault. */
 void compare_note(compare_state* state, const char* format, ...);
 
-/* ---- oracle_compare_edges.c: which edge each vertex lies on, what that leaves out, how triangles join them ---- */
+/* ---- oracle_compare_edges.c: which edge each vertex lies on, which edges lack one, how triangles join the vertices
+ * ---- */
 
 /* Counts, for each component, the edges with a vertex and the edges without one. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);

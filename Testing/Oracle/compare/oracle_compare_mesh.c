@@ -10,8 +10,8 @@
 
 /* ---- vertices ---- */
 
-/* Returns the distance to the surface f = iso in cubes: by the gradient or, where that is small, by
- * the smallest step along the edge that brackets a crossing. */
+/* Returns the distance of vertex v from the surface f = iso, in cubes: by the gradient or, if the
+ * gradient is small, by the smallest step along the edge after which f has crossed iso. */
 static double compare_distance(
   const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {
@@ -108,8 +108,8 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* Returns the margin that trimming uses, with its gradient; the eigenvalue's gradient is found by
- * differences. */
+/* Returns the margin that trimming uses (the least one), and writes its gradient. The eigenvalue's
+ * gradient is found by differences. */
 static double compare_trim_gradient(const compare_state* state, const double point[3],
   const oracle_sample* sample, double gradient[3])
 {

@@ -46,7 +46,8 @@ particle_set particle_set_drops(double ratio)
   const int drops = 5;
   for (int drop = 0; drop < drops; ++drop)
   {
-    /* Each drop lies beside the larger one before it, close enough for their weights to meet. */
+    /* Each drop lies beside the drop before it, which is larger, so close that their weights
+     * overlap. */
     const double radius = pow(ratio, -(double)drop / (drops - 1));
     const double before = drop > 0 ? pow(ratio, -(double)(drop - 1) / (drops - 1)) : 0.0;
     const double turn = 0.7 * drop;
@@ -83,8 +84,8 @@ particle_set particle_set_medium(double ratio)
       }
       if (largest > 0.5 * size || size == least)
       {
-        /* The scalar is 0 on a sphere from near the origin to far away; it is a distance from the
-         * sphere relative to the distance from the origin. */
+        /* The scalar is 0 on a sphere that leads from near the origin to far away. Elsewhere it is
+         * the distance from this sphere, relative to the distance from the origin. */
         const double r = length_of(x);
         const double from[3] = { x[0] - 0.7 - 0.5 * least, x[1], x[2] };
         const double scalar = (length_of(from) - 0.7) / (r + least);
@@ -95,8 +96,8 @@ particle_set particle_set_medium(double ratio)
   return set;
 }
 
-/* Adds the particles of a box, moved at random from a lattice; their number along an axis is
- * rounded. */
+/* Adds the particles of a box, moved at random from a lattice. The number of particles along each
+ * axis is rounded. */
 static void graded_block(particle_set* set, const double low[3], const double high[3],
   double spacing, int solid, uint64_t* state)
 {

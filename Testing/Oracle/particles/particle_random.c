@@ -30,7 +30,7 @@ static void random_scalar(particle_set* set, int64_t j, int sort, uint64_t* stat
   }
 }
 
-/* Adds one block of particles: a lattice, perhaps moved at random or full of holes. */
+/* Adds one block of particles: a lattice, in some sets moved at random or full of holes. */
 static void random_block(particle_set* set, int64_t capacity, uint64_t* state)
 {
   const double spacing = 0.05 + 0.15 * random_unit(state);

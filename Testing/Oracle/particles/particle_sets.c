@@ -118,8 +118,8 @@ static int in_puddle(const double x[3])
 
 /* ---- the sets ---- */
 
-/* Adds single particles that reach no other one, heavy enough for their own surfaces, two pairs,
- * and single high values within fluid. */
+/* Changes the set: adds single particles, heavy enough for their own surfaces, that reach no other
+ * particle; two pairs; and single high values within the fluid. */
 static void add_blobs(particle_set* set)
 {
   const double lone[7][3] = { { 2.0, 0.1, 0.2 }, { 2.03, 1.07, -0.3 }, { 2.5, 2.5, 2.5 },
@@ -134,7 +134,7 @@ static void add_blobs(particle_set* set)
   }
 }
 
-/* Adds solids: a floor and one wall under and beside a shallow puddle with a wavy surface. */
+/* Adds solids to a shallow puddle with a wavy surface: a floor below it and one wall beside it. */
 static void add_walls(particle_set* set)
 {
   const particle_block floor_block = { { 1.8, 1.4, 0.12 }, { 0.0, 0.0, -0.06 }, 0.06, 1.3, 0.0, 6,
@@ -152,8 +152,8 @@ static void add_walls(particle_set* set)
   set->has_solids = 1;
 }
 
-/* Adds particles in cells that are halved until they are small enough for their distance from the
- * centre. */
+/* Adds particles in cells. A cell is divided into eight as long as it is too large for its distance
+ * from the origin. */
 static void set_refine(
   particle_set* set, const double center[3], double size, double finest, uint64_t* state)
 {
@@ -174,7 +174,7 @@ static void set_refine(
   {
     x[axis] = center[axis] + 0.2 * size * (2.0 * random_unit(state) - 1.0);
   }
-  /* log r, disturbed so that the surface has some shape at every scale. */
+  /* The scalar is log r, disturbed so that surfaces have some shape at every scale. */
   const double scalar = log(radius(x) + 1e-3) + 0.3 * sin(9.0 * atan2(x[1], x[0]));
   particle_set_add(set, x, 1.4 * size, size * size * size, scalar);
 }

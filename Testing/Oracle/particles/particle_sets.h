@@ -8,7 +8,8 @@
 #include "mcor.h"
 #include "oracle.h"
 
-/* A block of a lattice, moved at random by `jitter`: cells of `spacing` whose centres are in [-size/2, size/2]. */
+/* A block of a lattice, moved at random by `jitter`. Its cells have the edge `spacing`; their centres lie within size /
+ * 2 of `center` along each axis. */
 typedef struct particle_block
 {
   double size[3];
@@ -38,14 +39,16 @@ particle_set particle_set_of(const particle_set_entry* entry);
  * some solid, some in one place; scalars are smooth, random or of few values. */
 particle_set particle_set_random(uint64_t seed);
 
-/* Return particles whose smoothing lengths differ by the ratio: five drops that touch; and a medium that is finer
- * nearer to the origin, where scalar = 0 is a sphere from there to far away. */
+/* Return particles whose largest and smallest smoothing length have this ratio. drops: five drops that touch. medium:
+ * fluid that is finer nearer to the origin; scalar = 0 is a sphere that leads from near the origin to far away. */
 particle_set particle_set_drops(double ratio);
 particle_set particle_set_medium(double ratio);
-/* Returns a coarse and a fine block of fluid side by side, on a floor of solids with a smoothing length of their own. */
+/* Returns a coarse and a fine block of fluid side by side, on a floor of solids whose smoothing length differs from
+ * both. */
 particle_set particle_set_basin(double ratio);
 
-/* Return arrays of doubles, or a set, as input of the core; they are borrowed. */
+/* Return an array of doubles, or a set, as input of the core. The input keeps pointers to the same
+ * data. */
 mcor_array core_array(const double* data, int components);
 mcor_input core_input(const particle_set* set);
 

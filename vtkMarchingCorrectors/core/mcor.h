@@ -433,9 +433,9 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
-    /* far_particles: how many are left out because they are too far away from all others for the
-     * virtual grid (at most 0.1 % of all, or 8); far_first, far_place: number and position of the
-     * first one. */
+    /* far_particles: how many particles are left out because they are too far away from all others
+     * for the virtual grid (at most 0.1 % of all, or 8); far_first, far_place: number and position
+     * of the first of them. */
     int64_t far_particles, far_first;
     double far_place[3];
     /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
@@ -525,7 +525,7 @@ extern "C"
 #define MCOR_TRIANGLE_KEY 2
 
   /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to
-   * lower values of the field, as with vtkContourFilter. Owned; free with mcor_free_surface. */
+   * lower values of the field, as with vtkContourFilter. Free it with mcor_free_surface. */
   typedef struct mcor_surface
   {
     int64_t point_count, triangle_count;
@@ -535,9 +535,9 @@ extern "C"
     /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
      * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on
      * its left, seen from the positive end of the constant axis. A closed line ends with its first
-     * point. Open lines come first. Normals lie in the plane; with `filled`, all normals are those
-     * of the triangles, along the constant axis. Where statistics count triangles, they count lines
-     * between two points; lines have no triangle_keys. */
+     * point. Open lines come first. Normals lie in the plane; with `filled`, all normals are
+     * normals of the triangles, along the constant axis. Where statistics count triangles, they
+     * count lines between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
@@ -562,7 +562,7 @@ extern "C"
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
     /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: a
      * sphere of radius R has 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In two
-     * dimensions the mean curvature is that of the line, 1 / R for a circle. On caps both are
+     * dimensions the mean curvature is the line's curvature, 1 / R for a circle. On caps both are
      * meaningless. */
     double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
@@ -582,8 +582,8 @@ extern "C"
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
-  /* One line per device, "number: device (platform)\n". Free *text with free(). It is empty if
-   * there is no OpenCL device. */
+  /* Lists the devices, each in a line "number: device (platform)\n". *text is empty if there is no
+   * OpenCL device. Free it with free(). */
   mcor_status mcor_list_devices(char** text);
 
   /* Says in one sentence, with C's words in its slots, why the last failed call on this context
@@ -771,10 +771,11 @@ extern "C"
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
-  /* Warns that single precision is too coarse for the points of a surface whose largest
-   * coordinate, in magnitude, is `largest`. */
+  /* Returns a warning if single precision is too coarse for the points of a surface whose largest
+   * coordinate, in magnitude, is `largest`; else no message. Both lengths have one unit. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
-/* In blocks joined to one set, this array marks the particles of blocks that are named as walls. */
+/* The name of an array that marks wall particles: if blocks are joined to one set, the particles of
+ * blocks whose names tell of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
   /* The field at given points; free it with mcor_free_samples. */
@@ -931,9 +932,9 @@ extern "C"
      * box. It counts with its whole kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
-    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what
-     * the pixel sees of the kernel; if masses are the weight, sum m A F / sum m F. data NULL: the
-     * image shows column integrals. */
+    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: the
+     * kernel's column integral, averaged over the pixel; if masses are the weight, sum m A F / sum
+     * m F. data NULL: the image shows column integrals. */
     mcor_array weight;
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
@@ -983,9 +984,9 @@ extern "C"
    * neighbours are few (drops, threads), and to at most the Shepard mean of the factors around the
    * particle; in a corner of deep water it rises towards that mean (mcor_widen.c has the whole
    * rule). The surface of an input with these factors and volumes has the cubes of the original
-   * lengths; with uniform cubes it is, to the last bit, that of the products of smoothing lengths
-   * and factors in cubes of the same size. Reads the options of mcor_extract; a box only with
-   * globals, which are those of mcor_measure_globals with level_limit 0. Results are then valid for
+   * lengths; with uniform cubes, it has the same bits as the surface for smoothing lengths that are
+   * multiplied by the factors, in cubes of the same size. Reads the options of mcor_extract; reads
+   * a box only with globals, of mcor_measure_globals with level_limit 0. Results are then valid for
    * particles in the box; the input must have all particles up to 1 + widen support radii away from
    * the box, or (1 + widen) (1 + 1 / h_scale) if volumes are computed. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,

@@ -120,8 +120,8 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-/* Prepares search grid and scalar for these options; takes them from the last call where they
- * still hold. */
+/* Prepares the search grid and the scalar for these options, or takes them from the last call if
+ * they still hold. */
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

@@ -3,9 +3,9 @@
 #ifndef mcor_find_h
 #define mcor_find_h
 
-/* Makes an mcor_input from particles as files and programs have them, a list of named arrays, and
- * from what a user says about the arrays. Also finds which array serves for what, and says in
- * sentences what is missing or not used.
+/* Makes an mcor_input from named arrays of particles, as files and programs have them, and from what
+ * a user says about the arrays. Also finds which array serves for what, and says in sentences what
+ * is missing or not used.
  *
  *   mcor_found found;
  *   if (mcor_find_input(&request, &positions, arrays, count, NULL, &found) == MCOR_OK)

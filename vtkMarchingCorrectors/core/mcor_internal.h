@@ -442,7 +442,8 @@ mcor_status mcor_upload_case_table(mcor_context* context);
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
     MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
 
-/* Returns the length of the virtual grid's edge in cubes; the device holds this number exactly. */
+/* Returns the length, in cubes, of the virtual grid's edges along an axis; the device holds this
+ * number exactly. */
 static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 {
   return ldexp((double)lattice->step[axis], -lattice->fix_bits);

@@ -45,7 +45,7 @@ typedef struct mcor_level
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
 /* Set together with MCOR_RING_CELL if another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((MCOR_TYPE(ulong))1 << 62)
-/* Bit of the key of a cap's square, above all keys of cells. */
+/* This bit makes the key of a cap's square greater than the key of any owned cell. */
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)
 
 /* Particles or triangles that one work-item treats in turn. A CPU needs several, because it cannot

@@ -31,8 +31,8 @@ typedef struct mcor_lattice
   int levels; /* of cubes; 1: all have one size */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where a period begins, from origin */
-  /* The blocks of each level, and their end. With uniform cubes, blocks of higher levels are the
-   * larger cubes that mcor_make_blocks divides. */
+  /* Where the keys of each level's blocks begin, and where all keys end. With uniform cubes, blocks
+   * of higher levels are the larger cubes that mcor_make_blocks divides. */
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
@@ -97,7 +97,8 @@ typedef struct mcor_brick_data
   int count;
 } mcor_brick_data;
 
-/* [III-B] Blocks where there may be surface, of all levels, and the bricks that exist in them. */
+/* [III-B] The blocks of all levels that may have surface, and the bricks that exist in these
+ * blocks. */
 typedef struct mcor_bricks
 {
   mcor_buffer rungs; /* mcor_rung: where each level's blocks begin, and the end */
@@ -171,7 +172,7 @@ typedef struct mcor_tree
   cl_uint *leaves, *is_split;                              /* bits [block_count][16] */
 } mcor_tree;
 
-/* Leaves that are marched, and what their slots need; see mcor_leaf.c. */
+/* The leaves that are marched, and the slots of their nodes; see mcor_leaf.c. */
 typedef struct mcor_adaptive
 {
   mcor_buffer chosen, scanned; /* bits of the listed leaves, by block; int: how many listed leaves
@@ -189,9 +190,9 @@ typedef struct mcor_adaptive
 /* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
-  /* Masks of cells: a ulong for each brick of all blocks, by the brick's number. marked: the line
-   * between a pair's particles passes. reached: growth has come so far. grown: the reached cells
-   * from which growth has gone on. */
+  /* Masks of cells: a ulong for each brick of all blocks, by the brick's number. marked: cells
+   * between the particles of pairs. reached: the marked cells, and where growth has come from them.
+   * grown: reached cells from which growth has gone on. */
   mcor_buffer marked, reached, grown;
   mcor_buffer domain; /* ulong, by slot: cells where growth may go */
   mcor_buffer found;  /* int: what a kernel found in any brick */
@@ -337,7 +338,7 @@ struct mcor_context
   mcor_run run;
   mcor_pool pool; /* threads of the host during a call, unless the device is the built-in one */
 
-  /* The device, and what it holds for any particles. */
+  /* The device, and data that do not depend on the particles. */
   mcor_cl cl;
   mcor_buffer cases, case_rows; /* mcor_case_table */
   mcor_buffer scan_sums;

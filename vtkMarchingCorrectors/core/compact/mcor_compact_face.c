@@ -50,8 +50,8 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks merged bunches of a triangle as bad: the ones that did not reach the surface; if all did,
- * all of them if the triangle is turned over. Marks the widest corner of a sliver. */
+/* Marks merged bunches of a triangle as bad: if some of them did not reach the surface, these;
+ * else, if the triangle is turned over, all of them. Marks the widest corner of a sliver. */
 static void mcor_judge_triangle(const mcor_bunches* bunches, int64_t t)
 {
   const cl_int* corner = bunches->triangles + 3 * t;
@@ -92,7 +92,8 @@ static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Takes a bunch apart, and so the bunches that were merged only because this one was (`leans`). */
+/* Takes a bunch apart, and also the bunches beside it that lean on it (`leans`): these are merged
+ * only as long as this bunch is. */
 static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
 {
   const mcor_bunch_vertex* of = bunches->of;
@@ -145,8 +146,8 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 
 /* ---- Slivers ---- */
 
-/* How far from a vertex's node, in edges, a line may start; from there it ends within
- * MCOR_POINT_EXTENT. */
+/* The farthest start of a line from its vertex's node, in edges. A line from there ends within
+ * MCOR_POINT_EXTENT of the node. */
 #define MCOR_FARTHEST_START 2.5
 
 /* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles

@@ -266,8 +266,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   return total;
 }
 
-/* Follows the links from a slot until they return, and removes them. The loop is empty if the slot
- * has no link. */
+/* Follows the links from a slot around its loop, writes the loop, and removes the links. The loop
+ * is empty if the slot has no link. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_trace(
   MCOR_TYPE(uint) split, int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
 {

@@ -260,7 +260,7 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
 }
 
 /* Makes the rows of a case for one set of decisions. In `row`, discs fill all loops. Rows with a
- * tunnel are written to `to` and following. Returns the number of rows with a tunnel. */
+ * tunnel are written to `to` and the places behind it. Returns the number of rows with a tunnel. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

@@ -46,7 +46,7 @@ static inline uint64_t mcor_layers(int axis, int count)
     { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
   return layers[axis][count];
 }
-/* Returns the mask of a cluster's bricks between `first` and `last`, which must be at least one.
+/* Returns the mask of a cluster's bricks between `first` and `last`; there must be at least one.
  * cluster: the position of the cluster's first brick. */
 static inline uint64_t mcor_bricks_between(
   const int first[3], const int last[3], const int cluster[3])
@@ -67,7 +67,7 @@ int mcor_tree_level_of(double h, double h_min, int top);
 /* Clusters, or other elements, that the host treats between two reports of progress. */
 #define MCOR_TREE_STEP 4096
 
-/* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the
+/* Begins a tree of the lattice, and numbers the blocks of all levels up to the level above the
  * highest leaves. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
 /* Returns a number above the keys of all bricks. */
@@ -83,7 +83,7 @@ bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
 /* Adds a brick, or its image in the first period, to a set as mcor_set_add does; a brick off the
  * lattice is left out. */
 bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set);
-/* Fails unless all leaves fit: they may be too many, or memory for them ran out. */
+/* Fails unless `fit` is set: there may be too many leaves, or memory for them ran out. */
 mcor_status mcor_leaves_fit(mcor_context* context, bool fit);
 
 /* mcor_tree_split.c. Finds all bricks that the particles of all ranks split. */
@@ -105,7 +105,7 @@ mcor_status mcor_take_splits(
 /* Finds which bricks the particles of all ranks split; with one level, none. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
-/* Makes the leaves in the box, and the blocks of all bricks whose nodes they may need. */
+/* Makes the leaves in the box, and the blocks of all bricks whose nodes the leaves may need. */
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input);
 void mcor_release_tree(mcor_tree* tree);
 

@@ -20,8 +20,8 @@ typedef struct mcor_buffer
   size_t size; /* bytes */
 } mcor_buffer;
 
-/* Memory of the host that a driver has locked. A buffer of a device with memory of its own is
- * mapped by way of it. */
+/* Memory of the host that a driver has locked. The host maps a buffer of a device with memory of
+ * its own as such a copy. */
 typedef struct mcor_locked
 {
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
@@ -207,7 +207,7 @@ mcor_status mcor_read(
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
-/* One of several buffers that are mapped together; *data is NULL before. */
+/* One of several buffers that are mapped together; *data must be NULL before the call. */
 typedef struct mcor_mapping
 {
   const mcor_buffer* buffer;

@@ -28,7 +28,7 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer)
   *buffer = (mcor_buffer){ 0 };
 }
 
-/* Takes buffer i out of the kept ones. */
+/* Takes buffer i out of the list of kept buffers. */
 static mcor_buffer mcor_take_out(mcor_cl* cl, int i)
 {
   const mcor_buffer buffer = cl->kept[i];

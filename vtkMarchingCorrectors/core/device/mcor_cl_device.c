@@ -57,7 +57,7 @@ static void mcor_find_devices(mcor_device_list* list, bool drivers)
   }
 }
 
-/* Writes the devices' numbers and names, as far as there is room. */
+/* Writes the devices' numbers and names into `text`, and stops when it is full. */
 static void mcor_write_devices(
   const mcor_device_list* list, const char* separator, char* text, size_t room)
 {

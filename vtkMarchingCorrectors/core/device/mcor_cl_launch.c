@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Finds a kernel among those made so far, or makes it. */
+/* Finds a kernel that was made before, or makes the kernel. */
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** found)
 {
   mcor_cl* cl = &context->cl;

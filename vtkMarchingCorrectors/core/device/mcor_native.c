@@ -164,7 +164,7 @@ static cl_int mcor_device_info(
 
 /* ---- Objects ---- */
 
-/* Defines a function that releases objects of a type which own no other memory. */
+/* Defines a function that frees an object of a type; such objects own no other memory. */
 #define MCOR_RELEASE_ALONE(name, type)                                                             \
   static cl_int name(type object)                                                                  \
   {                                                                                                \

@@ -3,10 +3,10 @@
 #ifndef mcor_native_h
 #define mcor_native_h
 
-/* The built-in device: an OpenCL platform inside this library. Its one device is the CPU, for
- * which the kernels were compiled with the library (CompileAhead.cmake). It has only those
- * functions of OpenCL that this library calls: kernels are not timed, programs are not loaded,
- * and a share of the device is a number of threads. Each command is done when its call returns. */
+/* The built-in device: an OpenCL platform inside this library. Its one device is the CPU, for which
+ * the kernels were compiled with the library (CompileAhead.cmake). The platform has only those
+ * functions of OpenCL that this library calls: kernels are not timed, programs are not loaded, and
+ * a share of the device is a number of threads. Each command is done when its call returns. */
 
 #include "mcor_parallel.h"
 

@@ -38,7 +38,8 @@ static const cl_icd_dispatch* mcor_table(const void* object)
   return *(const cl_icd_dispatch* const*)object;
 }
 
-/* Defines a function that calls the one in the table of `object`, its first argument. */
+/* Defines a function of OpenCL, which calls the function with the same name in the table of
+ * `object`, one of its arguments. */
 #define FORWARD(result, name, declared, passed, object)                                            \
   result CL_API_CALL mcor_##name declared;                                                         \
   result CL_API_CALL mcor_##name declared                                                          \

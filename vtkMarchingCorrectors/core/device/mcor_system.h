@@ -29,7 +29,7 @@ void mcor_use_large_pages(void* memory, size_t bytes);
  * open, as drivers do not survive being closed. */
 typedef void (*mcor_function)(void);
 /* Whether drivers can start: they start a thread for each of the machine's processors, and map
- * their libraries. PoCL ends the process where it cannot. */
+ * their libraries. PoCL ends the process if it cannot do this. */
 bool mcor_system_bears_drivers(void);
 mcor_function mcor_system_opencl(void);
 

@@ -144,8 +144,8 @@ static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging
     : MCOR_OK;
 }
 
-/* Makes the tables in which queries look up the particles of a search cell. They hold all cells if
- * these are few, else only the cells with particles. */
+/* Makes the tables in which queries look up the particles of a search cell. The tables hold all
+ * cells if there are few, else only the cells with particles. */
 static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
 {
   mcor_grid* grid = &context->grid;

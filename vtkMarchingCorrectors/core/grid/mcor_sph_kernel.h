@@ -9,8 +9,8 @@
  * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression
  * holds for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
  * w(|z|/h). All others must be positive and fall with q, because bounds rely on this, and their
- * rounding error is at most 96 units of rounding of w (mcor_bound.cl). They use only operations
- * that every device rounds alike: no sine, no power, no exponential. */
+ * rounding error is at most 96 units of rounding of w (mcor_bound.cl). All kernels use only
+ * operations that every device rounds alike: no sine, no power, no exponential. */
 
 /* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:
  *
@@ -81,7 +81,7 @@ MCOR_OF_Q mcor_w_quadratic(realv q)
   return a * a;
 }
 
-/* At q = 0 the gradient has no direction, so it is 0 there. It is 0 up to 1e-6, too, because
+/* At q = 0 the gradient has no direction, so w' is 0 there. Up to q = 1e-6, w' is 0, too, because
  * positions of particles with large supports are rounded by about as much. */
 MCOR_OF_Q mcor_dw_quadratic(realv q)
 {

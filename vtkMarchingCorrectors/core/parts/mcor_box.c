@@ -56,7 +56,7 @@ void mcor_move_period(mcor_options* options)
 }
 
 /* The field is evaluated up to this distance, in cubes, from the ring's nodes: trimming may move a
- * vertex by 3/4. */
+ * vertex by 3/4 of a cube. */
 #define MCOR_BOX_MARGIN 1.25
 
 /* A particle whose support misses a box by more than this, in cubes, is not needed there. */
@@ -273,9 +273,9 @@ double mcor_reach_around(
 {
   /* A volume depends on all particles within the particle's own, unscaled support. */
   const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
-  /* A particle that is the nearest one may not reach the box, but it is nearer than the particles
-   * that reach the box. The other particle of a pair may not reach the box either, but it is within
-   * a smoothing length. */
+  /* The particle nearest to a vertex may not reach the box, but it is nearer than the particles
+   * that do. The other particle of a pair may not reach the box either, but it is within a
+   * smoothing length. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
   /* A widening factor depends on sums with widened supports, at the particle and at the particles
@@ -334,7 +334,7 @@ bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
   return true;
 }
 
-/* Frees the host's memory of a call. */
+/* Frees what the host keeps of a call's triangles. */
 void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);

@@ -18,8 +18,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 /* Finds the cells that the call owns. The lattice must be known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* Where particles, or their images whole periods away, must be for the call to need them. In cubes
- * from the lattice's origin. */
+/* The box near which particles, or their images whole periods away, are needed. In cubes from the
+ * lattice's origin. */
 typedef struct mcor_reach_box
 {
   double low[3], high[3];     /* where the field is evaluated */

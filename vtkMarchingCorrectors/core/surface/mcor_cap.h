@@ -157,16 +157,16 @@ bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
 /* Copies the masks of the marched bricks. */
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
-/* Evaluates the field at the nodes that need it: nodes of the side, or (is_inner) nodes one further
- * in. */
+/* Evaluates the field at the nodes that need it: at nodes on the side, or, if is_inner is set, one
+ * node further in. */
 mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner);
 /* Calls `visit` for the squares of all bricks. at, node: number and position of a square's lowest
  * node. */
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
   mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
   void* data);
-/* Loads the nodes of axis a's lower or upper side. opposite: the period's other side if it is
- * loaded already, else NULL. */
+/* Loads the nodes of the lower or upper side of an axis. opposite: the nodes of the period's other
+ * side if they are loaded already, else NULL. */
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
   const mcor_cap_nodes* opposite, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A cut stays this far from the ends of its line, like the surface's cuts. */
+/* A cut stays this far, as a share of its line, from the line's ends, like the surface's cuts. */
 #define MCOR_CAP_CUT_MARGIN 1e-5
 #define MCOR_CAP_ROOT 2e-5 /* with a margin below this, a cut counts as exact */
 
@@ -171,8 +171,8 @@ static mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b
   return MCOR_OK;
 }
 
-/* Adds a polygon as a fan. Its corners are counter-clockwise, seen from the upper end of the
- * axis. */
+/* Adds a polygon as a fan of triangles. The polygon's corners are counter-clockwise, seen from the
+ * upper end of the axis. */
 static mcor_status mcor_add_cap_fan(void* data, const mcor_cap_corner* corners, int count)
 {
   mcor_cap_job* job = data;
@@ -306,7 +306,7 @@ static mcor_status mcor_visit_cap_square(
   {
     return MCOR_OK;
   }
-  /* The square is owned if it is in the box along the other axes. */
+  /* This call owns the square if it is in the box along the other axes. */
   for (int a = 0; a < job->context->space.axes; ++a)
   {
     owned = owned && (a == side->axis || (node[a] >= box->first[a] && node[a] < box->last[a]));
@@ -329,7 +329,8 @@ static mcor_status mcor_visit_cap_square(
 #define MCOR_PLACE_ROOT 1e-6
 
 /* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket
- * stays twice, its margin is halved, so that it moves, too (the Illinois method). */
+ * stays twice, the margin at this end is halved, so that the end soon moves (the Illinois
+ * method). */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {

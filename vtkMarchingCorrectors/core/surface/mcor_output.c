@@ -36,8 +36,8 @@ typedef struct mcor_download
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 
-/* Numbers the vertices that triangles use, or all: scanned[v] becomes the number of such vertices
- * before v. */
+/* Numbers the vertices that triangles use, or all vertices: scanned[v] becomes the number of such
+ * vertices before v. */
 static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* count)
 {
   mcor_mesh* mesh = &context->mesh;

@@ -103,7 +103,7 @@ void mcor_keep_cell(
   }
 }
 
-/* Moves elements of `width` bytes to the indices number[i] <= i; -1: the element is dropped. */
+/* Moves element i, of `width` bytes, to index number[i] <= i; -1: drops the element. */
 static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
 {
   char* bytes = array;

@@ -3,9 +3,9 @@
 #ifndef mcor_find_h
 #define mcor_find_h
 
-/* Makes an mcor_input from named arrays of particles, as files and programs have them, and from what
- * a user says about the arrays. Also finds which array serves for what, and says in sentences what
- * is missing or not used.
+/* Makes an mcor_input from named arrays of particles, as files and programs have them, and from
+ * what a user says about the arrays. Also finds which array serves for what, and says in sentences
+ * what is missing or not used.
  *
  *   mcor_found found;
  *   if (mcor_find_input(&request, &positions, arrays, count, NULL, &found) == MCOR_OK)
@@ -125,7 +125,7 @@ extern "C"
   } mcor_request;
 
   /* Made by mcor_find_input; free it with mcor_free_found. Indices are indices of the given arrays;
-   * -1: none. Indices behind the last array mean made[0], made[1]. */
+   * -1: none. The two indices behind the last given array stand for made[0] and made[1]. */
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */

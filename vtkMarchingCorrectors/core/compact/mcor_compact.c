@@ -69,8 +69,8 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
   if (n > bunches->point_room)
   {
-    /* There are at most half as many merged vertices as vertices; room for them saves another
-     * copy. */
+    /* Makes room for the merged vertices, too, so that they need no further copy; they are at most
+     * half as many as the vertices. */
     bunches->point_room = n + n / 2;
     const size_t bytes = bunches->point_room * sizeof *bunches->points;
     mcor_point* points = realloc(bunches->points, bytes);

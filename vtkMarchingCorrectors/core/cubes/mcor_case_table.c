@@ -83,7 +83,7 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 }
 
 /* Allows diagonals between two opposite edges of each ambiguous face. A face has two pairs of
- * opposite edges: the cell below the face may use one pair, the cell above it the other. Which one
+ * opposite edges: the cell below the face may use one pair, the cell above it the other. Which pair
  * depends on the side of the iso value on which the face's lowest corner lies. So the three faces
  * around a corner are alike; otherwise few tunnels could be made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)

@@ -167,8 +167,8 @@ static void mcor_query_device(mcor_cl* cl)
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
    * when they are launched. So it gains nothing if programs are built in parts. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
-  /* A CPU that works as a GPU counts as apart, so that tests reach the code for such devices,
-   * too. */
+  /* A CPU that works as a GPU counts as a device with memory of its own, so that tests reach the
+   * code for such devices, too. */
   cl->is_apart = !cl->is_cpu && (!unified || claims_cpu);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;

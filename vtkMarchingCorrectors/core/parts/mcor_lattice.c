@@ -138,7 +138,7 @@ static mcor_status mcor_fit_period(
   }
   MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
-  /* Greatest distance, unit L, from the period at which an image is needed, see mcor_stage. */
+  /* How far from the period, in unit L, an image of a particle may be needed, see mcor_stage. */
   const double reach = m->support_max +
     mcor_reach_around(options, true, context->run.widest, m->support_max, 0) + 8 * longest;
   const double margin = longest *

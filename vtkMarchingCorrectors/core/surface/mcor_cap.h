@@ -86,8 +86,8 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick of nodes that particles reach, on a side or one node further in. Masks have the bits of a
- * brick's nodes. */
+/* A brick of nodes that particles reach. Its nodes are on a side, or one node further in. Masks
+ * have the bits of a brick's nodes. */
 typedef struct mcor_cap_brick
 {
   uint64_t key;  /* must be the first member; orders bricks by the side's second axis, then by its
@@ -174,7 +174,7 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 /* ---- mcor_cap_make.c: the squares ---- */
 
 /* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim
- * margin (above 0: trimming leaves the corner). */
+ * margin (above 0: the corner remains). */
 typedef struct mcor_cap_corner
 {
   int32_t vertex;

@@ -7,7 +7,7 @@ from pathlib import Path
 _CORE = Path(__file__).parents[1] / "vtkMarchingCorrectors" / "core"
 _SAYS, _OPTIONS = ((_CORE / f"mcor_{name}.def").read_text(encoding="utf-8") for name in ("says", "options"))
 TEXTS = {code: text.replace('\\"', '"') for code, text in re.findall(r'^SAYS\((\w+), "(.*)"\)$', _SAYS, re.M)}
-# {what stands in braces: the panel's word}
+# {a slot's name: the panel's word for it}
 SLOTS = {**{member: re.sub(r"(?<=.)(?=[A-Z])", " ", name) for member, name in
             re.findall(r'^(?:OPTION|BOUNDS)\((\w+), .*"(\w*)"\)$', _OPTIONS, re.M)},
          **dict(re.findall(r'^SLOT\("([^"]+)", "([^"]+)"\)', _SAYS, re.M))}
@@ -20,7 +20,7 @@ def fill(text, word):
 
 
 def says(code, *found):
-    """Returns a regular expression for the sentence in the words of any interface. found: regular expressions that must occur in it, in this
-    order."""
+    """Returns a regular expression for the sentence with this code, in the words of any interface. found: regular expressions that must
+    occur in the sentence, in this order."""
     words = f"(?=.*?{'.*?'.join(found)})" if found else ""
     return f"(?s:{words}" + ".*?".join(re.escape(part) for part in _PART.split(TEXTS[code])) + ")"

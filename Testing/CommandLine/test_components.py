@@ -64,8 +64,8 @@ class Components(CommandLineTest):
                          [("0", "0"), ("0", "1"), ("0.5", "0")])
 
     def test_numbers_of_a_film(self):
-        """The table of pieces has a row for each piece of each step, also of interpolated steps. Pieces that are left out have no row. The
-        table of --numbers has the gauges' columns, too."""
+        """The table of --numbers has a row for each step, also for interpolated steps, and the columns of gauges. With --components it has
+        the number of pieces; pieces that are left out do not count in any column."""
         moving = {**self.all_arrays, "Id": list(range(1125)), "Velocity": [(0.0, 0.0, 0.4)] * 1125}
         self.write_rising_steps(2, 0.1, points=self.all_points, **moving)
         numbers = self.directory / "numbers.csv"

@@ -110,7 +110,7 @@ class TestTemporal(unittest.TestCase):
             self.assertEqual({time: self.at(film, time).GetNumberOfPoints() for time in times}, times)
 
     def test_no_steps(self):
-        """Particles without a time are passed on, whatever time is asked for."""
+        """Particles without times are passed on, whatever time is requested."""
         fixed = vtkSPHTemporalInterpolator()
         self.assertEqual(run(fixed, rotating(0.0))[0].GetNumberOfPoints(), 343)
         self.assertEqual(self.at(fixed, 0.7).GetNumberOfPoints(), 343)
@@ -131,7 +131,7 @@ class TestTemporal(unittest.TestCase):
                 self.assertTrue((values_of(output, "Heat") == values_of(stored, "Heat")).all())
 
     def test_hermite(self):
-        """Errors of positions fall with the fourth power of the step; with linear interpolation they fall with the second."""
+        """Errors of interpolated positions fall with the fourth power of the step; without velocities they fall with the second power."""
         errors, linear = [], []
         for step in (0.4, 0.2, 0.1):
             film = interpolator({0.0: rotating(0.0), step: rotating(step)})
@@ -144,7 +144,8 @@ class TestTemporal(unittest.TestCase):
         self.assertGreater(linear[-1], 1e-3)
 
     def test_formula(self):
-        """A few particles with any velocities are compared at times that are no simple fraction of the interval."""
+        """Compares a few particles that have any velocities with the formula of Hermite interpolation, also at times
+        that are no simple fraction of the interval."""
         x0, x1, v0, v1 = numpy.random.default_rng(1).uniform(-1, 1, (4, 5, 3))
         film = interpolator({1.0: few(x0, range(5), v0), 3.0: few(x1, range(5), v1)})
         for time in (1.3, 2.0, 2.9):
@@ -164,7 +165,7 @@ class TestTemporal(unittest.TestCase):
             self.assertEqual(values_of(output, "Kind").dtype, numpy.int32)
 
     def test_order(self):
-        """Particle numbers may be shuffled and of any type; the particles are the same."""
+        """Particle numbers may be in any order and of any type. The interpolated particles are the same."""
         expected = self.at(interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)}), 0.05)
         paths = points_of(expected)[numpy.argsort(values_of(expected, "Idp"))]
         rng = numpy.random.default_rng(10)
@@ -178,7 +179,8 @@ class TestTemporal(unittest.TestCase):
             self.assertTrue((points_of(output) == paths[order]).all())
 
     def test_leaving_and_entering(self):
-        """Particle 1 leaves and 9 enters. Each is there in its half of the interval, and moves."""
+        """Particle 1 is only in the first step, particle 9 only in the second. Each exists in its half of the interval,
+        and moves by its velocity."""
         film = interpolator({
             0.0: few([(0, 0, 0), (1, 0, 0)], [0, 1], [(1, 0, 0), (0, 1, 0)], Heat=[0, 5]),
             1.0: few([(7, 0, 0), (1, 0, 0)], [9, 0], [(0, 0, 2), (1, 0, 0)], Heat=[7, 1])})
@@ -191,7 +193,7 @@ class TestTemporal(unittest.TestCase):
         self.assert_points(self.at(film, 0.25, UseVelocities=0), [(0.25, 0, 0), (1, 0, 0)])
 
     def test_time_scale(self):
-        """Steps with the times 0 and 1 are really 0.1 apart, and a warning tells it."""
+        """Two steps have the times 0 and 1 but are 0.1 apart by their velocities. A warning says so."""
         numbered = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1)})
         warning, = self.told(numbered, 0.5)
         self.assertIn("0.1003", warning)  # tan(0.1) / 0.1 times what the velocities say
@@ -201,7 +203,7 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(self.told(numbered, 0.5, TimeScale=0.1), [])
         self.assertLess(self.farthest(numbered.GetOutput(), 0.05), 3e-6)
         three = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1), 2.0: rotating(0.2)})
-        # One line serves all intervals that are wrong by the same factor, until the filter changes.
+        # Intervals that are wrong by the same factor give only one warning, until the filter changes.
         self.assertEqual([len(self.told(three, time)) for time in (0.5, 1.5, 0.4)], [1, 0, 0])
         self.assertEqual([len(self.told(three, time, TimeScale=0.9)) for time in (0.5, 1.5)], [1, 0])
         alone = interpolator({  # Each particle is in one step only, and moves by its velocity alone.
@@ -212,7 +214,7 @@ class TestTemporal(unittest.TestCase):
         self.refuse(numbered, 0.5, "The time scale must be greater than 0", TimeScale=0.0)
 
     def test_velocities_that_are_not_finite(self):
-        """Velocities that are not finite are named as such, before they make positions NaN."""
+        """A warning names velocities that are not finite, before they make positions NaN."""
         for wrong in (math.nan, math.inf):
             film = interpolator({time: few([(0, 0, 0), (1, 0, 0)], [0, 1], [(1, 0, 0), (0, wrong if time else 0, 0)])
                                  for time in (0.0, 1.0)})
@@ -221,7 +223,7 @@ class TestTemporal(unittest.TestCase):
             self.assert_points(film.GetOutput(), [(0, 0, 0), (1, 0, 0)])
 
     def test_threads_change_nothing(self):
-        """There are so many particles that several threads have work."""
+        """The number of threads changes nothing. There are so many particles that several threads have work."""
         rng, count = numpy.random.default_rng(4), 30000
         steps = {}
         for time in (0.0, 0.2):
@@ -268,7 +270,7 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(values_of(self.at(film, 0.1), "Heat")[0], 50.0)
 
     def test_surface(self):
-        """A surface between two steps is compared with known values."""
+        """Compares the velocities on a surface between two steps with known values."""
         film = interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)})
         extract = vtkMarchingCorrectors()
         extract.SetInputConnection(film.GetOutputPort())
@@ -279,7 +281,8 @@ class TestTemporal(unittest.TestCase):
         self.assertLess(abs(values_of(surface, "Velocity")[:, 2] + 0.1).max(), 1e-5)  # All particles fall at the same speed.
 
     def test_types_of_data(self):
-        """Unstructured grids and blocks keep their class; where the input has cells, each particle gets a vertex."""
+        """Unstructured grids and blocks keep their class. If the input has cells, each particle gets a vertex in the
+        output."""
         def grid(time):
             result = vtkUnstructuredGrid()
             result.ShallowCopy(rotating(time))
@@ -318,7 +321,7 @@ class TestTemporal(unittest.TestCase):
         self.refuse(film, 0.1, "'Heat' of particle 7 in the step at time 0.2 is 0.5", IdArrayName="Heat")
 
     def test_global_ids(self):
-        """Particle numbers may have an unusual name if they are the active global ids."""
+        """The array of particle numbers may have an unusual name if it is the active global ids."""
         steps = {}
         for time in (0.0, 0.2):
             steps[time], ids = rotating(time), vtkIdTypeArray()
@@ -362,7 +365,7 @@ class TestTemporal(unittest.TestCase):
             self.assertFalse(data.HasArray("Heat") or data.HasArray("Names"))
 
     def test_failing_reader(self):
-        """After a step that could not be read, the other steps work as before."""
+        """If the reader fails at one step, the other steps work as before."""
         film = interpolator({t: rotating(t) for t in (0.0, 0.1, 0.2)})
 
         def break_at(*times):

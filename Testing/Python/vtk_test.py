@@ -20,13 +20,13 @@ POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 
 
 def lattice(*sides, around_origin=False):
-    """Returns places SPACING apart in a block with this many on each side; x runs slowest."""
+    """Returns places SPACING apart in a block. sides: how many along x, y and z. x varies slowest."""
     places = numpy.stack(numpy.meshgrid(*map(numpy.arange, sides), indexing="ij"), -1).reshape(-1, 3).astype(float)
     return SPACING * (places - (numpy.array(sides) - 1) / 2 * around_origin)
 
 
 def add(data, **arrays):
-    """Adds point arrays: {name: values, or a vtkAbstractArray}."""
+    """Adds point arrays to the data, and returns it. arrays: {name: values, or a vtkAbstractArray}."""
     for name, values in arrays.items():
         array = values if hasattr(values, "GetName") else numpy_to_vtk(numpy.ascontiguousarray(values), deep=1)
         array.SetName(name)
@@ -42,8 +42,8 @@ def particles_of(points, **arrays):
 
 
 def cube(kind=float, **arrays):
-    """Returns 21^3 particles in [-1, 1]^3, moved a little from their lattice so that no two neighbourhoods are alike. Radius is the distance from the
-    middle."""
+    """Returns 21^3 particles in [-1, 1]^3, moved a little from a lattice so that no two neighbourhoods are alike. Radius is the distance
+    from the centre."""
     places = lattice(21, 21, 21, around_origin=True)
     places = (places + 0.1 * SPACING * numpy.random.default_rng(21).uniform(-1, 1, places.shape)).astype(kind)
     return particles_of(places, SmoothingLength=numpy.full(COUNT, H), Volume=numpy.full(COUNT, SPACING ** 3),
@@ -60,7 +60,8 @@ def sphere(data=None, scalar="Radius", iso=0.6):
 
 
 def sums_at(particles, values, places):
-    """Returns the weight sum and the sum of a scalar by the textbooks' cubic spline, without code of the core."""
+    """Returns, at each place, the weight sum and the sum of a scalar, with the textbooks' cubic spline and no code of
+    the core."""
     x, volume = points_of(particles), values_of(particles, "Volume")
     found = []
     for place in numpy.asarray(places, float):
@@ -79,7 +80,7 @@ def take(data, chosen):
 
 
 def blocks_of(*blocks, **named):
-    """Returns blocks: first the ones without names, then the ones with names."""
+    """Returns a data set of blocks: first the blocks without names, then those with names."""
     result = vtkMultiBlockDataSet()
     for i, block in enumerate((*blocks, *named.values())):
         result.SetBlock(i, block)
@@ -89,7 +90,7 @@ def blocks_of(*blocks, **named):
 
 
 def take_step(step, extract, *data):
-    """Applies a step: a function, or settings."""
+    """Applies a step to the filter. The step is a function, or a dictionary of settings."""
     if callable(step):
         step(extract, *data)
         return
@@ -98,7 +99,8 @@ def take_step(step, extract, *data):
 
 
 def run(made, data=None, **settings):
-    """Returns the output, and the sentences of errors and warnings in their order. A setting that is a tuple has several arguments."""
+    """Runs the filter. Returns its output, and the messages of its errors and warnings in their order. A setting that is a tuple has
+    several arguments."""
     told, tags = [], []
 
     def keep(_, event, text):
@@ -132,14 +134,14 @@ def bytes_of(data):
 
 
 def surface_of(data):
-    """Returns all that a surface has, by names of arrays."""
+    """Returns the bytes of a surface's points, triangles and point arrays, by name."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return {"points": points_of(data).tobytes(), "corners": vtk_to_numpy(data.GetPolys().GetConnectivityArray()).tobytes(),
             **{array.GetName(): bytes(memoryview(array)) for array in arrays}}
 
 
 def statistics_of(extract):
-    """Returns the run's statistics, but not the costs, which may differ in another run for the same surface."""
+    """Returns the run's statistics without its costs, which may differ in another run for the same surface."""
     data = extract.GetRunStatistics()
     arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     return [(array.GetName(), [array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues())])
@@ -152,12 +154,12 @@ def statistic(extract, name):
 
 
 def on_progress(extract, act):
-    """Calls act(extract) at each sign of progress."""
+    """Lets act(extract) be called at each progress event."""
     return extract.AddObserver("ProgressEvent", lambda *_: act(extract))
 
 
 def aborted(extract):
-    """Returns the output of a run that is stopped at its first sign of progress."""
+    """Returns the output of a run that is stopped at its first progress event."""
     tag = on_progress(extract, lambda made: made.SetAbortExecute(1))
     extract.Modified()
     output, told = run(extract)

@@ -34,7 +34,7 @@ def free_port():
 
 
 def end(process):
-    """Kills the process and all that it started."""
+    """Kills the process and all processes of its group."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
@@ -43,7 +43,8 @@ def end(process):
 
 
 def start_server(command, log):
-    """Starts the server and returns it with its port, once it waits for a client. It takes one client, and ends with it."""
+    """Starts the server and waits until it accepts a client. Returns the server (None if it failed) and its port. The server takes one
+    client, and ends with it."""
     port = free_port()
     server = subprocess.Popen([*command, f"--server-port={port}"], stdin=subprocess.DEVNULL, stdout=log,
                               stderr=subprocess.STDOUT, start_new_session=True)

@@ -49,7 +49,7 @@ def write_files(blocks, scratch):
 
 
 def run(blocks, scratch):
-    """Runs the shell blocks in their order, and returns what they print."""
+    """Runs the shell blocks in their order, and returns the text that they print."""
     commands = "".join(text for language, name, text in blocks if language == "sh" and not name)
     if not commands:
         sys.exit("the section has no shell commands")
@@ -76,7 +76,8 @@ def faults(blocks, scratch, output):
 
 
 def not_ignored(source, scratch):
-    """Returns the files of the scratch folder, without links, that "git status" would show in the source tree."""
+    """Yields a fault for each file of the scratch folder, links left out, that "git status" would show in the source
+    tree."""
     written = [entry.name + "/" * entry.is_dir() for entry in os.scandir(scratch) if not entry.is_symlink()]
     ignored = subprocess.run(["git", "-C", source, "check-ignore", "--no-index", *written], stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL, text=True, check=False)
@@ -92,7 +93,7 @@ def pages(source):
 
 
 def dead_links(source):
-    """Returns links and pictures of the pages that name no file of the tree."""
+    """Yields the links and pictures of the pages that name no file of the tree."""
     for path in pages(source):
         with open(path, encoding="utf-8") as file:
             text = re.sub(r"^```.*?^```$", "", file.read(), flags=re.MULTILINE | re.DOTALL)

@@ -13,7 +13,8 @@ from pathlib import Path
 SOURCES = Path(sys.argv.pop(1))
 CORE = SOURCES / "vtkMarchingCorrectors" / "core"
 GUIDE = SOURCES / "Documentation" / "Guide"
-# The core's default is auto, which is 0 for the free surface; the filters say with Solids whether it ends at walls.
+# The core's default of this option is auto, which is 0 for the free surface. In the filters, Solids says whether the
+# surface ends at walls.
 DIFFERENT = {"WallShare": "-1"}
 
 
@@ -66,7 +67,8 @@ class Options(unittest.TestCase):
                 self.assertIn(frozenset(words.strip('"').split("|")), shown, member)
 
     def test_reuse_is_tried_with_each(self):
-        """Every option has a step in test_core_reuse.c, but not options that make another kind of surface."""
+        """Every option has a step in test_core_reuse.c, except the options listed here, which make another kind of
+        surface."""
         text = (SOURCES / "Testing" / "Core" / "test_core_reuse.c").read_text(encoding="utf-8")
         members = {row[0] for row in rows_of("OPTION")}
         self.assertEqual(members - set(re.findall(r"^STEP\((\w+),", text, re.M)),
@@ -75,7 +77,7 @@ class Options(unittest.TestCase):
 
 class Statistics(unittest.TestCase):
     def test_the_guide_names_the_keys_of_the_file(self):
-        """A page names statistics as --stats does: `scalar_range`, not ScalarRange."""
+        """The guide's pages name statistics as --stats does: `scalar_range`, not ScalarRange."""
         properties = {row[-1].strip('"') for row in rows_of("OPTION")}
         names = {name.strip('"') for _, _, _, name in rows_of("STATISTIC")} - properties
         names |= {"SmoothingLengthRange", "ScalarRange"}

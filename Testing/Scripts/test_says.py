@@ -22,12 +22,12 @@ from says import SLOTS, TEXTS, fill  # noqa: E402
 SAID = [file for folder, endings in (("vtkMarchingCorrectors", (".c", ".h", ".cxx")), ("Examples/CommandLine", (".cxx",)),
                                      ("Python", (".py",)))
         for file in sorted((SOURCES / folder).rglob("*")) if file.suffix in endings and "Testing" not in file.parts]
-# Settings that the program has no option for; it says none of their sentences.
+# Settings that the program has no option for. The program never prints the messages about them.
 NOT_IN_PROGRAM = {"blocks"}
 
 
 def words_of_program():
-    """Returns {member: option}, as the rows of Options.def have them."""
+    """Returns {member: option}: the core's member for each option, as the rows of Options.def give it."""
     rows = (SOURCES / "Examples/CommandLine/options/Options.def").read_text(encoding="utf-8").split('\nOPTION("--')[1:]
     words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # OptionWord does the same.
     for row in rows:
@@ -62,7 +62,7 @@ class Says(unittest.TestCase):
         self.assertGreater(found, 50)
 
     def test_print_all(self):
-        """Lists the sentences of each interface; one that differs between interfaces has a line for each."""
+        """Writes all messages to OUTPUT. A message that differs between interfaces has a line for each interface."""
         program, lines = words_of_program(), []
         for code, text in TEXTS.items():
             said = {"C, Python": fill(text, lambda name, value: name + (value and "=" + value)),

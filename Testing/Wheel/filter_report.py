@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-# Which array has which role, and defaults, before a run and in it.
+# What the filter finds before a run and in it: the arrays of each role, and defaults.
 FOUND = [f"Used{name}ArrayName" for name in ("SmoothingLength", "Volume", "Mass", "Density")] + [
     "UsedFluid", "UsedIsoValues", "IsoValueArrayName", "NextArray", "NextIsoValue", "NextScalarRange", "NextComponents",
     "NextDimension", "NextFluid", "NextCells"]
@@ -44,7 +44,7 @@ def report_mesh(surface):
 
 
 def report_fields(data):
-    """Returns field data as lists of numbers, or of one text."""
+    """Returns field data by name: an array of numbers as a list, a text as a list of one."""
     arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     return {array.GetName(): [array.GetValue(0)] if array.IsA("vtkStringArray") else vtk_to_numpy(array).ravel().tolist()
             for array in arrays if array.GetName() not in COSTS}

@@ -68,7 +68,8 @@ class Blender(unittest.TestCase):
         return mc.free_surface(particles, smooth=True, attributes=["vel"], **words)
 
     def test_frames(self):
-        """A frame's mesh is the surface that the package makes of this step, with its normals and velocities."""
+        """The mesh of a frame equals the surface that the package makes of the same step, with its normals and
+        velocities."""
         thing = self.import_steps()
         for frame in (1, 3, 11, 12, 40):
             self.scene.frame_set(frame)
@@ -83,7 +84,7 @@ class Blender(unittest.TestCase):
             self.assertLess(np.abs(normals - expected.normals[corners]).max(), 2e-3)
 
     def test_speed(self):
-        """In slow motion each step lasts for more frames, and velocities are per second of the scene."""
+        """In slow motion each step lasts for several frames, and velocities are per second of the scene."""
         thing = self.import_steps(speed=0.5)
         self.scene.frame_set(5)
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(2).points.astype("f4"))
@@ -92,7 +93,7 @@ class Blender(unittest.TestCase):
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(0).points.astype("f4"))
 
     def test_once(self):
-        """A frame is computed once; a changed setting computes the mesh anew."""
+        """The mesh of a frame is computed once. A changed setting computes it anew."""
         thing = self.import_steps(3)
         before = thing.data.vertices[0].co.copy()
         thing.data.vertices[0].co.x += 1
@@ -122,7 +123,7 @@ class Blender(unittest.TestCase):
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(5).points.astype("f4"))
 
     def test_errors(self):
-        """The core's sentence is reported, and later stands in the panel."""
+        """Blender reports the core's error, and the panel shows it later."""
         with self.assertRaisesRegex(RuntimeError, "no file"):
             bpy.ops.import_scene.sph_particles(filepath=str(FOLDER / "none.vtp"))
         thing = self.import_steps(3)
@@ -133,7 +134,7 @@ class Blender(unittest.TestCase):
         self.assertEqual(thing.sph.message, "")
 
     def test_usd(self):
-        """The exported film has the frames' meshes, at the scene's rate."""
+        """The exported USD film has the same meshes as the frames, at the scene's frame rate."""
         from pxr import Usd, UsdGeom
 
         thing = self.import_steps(4, speed=0.5)

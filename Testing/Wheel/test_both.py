@@ -25,7 +25,7 @@ PROGRAM, CXX = os.environ.get("MCOR_TEST_PROGRAM"), os.environ.get("MCOR_TEST_VT
 
 
 def codes_of(sentences):
-    """Returns the codes of the core's sentences, and other sentences as they are."""
+    """Returns the code of each sentence that is the core's, and other sentences as they are."""
     return [next((code for code in TEXTS if re.search(says(code), sentence)), sentence) for sentence in sentences]
 
 
@@ -79,7 +79,8 @@ def make_cases(folder):
 
 
 def make_found(folder):
-    """Makes sets of all kinds for which nothing is chosen. Returns {name: [file, what --list-arrays tells]}."""
+    """Makes particle sets of all kinds, with which nothing is chosen by options. Returns {name: [file, what
+    --list-arrays prints]}."""
     def of(name, *arrays, **more):
         return write(folder, "found " + name, *arrays, **more)
 
@@ -137,7 +138,7 @@ def make_found(folder):
 
 class Test(Case):
     def report(self, cases):
-        """Returns what the wheel's filter makes of the cases; where there is a C++ filter, it must make the same."""
+        """Returns the report of the wheel's filter on the cases. If there is a C++ filter, its report must be equal."""
         file, reports = self.folder / "cases.json", []
         file.write_text(json.dumps(cases))
         for python, environment in ((sys.executable, {}), (CXX, {"PYTHONPATH": os.environ.get("MCOR_TEST_VTK_PATH", "")}))[:2 if CXX else 1]:
@@ -186,7 +187,7 @@ class Test(Case):
         self.assertEqual(len(sets), 35)
 
     def test_given(self):
-        """Options are the same in all interfaces."""
+        """The same options give the same results in all interfaces."""
         cases = make_cases(self.folder)
         for (name, (file, scalar, value, properties, words, keywords, codes)), found in zip(
                 cases.items(), self.report([case[:4] for case in cases.values()])):

@@ -19,7 +19,8 @@ FLUID = ["--fluid", "ParticleType=0"]
 
 class Command(Case):
     def run_it(self, command, name, *words, program=(), status=0, given=DAM):
-        """Returns the file that the wheel's command wrote, and the program's file; program: its own options, None: it does not run."""
+        """Runs the wheel's command and the program. Returns the paths of the files that they wrote. program: options that only the program
+        gets; None: the program is not run."""
         path, other = (str(self.at(each)) for each in (name, "program_" + name))
         done = subprocess.run([sys.executable, "-m", "marchingcorrectors", command, given, path, *words],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -38,7 +39,7 @@ class Command(Case):
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
     def test_ply(self):
-        """The file is, byte for byte, the program's, with every array."""
+        """The .ply file has the same bytes as the program's, with every array."""
         for words in (["--free-surface"], ["--free-surface", "--smooth", "--iso", "0.4,0.5", "--curvature"],
                       ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"], ["--scalar", "Pressure", "--iso", "500,900"],
                       ["--scalar", "Velocity", "--component", "1", "--iso", "-0.1,0.1"], ["--scalar", "Velocity", "--iso", "1,2"]):
@@ -47,7 +48,8 @@ class Command(Case):
             self.assertTrue(mine == its, words)
 
     def test_lines(self):
-        """A table has the program's columns and numbers; a surface cannot be written as a table."""
+        """A table of lines has the same columns and numbers as the program's. A surface cannot be written as a
+        table."""
         line = np.arange(20) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3))
         data["R"], data["V"] = np.linalg.norm(data.points - [0.9, 0.9, 0], axis=1), data.points
@@ -82,7 +84,7 @@ class Command(Case):
         self.assertIn("but this is a surface", self.said)
 
     def test_period_and_curvature(self):
-        """The period comes from the file."""
+        """The period comes from the file's field data."""
         line = np.arange(12) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line[:6]), -1).reshape(-1, 3))
         data.field_data["PeriodicBounds"] = [0, 1.2, 0, 1.2, 0, 0]
@@ -96,7 +98,8 @@ class Command(Case):
             np.testing.assert_array_equal(mine["MeanCurvature"], its["MeanCurvature"])
 
     def test_left_out(self):
-        """If an array has several ranges, one of them must hold. Ranges of several arrays, and bounds, must all hold."""
+        """Particles outside of ranges and bounds are left out. If an array has several ranges, a value in any one of them passes. A
+        particle must pass for all arrays and bounds."""
         words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
                  "ParticleType=0"]
         mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"]))
@@ -104,7 +107,7 @@ class Command(Case):
         self.assertEqual(mine.points.tobytes(), its.points.tobytes())
 
     def test_particle_distance(self):
-        """h and volumes are found for DualSPHysics' particles without mass and density."""
+        """From --dp and --coefh, h and volumes follow for DualSPHysics' particles without mass and density."""
         line = np.arange(16) * 0.02
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3))
         data["Idp"] = np.arange(data.n_points)
@@ -125,7 +128,7 @@ class Command(Case):
                     self.assertAlmostEqual(float(one[name]), float(other[name]), places=6)
 
     def test_film(self):
-        """All steps of a file are measured, each at its time."""
+        """A gauge measures all steps of a file, each at its time."""
         line, path = np.arange(-4, 5) * 0.1, self.at("in.xyz")
         block = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
         path.write_text("".join(f"{len(block)}\nProperties=pos:R:3 Time={0.5 * i}\n"

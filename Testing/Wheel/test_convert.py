@@ -44,8 +44,8 @@ class Convert(Case):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def refuse(self, done, sentence, left=()):
-        """Checks that one line is printed, and that the folder is as it was, except for the files in `left`, which hold
-        "old"."""
+        """Checks that the command failed with one line on stderr, and that the folder is as before, except for the
+        files in `left`, which hold "old"."""
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr, "^marchingcorrectors: .*" + sentence + ".*\n$")
         self.assertEqual({p.name: p.read_bytes() for p in self.folder.iterdir() if p.is_file()},
@@ -133,7 +133,7 @@ class Convert(Case):
         self.assertFalse([p for p in self.folder.iterdir() if p.name.startswith(".")])
 
     def test_commands(self):
-        """Outputs of the other commands follow the same rules."""
+        """The other commands follow the same rules for outputs as convert."""
         os.rename(self.at("run_0000.vtp"), self.at("in.vtp"))
         self.at("link.npz").symlink_to("in.vtp")
         self.at("old.csv").write_text("old")

@@ -20,8 +20,8 @@ from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, wr
 
 
 def write_vtk(path, kind="", version=0):
-    """Writes a file as VTK does. kind: how a .vtp file packs its bytes, which stand behind the XML for LZ4; or "text". version: of a .vtk file of an
-    unstructured grid, as SPlisHSPlasH writes it."""
+    """Writes a file as VTK does. kind: how a .vtp file compresses its data, or "text" for a text file; with LZ4 the data follow the XML.
+    version: the version of a .vtk file with an unstructured grid, as SPlisHSPlasH writes it."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     if version:
@@ -88,7 +88,7 @@ class Hostile(Case):
         self.assert_refused("lies in other files", self.at("snap.hdf5"))
 
     def test_claims(self):
-        """Files claim sizes that they cannot have."""
+        """Refuses files that claim larger sizes than they can have."""
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file.create_dataset("PartType0/Coordinates", (10 ** 12, 3), "f8", chunks=(1024, 3))
         self.assert_refused("claims", self.at("snap.hdf5"))
@@ -128,7 +128,7 @@ class Hostile(Case):
         self.assert_refused("too short", self.at("bomb.bgeo"))
 
     def test_little_memory(self):
-        """A long word among 70,000 short ones must not cost much memory, though NumPy's arrays of words are as wide as the longest word."""
+        """A long word among many short ones must not cost much memory, though NumPy's arrays of words are as wide as the longest word."""
         self.at("text.vtk").write_text("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 30000 double\n"
                                        + "1" * 14000 + " 2" * 89999 + "\n")
         lines = ("import resource, sys", "from marchingcorrectors import io",
@@ -138,7 +138,7 @@ class Hostile(Case):
         self.assertEqual((done.returncode, done.stdout), (0, b"30000\n"))
 
     def test_written_anew(self):
-        """A running solver shortens the file after it was opened; and no file stays open."""
+        """A running solver may shorten a file after it was opened: this gives an error. No file stays open."""
         write_bi4(self.at("Part_0001.bi4"))
         particles = io.read(self.at("Part_0001.bi4"))
         self.at("Part_0001.bi4").write_bytes(self.at("Part_0001.bi4").read_bytes()[:1000])
@@ -151,7 +151,7 @@ class Hostile(Case):
         self.assertEqual(len(kept[0].positions), len(X))
 
     def test_cut_off(self):
-        """A file of each kind without its end gives one line on stderr, and no output file."""
+        """If its end is missing, a file of each kind gives one line on stderr, and no output file."""
         for name, make in (("Part_0001.bi4", write_bi4), ("fluid.bgeo", write_bgeo), ("body.vtp", write_vtk),
                            ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", lambda path: write_vtk(path, version=42)),
                            ("text.vtk", lambda path: write_vtk(path, "text", 42)), ("snap.hdf5", write_gadget)):
@@ -164,7 +164,7 @@ class Hostile(Case):
             self.assertFalse(self.at("out.vtp").exists())
 
     def test_cells(self):
-        """A damaged list of cells must not be followed, as VTK's own reader would follow it."""
+        """A damaged list of cells must not lead the reader beyond the data, as it leads VTK's own reader."""
         write_vtk(self.at("grid.vtk"), version=42)
         whole = self.at("grid.vtk").read_bytes()
         wanted = io.read(self.at("grid.vtk"))

@@ -34,7 +34,7 @@ print(*mc.devices(), sep=";")
 {after}
 """
 
-# This replaces the function `run` in RUN.
+# Code for `before` in RUN: prints a hash for every kernel and precision, and ends the process.
 ALL = """
 import hashlib
 from marchingcorrectors._options import words_of
@@ -66,7 +66,7 @@ class Case(unittest.TestCase):
 
 class Whole(Case):
     def test_all_kernels_are_built_in(self):
-        """The built-in device gives PoCL's bits."""
+        """The built-in device has all kernels and gives the same bits as PoCL."""
         built, here = self.run_it(system=False, before=ALL.format(device=None)), self.run_it(device="pocl")
         self.assertEqual(len(set(built)), 18)
         if here[0] != "DeviceError":
@@ -91,7 +91,8 @@ class Usual(Case):
         self.assertIn("built in: this CPU", sentence)
 
     def test_off_the_path(self):
-        """ParaView loads the plugin's file from a folder where Python does not look for packages."""
+        """The package works in a Python that does not look for packages in its folder, as in ParaView, which loads the
+        plugin's file from there."""
         before = "import sys; sys.path = [p for p in sys.path if not p.endswith('site-packages')]"
         self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
 
@@ -100,7 +101,7 @@ POSITIONS, DISTANCE = lattice(np.float32)
 
 
 class OnCuda:
-    """Is an array that has the interface of CuPy's arrays, and like them does not become one of NumPy by itself."""
+    """An array that has the interface of CuPy's arrays. Like them, it does not become a NumPy array by itself."""
 
     def __init__(self, array, strides=False, stream=None):
         self.array, self.shape, self.ndim = array, array.shape, array.ndim
@@ -116,7 +117,8 @@ class OnCuda:
 
 
 class OnlyDlpack:
-    """Has only DLPack's methods, and says that it is on a CUDA device. The tensor in its capsule, which NumPy makes, is on the host all the same."""
+    """An array that has only DLPack's methods and says that it is on a CUDA device. The tensor in its capsule, which NumPy makes, is in
+    fact on the host."""
 
     def __init__(self, array):
         self.array, self.streams = array, []
@@ -133,7 +135,7 @@ class OnlyDlpack:
 
 
 class Hidden:
-    """Raises as PyTorch's tensors do while they need a gradient."""
+    """An array that raises an error, as PyTorch's tensors do while they need a gradient."""
 
     @property
     def __cuda_array_interface__(self):
@@ -170,14 +172,14 @@ class Arrays(unittest.TestCase):
         return ctypes.c_int.in_dll(self.fake, "fake_" + name)
 
     def copied(self, function):
-        """Returns what the function returns, the number of copies and their bytes."""
+        """Calls the function. Returns its result, the number of copies that it caused, and their bytes."""
         bytes_of = ctypes.c_size_t.in_dll(self.fake, "fake_bytes")
         copies, before = self.number("copies").value, bytes_of.value
         result = function()
         return result, self.number("copies").value - copies, bytes_of.value - before
 
     def test_every_array(self):
-        """Each array is copied once, and all of it; a second surface locks no more memory."""
+        """Each array is copied once and whole. A second surface locks no more memory."""
         found, copies, size = self.copied(lambda: sphere(OnCuda))
         self.assertEqual(found, self.expected)
         self.assertEqual(copies, 6)
@@ -198,7 +200,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(mc.isosurface(POSITIONS, column, 0.4, **words), mc.isosurface(POSITIONS, DISTANCE, 0.4, **words))
 
     def test_strides(self):
-        """Columns of a table, reversed and transposed arrays are as on the host."""
+        """Columns of a table, and reversed and transposed arrays, give the same result as on the host."""
         table = np.concatenate([DISTANCE[:, None], POSITIONS, POSITIONS[:, :1]], axis=1)
         words = {"smoothing_length": H, "volume": V}
         found = mc.isosurface(OnCuda(table[:, 1:4], True), OnCuda(table[:, 0], True), 0.4, **words)
@@ -207,7 +209,8 @@ class Arrays(unittest.TestCase):
         self.assertEqual(found, mc.isosurface(POSITIONS[::-1], DISTANCE[::-1], 0.4, **words))
 
     def test_streams_pools_and_nothing(self):
-        """The array's stream is waited for. Memory of a pool belongs to no context. Arrays without particles are not copied."""
+        """The package waits for the array's stream. Memory of a pool, which belongs to no context, works. Arrays without particles are not
+        copied."""
         sphere(lambda array: OnCuda(array, stream=7))
         self.assertEqual(self.number("synchronized").value, 7)
         self.number("of_pool").value = 1

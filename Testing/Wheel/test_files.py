@@ -45,7 +45,7 @@ def write_gadget(path, part=slice(None), files=1, table=False, swift=False, peri
 
 
 def complete_swift(path):
-    """Adds everything else that swiftsimio needs."""
+    """Adds to a snapshot of SWIFT all attributes that swiftsimio needs."""
     counts, one, zero = np.array([len(X), 5, 0, 0, 0, 0, 0]), [1.0], [0.0]
     units = {f"Unit {name} in cgs (U_{letter})": one for name, letter in (
         ("mass", "M"), ("length", "L"), ("time", "t"), ("current", "I"), ("temperature", "T"))}
@@ -79,7 +79,7 @@ def write_phantom(path):
 
 
 def write_native(path):
-    """Writes Phantom's own dump, Fortran's blocks, as far as sarracen reads it."""
+    """Writes a dump in Phantom's own format, blocks as Fortran writes them, with the parts that sarracen reads."""
     def block(data):
         return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
 
@@ -134,8 +134,9 @@ class Case(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
     def fuzz(self, makers, least, tries, readings=({},), in_numbers=False):
-        """Reads each file after it was cut off, after bits of its head were turned, or after bits anywhere (in_numbers: numbers in its head) were changed:
-        either particles come, or a FileError of one line, which must happen at least `least` times. makers: {name: function(path, random)}."""
+        """Reads each file with its end cut off, with bits flipped in its head, or with bits flipped anywhere (in_numbers: with numbers in
+        its head replaced). Each reading gives particles, or a FileError of one line. More than `least` readings must give a FileError.
+        makers: {name: function(path, random)}."""
         random, refused = np.random.default_rng(44), 0
         for name, make in makers.items():
             make(self.at(name), random)
@@ -199,7 +200,7 @@ class Layouts(Case):
         self.assertTrue((io.read(self.at("snap.hdf5")).quantity("mass") == 0.001).all())
 
     def test_period(self):
-        """The period follows from the configuration of GADGET-4 and AREPO."""
+        """The period follows from the configuration that GADGET-4 and AREPO store in a file."""
         def period(**config):
             write_gadget(self.at("snap.hdf5"))
             with h5py.File(self.at("snap.hdf5"), "a") as file:
@@ -224,7 +225,7 @@ class Layouts(Case):
         self.assertLess(np.abs(particles.quantity("smoothing_length") - 2 * H).max(), 1e-12)
 
     def test_swiftsimio(self):
-        """SWIFT's own reader of its files reads the same."""
+        """swiftsimio, SWIFT's own reader, reads the same from a file."""
         if not importlib.util.find_spec("swiftsimio"):
             self.skipTest("swiftsimio, which wheel.swift installs, is not here")
         import swiftsimio
@@ -251,7 +252,7 @@ class Layouts(Case):
         self.assertEqual(particles.time, 7.0)
 
     def test_packages(self):
-        """The sentence gives packages by the names that pip knows."""
+        """If a package is missing, the error names it as pip does."""
         write_native(self.at("dump"))
         write_gadget(self.at("snap.hdf5"))
         for missing, name, packages in (("sarracen", "dump", "sarracen scikit-learn"), ("h5py", "snap.hdf5", "h5py")):
@@ -328,7 +329,7 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
     def test_sphinxsys(self):
-        """Writes files as SPHinXsys' own writer does, without VTK: as text, with a name even for vectors that are not there."""
+        """Reads files that are written as SPHinXsys writes them without VTK: as text, with a name even for vectors that are missing."""
         def write(name, chosen, arrays):
             def array(name, values, more=""):
                 kind = "Int32" if values.dtype.kind == "i" else "Float32"
@@ -364,7 +365,7 @@ class Layouts(Case):
             self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum(), wall)
 
     def test_partvtk(self):
-        """Types tell walls, in one file and in several, whatever the files' names are."""
+        """Particles' types say which are walls, in one file and in several, whatever names the files have."""
         kinds = np.where(WALL, 1, 3).astype(np.uint8)
         for name, chosen in (("PartAll_0001.vtk", X[:, 0] < 9), ("PartFluid_0001.vtk", ~WALL), ("PartMoving_0001.vtk", WALL)):
             body = pyvista.PolyData(X[chosen].astype(np.float32))
@@ -376,7 +377,7 @@ class Layouts(Case):
         self.assertIsNone(io.read(self.at("PartFluid_0001.vtk")).solid)
 
     def test_legacy_of_all_kinds(self):
-        """.vtk files of both versions, as text and bytes, with all classes and arrays of cells, are read as VTK reads them."""
+        """.vtk files of versions 4.2 and 5.1, as text and binary, with all kinds of cells and cell arrays, are read as VTK reads them."""
         for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
             body = pyvista.PolyData(X.astype(np.float32) if grid else X)
             body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)
@@ -395,7 +396,8 @@ class Layouts(Case):
             self.assertEqual(found.time, 0.75)
 
     def test_xml_of_all_kinds(self):
-        """.vtp and .vtu files as text, base64 and bytes, packed or not, in both byte orders and sizes of headers, are read as VTK reads them."""
+        """.vtp and .vtu files as text, base64 and binary, compressed or not, in both byte orders and both sizes of headers, are read as VTK
+        reads them."""
         random = np.random.default_rng(43)
         for mode, packed, order, header in itertools.product(
                 ("Ascii", "Binary", "Appended", "bytes"), ("None", "ZLib", "LZ4", "LZMA"), (0, 1), (32, 64)):
@@ -429,7 +431,8 @@ class Layouts(Case):
             self.assertEqual(found.time, 0.75)
 
     def test_vertices_in_a_mesh(self):
-        """Points that no vertex uses belong to a mesh; arrays of vertex cells are the particles'. VTK's writer made the files."""
+        """In a file with vertices, points that no vertex uses belong to a mesh and are left out. Arrays of the vertex cells become the
+        particles'. VTK's writer made the files."""
         box = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
         order = np.random.default_rng(44).permutation(len(X))
         cells = np.concatenate([box.cells, np.column_stack([np.ones(len(X), int), box.n_points + order]).ravel()])
@@ -468,7 +471,7 @@ class Layouts(Case):
             self.assertEqual(len(quietly(io.read, self.at("p.pvtu"))), count)
 
     def test_xml_in_pieces(self):
-        """Arrays that all pieces have are joined, one after the other."""
+        """The pieces of a file are joined one after the other. Only arrays that all pieces have are kept."""
         def piece(numbers, more=""):
             return (f'<Piece NumberOfPoints="{len(numbers)}"><PointData><DataArray type="Float64" Name="h" format="ascii">'
                     f'{" ".join(map(str, numbers))}</DataArray>{more}</PointData><Points><DataArray type="Float32" '
@@ -484,8 +487,8 @@ class Layouts(Case):
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
 
     def test_lists(self):
-        """Pieces are one set, without the copies that a piece has of another piece's particles. If a part occurs twice for one time, the later one
-        counts."""
+        """Pieces that a list names are one set. Copies that a piece has of another piece's particles are left out. If a list names a part
+        twice for one time, the later one counts."""
         def write(name, numbers, ghosts=()):
             text = " ".join(map(str, numbers))
             self.at(name).write_text(
@@ -521,7 +524,7 @@ class Layouts(Case):
                 io.read(self.at(kind))
 
     def test_quantities(self):
-        """Arguments replace what the file has, and nothing else; names are the core's."""
+        """Arguments of a call replace quantities of the file, and nothing else. They have the core's names."""
         body = pyvista.PolyData(X)
         body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
         body.save(self.at("body.vtp"))
@@ -564,7 +567,7 @@ class Layouts(Case):
         self.assertEqual(len(io.read(self.at("snap.0.hdf5"))), len(X))
 
     def test_legacy_strings(self):
-        """Texts in field data, beside numbers, are read from text and bytes."""
+        """Texts in field data, beside numbers, are read from text and binary files."""
         for binary in (False, True):
             body = pyvista.PolyData(X)
             body.field_data["constants"], body.field_data["TIME"] = ["h:0.025", "", "m 0.56", "x" * 300], [0.5]
@@ -586,7 +589,7 @@ class Layouts(Case):
         self.assertEqual((list(particles._positions._kept), particles.arrays._kept), ([""], {}))
 
     def test_kernels(self):
-        """Each solver's kernel name gives the surface of sph_kernel, with half of the support radius or the file's own h."""
+        """Each solver's name of a kernel gives the same surface as sph_kernel, with half of the support radius or the file's own h."""
         swift = {"Cubic spline (M4)": "cubic", "Quartic spline (M5)": "quartic", "Quintic spline (M6)": "quintic",
                  "Wendland C2": "wendland", "Wendland C4": "wendland_c4", "Wendland C6": "wendland_c6"}
         gizmo = {3: "cubic", 4: "quartic", 5: "quintic", 6: "wendland", 7: "wendland_c4", 9: "wendland_c6"}
@@ -624,7 +627,7 @@ class Layouts(Case):
 
 class Conversion(Case):
     def test_blocks(self):
-        """All blocks are one set, and blocks with names of walls are walls."""
+        """All blocks are one set of particles. Blocks whose names mean walls are walls."""
         blocks = pyvista.MultiBlock()
         for name, chosen in (("water", ~WALL), ("wall", WALL)):
             blocks[name] = pyvista.PolyData(X[chosen])

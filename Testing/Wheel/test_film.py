@@ -25,7 +25,7 @@ DX, SPIN, WORDS = 0.05, 2.0, ["--smoothing-length", "0.065", "--mass", "0.125", 
 
 
 def drop(time=0.0, radius=8, at=(0.0, 0.0, 0.0)):
-    """Returns a drop that spins around z: places and velocities."""
+    """Returns the places and velocities of a drop's particles, which spins around z."""
     line = np.arange(-radius, radius + 1) * DX
     sites = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
     sites = sites[(sites ** 2).sum(axis=1) < (radius * DX) ** 2]
@@ -75,7 +75,8 @@ class Films(Case):
         return np.array(prim.GetAttribute(name).Get(code))
 
     def test_steps(self):
-        """Each sample is the surface that the functions make of the step, and the velocity is the field's there."""
+        """Each time sample holds the surface that the functions make of the step. Velocities are the field's at the
+        surface's points."""
         paths = self.write_steps()
         empty = pyvista.PolyData()
         empty.field_data["TimeValue"] = [0.3]
@@ -113,7 +114,8 @@ class Films(Case):
         self.assertNotIn("primvars:Big", [each.GetName() for each in mesh.GetAttributes()])
 
     def test_between_steps(self):
-        """Particles move on circles. Slow motion has a mesh for each frame, and velocities per second of the film."""
+        """Tests frames between two steps, with particles that move on circles. Slow motion has a mesh for each frame,
+        and velocities per second of the film."""
         self.write_steps(times=(0.0, 0.1))
         steps = [self.at(f"step_{i}.vtp") for i in (9, 10)]
         self.run_it("surface", *steps, "a.usdc", *WORDS, "--times", "0.03,0:0.1:0.05", "--fps", "100")
@@ -141,7 +143,8 @@ class Films(Case):
         self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, "--times", "0.05", status=1), "step_9.vtp has no ids")
 
     def test_convert(self):
-        """Surfaces that the program wrote, given as a list or one by one, make the film that the command makes."""
+        """`convert` makes of surfaces that the program wrote, given as a list or one by one, the same film as the
+        command surface."""
         paths = self.write_steps()
         words = ["--smooth", *WORDS]
         if PROGRAM:
@@ -165,7 +168,8 @@ class Films(Case):
         self.assertRegex(self.run_it("convert", "film_0000.vtp", "film.pvd", "film_0000.vtp", status=1), "would overwrite")
 
     def test_spray(self):
-        """Drops of three particles, and single ones, become balls; a larger drop, and a bubble, stay surface."""
+        """Drops of three particles, and single particles, become balls of spray. A larger drop and a bubble stay in the
+        surface."""
         points = drop()[0]
         points = points[np.linalg.norm(points, axis=1) > 0.15]
         small = np.array([[0, 0, 0], [DX, 0, 0], [0, DX, 0]]) + [0.9, 0, 0]
@@ -218,7 +222,7 @@ class Films(Case):
         self.assertFalse(curves.HasAttribute("primvars:velocity"))  # Blender would use it instead of the film's velocities.
 
     def test_save(self):
-        """A film of one surface keeps arrays whose names USD does not allow."""
+        """save() writes one surface as a film, and keeps arrays whose names USD does not allow, under other names."""
         points, velocities = drop()
         surface = mc.free_surface(points, smoothing_length=0.065, attributes={
             "a b": points[:, 0], "a_b": points[:, 1], "V": velocities, "matrix": np.zeros((len(points), 9)), "2": points[:, :2]})
@@ -232,7 +236,7 @@ class Films(Case):
             self.assertEqual(self.values(mesh, "primvars:_2", 0).shape, (len(surface.points), 2))
 
     def test_changing_arrays(self):
-        """An array that a step lacks has no value there, not the value of the step before."""
+        """An array that a step lacks has no value at its time, instead of the value of the step before."""
         points, velocities = drop(radius=3)
         with Film(self.at("a.usdc")) as film:
             for time, attributes in enumerate(({"a": points[:, 0]}, {"b": points[:, 0], "v": velocities}, {"a": points[:, 0]})):
@@ -246,7 +250,7 @@ class Films(Case):
         self.assertEqual([len(self.values(prims["spray"], "points", 24 * time)) for time in range(3)], [0, 1, 2])
 
     def test_interrupted(self):
-        """Ctrl-C keeps the steps that were made; any other error leaves no file."""
+        """If Ctrl-C ends a film, the file holds the steps that were made. Any other error leaves no file."""
         points = drop(radius=3)[0]
         surface = mc.free_surface(points, smoothing_length=0.065)
         Path(self.at("b.usdc")).write_text("old")
@@ -324,7 +328,7 @@ class Films(Case):
             self.assertEqual(len(prims["surface"].GetAttribute("velocities").GetTimeSamples()), 3)
 
     def test_up(self):
-        """The up axis is y if the file's solver has it so."""
+        """The film's up axis is y if the solver of the input file uses y."""
         write_bgeo(self.at("in.bgeo"))
         self.run_it("surface", "in.bgeo", "film.usdc", "--smoothing-length", "estimate")
         stage, prims = self.open("film.usdc")

@@ -89,7 +89,7 @@ class Test(unittest.TestCase):
         self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)
 
     def test_dualsphysics(self):
-        """The recipes are run on a dam break's spray, and on water that ends at walls."""
+        """Runs the recipes for DualSPHysics on a dam break's spray, and on water that ends at walls."""
         particles = pyvista.read(SOURCES / "Examples" / "Data" / "dam_break_45k.vtp")
         bare = pyvista.PolyData(particles.points)
         bare["Rhop"] = particles["Density"]
@@ -102,7 +102,7 @@ class Test(unittest.TestCase):
         self.assertLess(outside, 0.7 * many)
 
     def test_splishsplash(self):
-        """The recipe is run on a real run's particles."""
+        """Runs the recipe for SPlisHSPlasH on the particles of a real run."""
         particles = pyvista.read(SOURCES / "Examples" / "Data" / "double_dam_break_small.vtp")
         bare = pyvista.PolyData(particles.points)
         bare["velocity"] = particles["Velocity"]
@@ -113,7 +113,7 @@ class Test(unittest.TestCase):
         self.assertLess(outside, 0.01 * many)
 
     def test_splash(self):
-        """The recipe is run on drops of one and of two particles beside a block."""
+        """Runs recipes on drops of one and of two particles beside a block."""
         drops = np.array([[1.5 + i, 0.0, k] for i in range(4) for k in range(3)])
         particles = pyvista.PolyData(np.concatenate([X, drops, drops[::2] + [0, 0, SPACING]]))
         particles["Rhop"], particles["Mass"] = np.full((2, particles.n_points), 1000.0)
@@ -122,7 +122,8 @@ class Test(unittest.TestCase):
             self.assertEqual(bodies_of(recipes()[name](particles, size)), 1 + len(drops), name)
 
     def measure(self, name, file, recipe, volume, words):
-        """Returns (bodies, particles outside of the surface) of the recipe, and the same with one volume for all particles."""
+        """Runs a recipe, then the same with one volume for all particles. Returns (number of bodies, number of particles outside of the
+        surface) of each."""
         rows = []
         for surface, more in ((recipe(file), {}), (file.sph.free_surface(volume=volume, **words), {"volume": volume})):
             weights = file.sph.probe(pyvista.PolyData(file.points), attributes=[], **words, **more)["WeightSum"]
@@ -163,7 +164,7 @@ def check(programs):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in programs.items():
             (Path(folder) / name).write_text(text)
-        # Other packages have no types, and functions in the guide need none.
+        # Other packages may lack types, and functions in the guide need none.
         words = ["--strict", "--disable-error-code=import-untyped", "--disable-error-code=no-untyped-def"]
         mypy = subprocess.run([sys.executable, "-m", "mypy", *words, *programs], cwd=folder, stdout=subprocess.PIPE, text=True)
         pyright = subprocess.run([sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--outputjson", "."], cwd=folder, stdout=subprocess.PIPE,

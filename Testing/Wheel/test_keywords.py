@@ -23,7 +23,7 @@ ARRAYS = {"Radius": np.linalg.norm(X, axis=1), "Noise": np.sin(12.9898 * np.aran
 ARRAYS["Blob"] = 1e-6 + 0.0016 * np.abs(ARRAYS["Noise"])
 LINES, SECTIONS = {"a": ((-1, 0.01, 0), (1, 0.01, 0))}, {"a": ("disc", (0.17, 0, 0), (1, 0, 0), 0.6)}
 POINTS = np.stack([0.04 * np.arange(20) - 0.3, 0.02 + 0 * np.arange(20), 0.03 + 0 * np.arange(20)], axis=1)
-# These are the positional arguments of each function, with names in place of arrays.
+# The positional arguments of each function, with names in place of arrays.
 CALLS = {"isosurface": {"scalar": "Radius", "iso": 0.3}, "free_surface": {}, "probe": {"points": POINTS, "attributes": ["Radius"]}, "derivatives": {"attributes": ["Velocity"]},
          "widening": {}, "gauge": {"lines": LINES}, "flux": {"velocity": "Velocity", "sections": SECTIONS}, "project": {"resolution": 20}}
 NOISE = {"scalar": "Noise", "iso": 0.1, "cube_size_factor": 1.0}
@@ -37,7 +37,7 @@ def closed():
     return context
 
 
-# {keyword: (value, keywords that are there with and without it)}
+# {keyword: (value, keywords that both calls have, with it and without it)}
 TRIALS = {
     "scalar": ("Noise", {}), "iso": (0.25, {}), "scalar_dot": ("Spin", {"scalar": "Velocity", "iso": 0.01}), "points": (POINTS + 0.1, {}),
     "attributes": (["Noise"], {}), "array": ("Spin", {}), "form": ("standard", {}), "return_volume": (True, {}),
@@ -54,14 +54,14 @@ TRIALS = {
     "iteration_limit": (1, NOISE), "node_threshold": (0.9, {}), "boundary_detection": ("eigenvalue", {"iso": 0.4}),
     "vertex_threshold": (0.95, {}), "wall_share": (0.3, SOLIDS), "precision": ("double", {}), "memory_limit": (1, {}),
     "normals": (False, {}), "triangle_normals": (True, {})}
-# These functions need another trial of the keyword.
+# {(function, keyword): trial}, for functions that need another trial of the keyword.
 DROPS, SCALAR = {"volume": "Blob", "smoothing_length": 0.1, "cube_size_factor": 1.0}, {"scalar": "Radius"}
 OTHER_TRIALS = {
     ("free_surface", "topology"): ("field", DROPS), ("widening", "wall_share"): (0.3, {**SOLIDS, **COMPUTED}), ("flux", "ignore_solids"): (True, SOLIDS), **{(function, "ignore_solids"): (True, {**SOLIDS, **COMPUTED, "wall_share": 0.3}) for function in (
             "free_surface", "widening")}, ("widening", "widen"): (3, {}), ("project", "volume"): ("Space", SCALAR),
     ("project", "density"): (2000.0, SCALAR), ("project", "precision"): ("double", {**SCALAR, **COMPUTED}),
     ("project", "memory_limit"): (1, {**SCALAR, **COMPUTED}), ("project", "ignore_solids"): (True, {**SCALAR, **SOLIDS, **COMPUTED})}
-# These keywords change nothing, for the reason at the end of the line.
+# Keywords that change nothing, and why.
 HOLDS = {("accessor", "isosurface", "seeds")}  # Pairs miss nothing of this surface; its statistics, which PyVista lacks, differ.
 
 
@@ -87,7 +87,7 @@ class Keywords(unittest.TestCase):
         cls.kept = {}  # These are results without the keyword.
 
     def call(self, interface, function, words):
-        """Returns the result, and what was said."""
+        """Calls the function. Returns its result, and its warnings or error."""
         words = {name: value() if value is closed else value for name, value in {**CALLS[function], **words}.items()}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
@@ -110,7 +110,7 @@ class Keywords(unittest.TestCase):
         return result, [str(each.message) for each in caught]
 
     def judge(self, interface, function, keyword):
-        """Returns what a keyword does, or None if it does nothing."""
+        """Returns what a keyword does in a function, or None if it does nothing."""
         value, context = OTHER_TRIALS.get((function, keyword), TRIALS.get(keyword, (True, {})))  # All other keywords ask for outputs.
         parameters = inspect.signature(getattr(mc if interface != "accessor" else self.data.sph, function)).parameters
         context = {name: each for name, each in context.items() if name in parameters}

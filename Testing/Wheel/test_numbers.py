@@ -79,7 +79,7 @@ class Flux(unittest.TestCase):
 
 class Project(unittest.TestCase):
     def test_directions(self):
-        """core_project compares the pixels."""
+        """Tests directions and sums; core_project compares the pixels."""
         for direction in ("x", (0, -2, 0), None):
             image = mc.project(POINTS, direction=direction, **WHOLE)
             self.assertAlmostEqual(image.values.sum() * image.pixel_area, M.sum(), delta=0.1)
@@ -89,7 +89,7 @@ class Project(unittest.TestCase):
 
 class OtherParticles(Case):
     def particles(self, x, columns):
-        """Returns the particles as PyVista's, and read from a file, and their places."""
+        """Returns the particles as PyVista's accessor, the same particles as read from a file, and their positions."""
         data = pyvista.PolyData(x)
         for name, values in columns.items():
             data[name] = values
@@ -97,7 +97,7 @@ class OtherParticles(Case):
         return data.sph, mc.io.read(self.at("particles.vtp")), np.asarray(data.points)
 
     def test_gauge_and_flux(self):
-        """Densities are made of the files' masses and volumes."""
+        """gauge() and flux() compute densities from the masses and volumes of files and of PyVista's points."""
         sph, file, x = self.particles(X, {"Velocity": UNIFORM, "h": np.full(len(X), H), "Volume": np.full(len(X), V),
                                           "Mass": np.full(len(X), 1000 * V)})
         lines, sections = {"mast": UP}, {"a": DISC}
@@ -115,7 +115,7 @@ class OtherParticles(Case):
             self.assertLess(abs(found.volume_flux[0] - 3 * sphere.volume), 1e-3)  # outwards
 
     def test_project(self):
-        """Projections use masses even where there are volumes."""
+        """Projections use masses even if there are volumes."""
         sph, file, x = self.particles(POINTS, {"Mass": M, "h": SMALL + 0.1, "Volume": SMALL + 1})
         words = {"smoothing_length": SMALL + 0.1, "mass": M, "volume": SMALL + 1, "direction": "x", "resolution": 10}
         for given, scalars in (({}, ()), ({"weighted_by": "Mass"}, ("Mass",))):

@@ -24,7 +24,8 @@ H, V = 0.13, 0.001
 
 
 def lattice(dtype=np.float64):
-    """Returns a cube of particles, moved a little from a lattice, and their distances from its middle."""
+    """Returns the positions of particles in a cube, moved a little from a lattice, and their distances from its
+    centre."""
     random = np.random.default_rng(1)
     indices = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3)
     positions = indices * 0.1 + random.normal(0, 0.004, (N ** 3, 3))
@@ -51,7 +52,7 @@ class Results(unittest.TestCase):
         radius = np.linalg.norm(surface.points - 0.65, axis=1)
         self.assertGreater(len(surface.triangles), 500)
         self.assertLess(np.abs(radius - 0.4).max(), 0.03)
-        # Normals point to lower values, here to the middle.
+        # Normals point to lower values, here to the centre.
         inwards = np.einsum("ij,ij->i", surface.normals, 0.65 - surface.points)
         self.assertGreater(inwards.min(), 0)
         self.assertEqual((surface.points.dtype, surface.triangles.dtype, surface.normals.dtype),
@@ -106,7 +107,7 @@ class Results(unittest.TestCase):
         self.assertIn("'bad'", str(caught[0].message))
 
     def test_left_out(self):
-        """Particles that are left out change nothing, whatever they hold."""
+        """Particles that `within` or `only` leaves out change nothing, whatever their values are."""
         kind = np.arange(N ** 3) % 4
         near = POSITIONS[:, 0] < 0.7
         for more, present in (({"within": (-np.inf, 0.7, -1, 2, -1, 2)}, near),
@@ -156,7 +157,8 @@ class Results(unittest.TestCase):
                 mc.probe(POSITIONS, POSITIONS[:5], outputs=outputs, smoothing_length=H, attributes={"d": DISTANCE})
 
     def test_widening(self):
-        """The factors, with the volumes of the original lengths, make the same surface if cubes have one size."""
+        """Lengths multiplied by the factors of widening(), with the volumes of the original lengths, make the same
+        surface as `widen` if cubes have one size."""
         for given in ({}, {"volume": 1e-3}):
             words = {"cube_size": H / 2, **given}
             factors, volume = mc.widening(POSITIONS, smoothing_length=H, return_volume=True, **words)
@@ -252,7 +254,8 @@ class Inputs(unittest.TestCase):
 
 class Refused(unittest.TestCase):
     def check(self, error, *cases, call=sphere, **common):
-        """Each of `cases` is a sentence, then keywords; a call with any of these keywords fails with the sentence."""
+        """Checks calls that fail. Each of `cases` is a sentence, followed by dictionaries of keywords; a call with each
+        of these fails with the sentence."""
         for sentence, *several in cases:
             for words in several:
                 with self.subTest(str(words)[:80]), self.assertRaisesRegex(error, sentence):
@@ -340,8 +343,8 @@ class Neighbours(unittest.TestCase):
     """Tests smoothing lengths that are estimated for each particle."""
 
     def test_densities(self):
-        """If "Density" is asked for and missing, it is summed from masses; core_neighbour_sums compares the sums. Particles that are left out play no part
-        in it."""
+        """If the scalar "Density" is missing, it is summed from masses; core_neighbour_sums compares the sums. Particles that are left out
+        do not change the sums."""
         x = np.random.default_rng(3).normal(size=(200, 3))
         more = np.concatenate([x, [[np.nan, 0, 0], [50, 0, 0]]])
         words = dict(field="sum", node_threshold=0, vertex_threshold=0, estimate_smoothing_length="neighbours", mass=1.0)
@@ -395,7 +398,7 @@ class Runs(unittest.TestCase):
             sphere(progress=fail)
 
     def test_callback_that_uses_its_own_context(self):
-        """A callback may not use its own context, which would wait for itself."""
+        """A callback must not use its own context, which would wait for itself; using the context is refused."""
         with mc.Context() as context:
             for use in (context.close, context.release_memory, lambda: sphere(context=context)):
                 with self.assertRaisesRegex(mc.InvalidArgument, "callback"):

@@ -75,7 +75,7 @@ for time in times:
     cells.append(servermanager.Fetch(surface).GetNumberOfCells())
 assert min(cells) > 300, cells
 
-# The reader reads tables, and files that hold several times.
+# The reader also reads tables, and files that hold several times.
 with open(os.path.join(folder, "steps.xyz"), "w") as file:
     for i in range(3):
         file.write(f"{len(cube)}\nProperties=species:S:1:pos:R:3:h:R:1 Time={0.5 * i}\n")

@@ -46,7 +46,7 @@ class Signatures(unittest.TestCase):
                 mc.widening, sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge, sph.flux, sph.project]
 
     def test_options_are_those_of_the_header(self):
-        """Every option of the core is a keyword, except options for ranks, and options that have another form."""
+        """Every option of the core is a keyword, except counts and options that have another form in Python."""
         numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
         numbers.update(name[len("MCOR_OUT_"):].lower() for name in _structs.ENUMS["mcor_output"])
         others = {name for name in numbers if name.endswith("_count") or name in (
@@ -81,7 +81,7 @@ class Signatures(unittest.TestCase):
         self.assertNotRegex(inspect.getdoc(mc.probe), "Compact|Widening")  # the panel's words
 
     def test_shown_defaults_are_the_defaults(self):
-        """Passing the signature's defaults changes nothing."""
+        """A call with all defaults that the signature shows gives the same result as a call without them."""
         shown = {name: parameter.default for name, parameter in inspect.signature(mc.isosurface).parameters.items()
                  if name in _options.ISOSURFACE}
         again = sphere(**shown)
@@ -202,7 +202,7 @@ class Objects(unittest.TestCase):
         self.assertEqual(quietly(mc.gauge, again, [[[0.6, 0.6, -1], [0.6, 0.6, 2]]], smoothing_length="distance").names, ["0"])
 
     def test_context_is_not_copied(self):
-        """A copy would release the same device twice."""
+        """A context cannot be copied: a copy would release the same device twice."""
         with mc.Context() as context:
             for make in (copy.copy, copy.deepcopy, pickle.dumps):
                 with self.assertRaisesRegex(TypeError, "copied or pickled"):
@@ -273,7 +273,7 @@ class Inputs(unittest.TestCase):
 
     def test_dlpack(self):
         class Tensor:
-            """Has the two methods that DLPack requires."""
+            """An array that has only the two methods that DLPack requires."""
 
             def __init__(self, array):
                 self.array = array
@@ -297,7 +297,7 @@ class Inputs(unittest.TestCase):
             mc.isosurface(POSITIONS, Elsewhere(DISTANCE), 0.4, smoothing_length=H)
 
     def test_units(self):
-        """Metres and centimetres may be mixed, in two libraries."""
+        """Arguments may mix metres and centimetres, with pint and with unyt."""
         registry = pint.UnitRegistry()
         for metre, centimetre, kilogram, gram, second in (
                 (registry.m, registry.cm, registry.kg, registry.g, registry.s),

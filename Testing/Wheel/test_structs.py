@@ -17,7 +17,7 @@ NAMES = "mcor_parts.h", "mcor.h", "mcor_find.h"
 
 
 def made_of(texts, folder):
-    """Returns all files that make_structs.py writes, by name."""
+    """Returns the contents of all files that make_structs.py writes, by name."""
     folder.mkdir()
     (folder / "grid").mkdir()
     for name in ("mcor_statistics.def", "mcor_options.def", "mcor_says.def", "grid/mcor_sph_kernel.h"):
@@ -30,7 +30,7 @@ def made_of(texts, folder):
 
 
 def with_other_lines(text):
-    """Puts each token on its own line, except for comments, which stay behind what they follow."""
+    """Returns the text with each word on a line of its own. Comments and lines of the preprocessor stay as they are."""
     parts = re.split(r"(/\*.*?\*/|^[ \t]*#[^\n]*)", text, flags=re.M | re.S)
     return "".join(part if i % 2 else re.sub(r"\s+(?=\S)", "\n", part) for i, part in enumerate(parts))
 
@@ -44,7 +44,7 @@ def formatted(text, columns):
 
 
 def rows_lack(folder):
-    """Returns members of mcor_options and mcor_statistics that have no row in the .def files."""
+    """Returns the members of mcor_options and mcor_statistics that have no row in the .def files."""
     scope = {}
     exec((folder / "_structs.py").read_text(encoding="utf-8"), scope)  # This is the file that was just written.
     rows = {*scope["OPTIONS"], *(member for _, _, member, _ in scope["STATISTICS"])}

@@ -97,7 +97,8 @@ def install(python, wheels, environment, *packages):
 
 
 def add_intel(wheels, folder, environment):
-    """Installs a driver under wine: OpenCL.dll in place of wine's own, and the driver's name in the registry."""
+    """Installs Intel's OpenCL driver under wine: OpenCL.dll in place of wine's own, and the driver's name in the
+    registry."""
     folder.mkdir()
     for wheel in (*wheels.glob("intel_opencl_rt-*.whl"), *wheels.glob("tbb-*.whl")):
         with zipfile.ZipFile(wheel) as archive:
@@ -117,7 +118,7 @@ def check_windows(folder, here):
         skip("the modules of CPython %d.%d are wanted, and this is %d.%d." % (*VERSION, *sys.version_info[:2]))
     wheel = wheel_for("windows", "MCOR_WINDOWS_WHEEL", folder)
     python = make_windows_python(folder)
-    # wine reads names of files by the locale.
+    # wine reads names of files in the locale's encoding.
     environment = {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8", "PYTHONIOENCODING": "utf-8"}
     os.environ.pop("PYTHONPATH", None)
     try:
@@ -135,7 +136,7 @@ def check_windows(folder, here):
 
 
 def make_arm64_root(root):
-    """Unpacks Debian's packages for arm64; none of their scripts runs."""
+    """Unpacks Debian's packages for arm64 without running their scripts."""
     done = subprocess.run(["debootstrap", "--arch=arm64", "--foreign", "--variant=minbase", "--include=python3-numpy",
                            "bookworm", root], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode:

@@ -23,7 +23,7 @@ WORDS = ("O", "H2", "Ar")
 
 
 def random_rows(random, columns):
-    """Returns a table of random numbers as programs write them."""
+    """Returns rows of random numbers as text, in a form that programs write."""
     count = random.integers(1, 60)
     form = random.choice(["%.17g", "%.6e", "%12.5f"])
     values = random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))
@@ -31,7 +31,8 @@ def random_rows(random, columns):
 
 
 def write_csv(path, random):
-    """Writes a .csv file as ParaView, DualSPHysics or others do. Returns its names, columns of positions, vectors and separator."""
+    """Writes a .csv file as ParaView, DualSPHysics or other programs do. Returns the columns' names, the columns of the positions, {vector:
+    columns} and the separator."""
     names, positions, vectors, separator = (
         (["Vel:0", "Vel:1", "Vel:2", "id", "Points:0", "Points:1", "Points:2", "Rhop"], (4, 5, 6), {"Vel": (0, 1, 2)}, ","),
         (["Pos.x [m]", "Pos.y [m]", "Pos.z [m]", "Idp", "Vel.x [m/s]", "Vel.y [m/s]", "Vel.z [m/s]"], (0, 1, 2),
@@ -85,8 +86,8 @@ def write_lammps(path, random, steps, scaled):
 
 
 def write_gadget_binary(path, random, named=False, order="<", double=False, files=1):
-    """Writes a snapshot as GADGET-2 does: gas, dark matter and stars; the header has the mass of dark matter. Returns {label: values of all
-    types}."""
+    """Writes a snapshot as GADGET-2 does: gas, dark matter and stars. The mass of dark matter is in the header. Returns {label: values of
+    all types}."""
     counts = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0]
     table = [0, 2.5, 0, 0, 0, 0]
     total, real = sum(counts), order + ("f8" if double else "f4")
@@ -171,7 +172,8 @@ def write_data(path, random, style="atomic"):
 
 
 def write_h5part(path, random, steps):
-    """Writes a file as SPH-EXA does, with steps in another order than their names. Returns the columns of each step."""
+    """Writes an H5Part file as SPH-EXA does. The order of its steps is not the order of their names. Returns the
+    columns of each step."""
     made = []
     with h5py.File(path, "w") as file:
         for step in range(steps):
@@ -213,7 +215,7 @@ TRIES, ENDS = int(os.environ.get("MCOR_MUTATIONS", "90")), ({"step": 0}, {"step"
 
 
 class AgainstNumPy(Case):
-    """Tests 40 random files of each kind."""
+    """Compares 40 random files of each kind with NumPy's reading of the same bytes."""
 
     def randoms(self, count=40):
         return (np.random.default_rng([44, seed]) for seed in range(count))
@@ -325,7 +327,8 @@ VECTORS = "20 0 0 1\n4 20 0 2\n2 3 20 3\n"
 XYZ = 'Properties=species:S:1:pos:R:3 Lattice="{}" pbc="{}"'
 TWO = 'A 1 2 3\nB 4 5 6\n'
 
-# Each case has a file's name, its text, and what both readers must do: give a sentence with these words (the program's|Python's, if they differ), or read it with this period.
+# Each case has a file's name, its text, and what both readers must do: refuse it with a sentence that has these words (the
+# program's|Python's, if they differ), or read it with this period.
 CASES = {
     "columns": ("a.csv", "x,y,z,Rhop,Vel:0,Vel:1,Vel:2\n1,2,3,1000,1,2,3\n4,5,6,1001,4,5,6\n", None),
     "names that stand twice": ("a.csv", "x,y,z,a,a,a_\n1,2,3,4,5,6\n4,5,6,7,8,9\n", None),
@@ -387,7 +390,7 @@ PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is t
 
 
 class Others(Case):
-    """Tests formats that only Python reads: random files are compared with the numbers in them."""
+    """Tests formats that only Python reads. Random files are compared with the numbers that were written to them."""
 
     def randoms(self):
         return (np.random.default_rng([57, seed]) for seed in range(12))
@@ -486,7 +489,7 @@ class Others(Case):
             self.assert_refused("NO_SERIES", self.at("p.vtk.series"))
 
     def test_packed(self):
-        """Text files may be packed by gzip, in one part or several."""
+        """Text files may be compressed by gzip, in one part or several."""
         writers = {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 2, True),
                    "a.dump": lambda path, r: write_lammps(path, r, 2, True), "a.gro": lambda path, r: write_gro(path, r, 2),
                    "a.data": write_data, "a.ply": lambda path, r: write_ply(path, r, "ascii")}
@@ -513,7 +516,7 @@ class Others(Case):
 
 @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
 class AsTheProgram(Case):
-    """The program and Python read the same from a file, or both refuse it."""
+    """Checks that the program and Python read the same from a file, or both refuse it."""
 
     def list_arrays(self, path):
         return subprocess.run([os.environ["MCOR_TEST_PROGRAM"], "--list-arrays", str(path)], stdout=subprocess.PIPE,
@@ -567,7 +570,8 @@ class AsTheProgram(Case):
         self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
 
     def test_tilted_cells(self):
-        """Positions are worked out by hand; and a period that is asked for is used, or refused with a sentence."""
+        """In tilted boxes, positions are those worked out by hand. A period of such a box is used on request, or
+        refused with a sentence."""
         for case in ("a tilted box", "a tilted box of one period", "vectors"):
             self.at("a.dump").write_text(CASES[case][1])
             low = np.array([1.0, 2, 3]) if case == "vectors" else np.zeros(3)
@@ -585,7 +589,8 @@ class AsTheProgram(Case):
                 mc.free_surface(io.read(self.at(name)), smoothing_length=9.0)
 
     def test_no_circle(self):
-        """If the program cannot read a file, its sentence names the command that converts the file, and this command reads the whole file."""
+        """If the program cannot read a file, its sentence names the command that converts the file, and this command can read the whole
+        file."""
         random = np.random.default_rng(3)
         writers = {"a.npz": write_npz, "a.npy": lambda path, r: np.save(path, r.normal(size=(20, 3))),
                    "a.gro": lambda path, r: write_gro(path, r, 2), "a.data": write_data,
@@ -650,7 +655,7 @@ class Tables(Case):
             self.assertEqual(io.read(self.at("p.csv")).positions.tolist(), [[1, 2, 3]])
 
     def test_surface(self):
-        """A surface from a file alone equals the one from arrays; walls may be in a file of their own."""
+        """A surface made from a file alone equals the surface made from arrays. Walls may be in a file of their own."""
         line = np.arange(-4, 5) * 0.1
         x = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
         np.savetxt(self.at("water.csv"), np.column_stack([x, np.full(len(x), 0.13), np.full(len(x), 1e-3)]), "%.17g", ",",
@@ -662,7 +667,7 @@ class Tables(Case):
         self.assertEqual(both.solid.tolist(), [False] * len(x) + [True])
 
     def test_film(self):
-        """All steps of a file are converted, with their times."""
+        """convert() converts all steps of a file, with their times."""
         write_xyz(self.at("p.xyz"), np.random.default_rng(5), 3, True)
         write_gadget_binary(self.at("snap"), np.random.default_rng(5))
         convert([self.at("p.xyz"), self.at("snap")], self.at("film.pvd"))
@@ -686,7 +691,7 @@ class Tables(Case):
         self.assert_refused("snap.1 is missing", self.at("snap.0"))
 
     def test_fuzz(self):
-        """Files with flipped bits or other numbers are read or refused."""
+        """Files with flipped bits or other numbers are read or refused, see Case.fuzz."""
         self.fuzz({"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 3, True),
                    "b.xyz": lambda path, r: write_xyz(path, r, 2, False), "a.dump": lambda path, r: write_lammps(path, r, 2, True),
                    "a.gadget": write_gadget_binary, "b.gadget": lambda path, r: write_gadget_binary(path, r, True, ">", True),

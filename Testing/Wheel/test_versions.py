@@ -24,7 +24,8 @@ def versions():
 
 
 def find(version):
-    """Returns the Python of this version, on the PATH or in pyenv; one that cannot make environments does not count."""
+    """Returns a Python of this version from the PATH or from pyenv. A Python that cannot make environments does not
+    count."""
     candidates = [shutil.which("python" + version)]
     candidates += sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin/python"))
     for python in filter(None, candidates):

@@ -52,7 +52,7 @@ class Test(unittest.TestCase):
         self.assertTrue((derived["Vorticity"][fluid] != 0).any())
 
     def test_keywords(self):
-        """Properties have VTK 9.4's names, too, and are the constructor's keywords."""
+        """Properties also have the names that VTK 9.4 gives them (snake_case), and are keywords of the constructor."""
         surface = vtkMarchingCorrectors(free_surface=1, cube_size_factor=0.75, h_scale_factor=1.5, box=(0, 1, 0, 2, 0, 3))
         self.assertEqual((surface.GetFreeSurface(), surface.CubeSizeFactor, surface.GetHScaleFactor(), surface.box),
                          (1, 0.75, 1.5, (0, 1, 0, 2, 0, 3)))
@@ -90,7 +90,8 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 public, re.M))
         self.assertGreater(len(names), 100)
-        # The wheel's filter has no ranks, and these methods serve only C++ and the panels of the C++ plugin.
+        # The wheel's filter lacks the methods for ranks, and those that serve only C++ and the panels of the C++
+        # plugin.
         names -= {"GetNextBounds", "GetNextDensest", "GetNextEstimate", "SetWord"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [])  # What is lacking belongs in the plugin's XML, or in MarchingCorrectorsFilter.py.

@@ -399,7 +399,8 @@ class Options(CommandLineTest):
         self.assertIn("points      262144, 0 of them valid", result.stdout)
 
     def test_line(self):
-        """--line gives the same values as a file with the same points, and the distance from the start."""
+        """--line reports as many points, and as many valid ones, as --probe with a file of the same points. The output
+        has the distance from the line's start."""
         output = self.directory / "line.vtp"
         result = self.run_good(self.input, output, "--line=-0.6,0,0,0.6,0,0", "--resolution", "13")
         files.write_vtp(self.directory / "points.vtp", [(-0.6 + 0.1 * i, 0.0, 0.0) for i in range(13)], {})

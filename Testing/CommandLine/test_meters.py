@@ -290,8 +290,8 @@ class Flux(Meter):
 
 
 class Volumes(CommandLineTest):
-    """Tests which volumes the level of a block of 10 x 10 x 10 particles around the origin shows. The block's surface is half a spacing
-    beyond the particles."""
+    """Tests the particles' volumes by the level of a block of 10 x 10 x 10 particles around the origin. The block's surface is half a
+    spacing beyond the particles."""
 
     def level(self, *options, arrays=()):
         """Returns the level, in spacings above the uppermost particles, and what the program tells about volumes."""

@@ -40,7 +40,7 @@ static void modules_print(
   fflush(stdout);
 }
 
-/* The hash of a result that is not a surface, while parts of the result are added. */
+/* Collects, part by part, the hash of a result that is not a surface. */
 typedef struct modules_hash
 {
   const char* name;

@@ -73,9 +73,9 @@ double* fuzz_array(fuzz_call* call, int slot, size_t count)
   return call->arrays[slot];
 }
 
-/* Returns a context for the call's device program. It is made once, because making one takes longer
- * than a call. Each program has two. forgetful: the one whose kept data are released before each
- * call. */
+/* Returns a context for the call's device program. Each program has two contexts, which are made
+ * once, because making one takes longer than a call. forgetful: returns the one whose kept data are
+ * released before each call. */
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
   static mcor_context* contexts[2][2][3][2];

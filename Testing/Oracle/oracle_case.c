@@ -210,8 +210,8 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
   if (!trimmed)
   {
-    /* The eigenvalue must not trim: rounding may make it negative for a singular matrix, which is
-     * below a threshold of 0. */
+    /* The eigenvalue must not trim here: for a singular matrix rounding may put it below the
+     * threshold 0. */
     run->options.boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM;
     /* With this wall share the surface ends at no solid, but solids still count in the free
      * surface's weight. */

@@ -12,9 +12,8 @@
 
 #define PI 3.14159265358979323846
 
-/* Makes a period of particles, with the fields described here: evenly spaced X become x = X +
- * AMOUNT L / (2 pi) sin(2 pi X / L) along each axis. So the density at x is the product of 1 / (1 +
- * AMOUNT cos(2 pi X / L)) over the axes. */
+/* make_period moves evenly spaced X to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along each axis.
+ * So the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)) over the axes. */
 #define AMOUNT 0.35
 
 static const double lengths[3] = { 12.0, 10.0, 10.0 };

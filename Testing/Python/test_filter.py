@@ -203,7 +203,7 @@ class TestArrays(FilterTest):
         self.has(run(extract)[0], "Id")
 
     def test_names(self):
-        """A computed array keeps its name whatever names the input's arrays have, also the contoured one."""
+        """A computed array keeps its name even if an array of the input, or the contoured array, has the same name."""
         radius = values_of(cube(), "Radius").astype(numpy.float32)
         particles = cube(Normals=radius, WeightSum=radius, IsoValue=radius)
         extract = sphere(particles)
@@ -374,7 +374,8 @@ class TestTold(FilterTest):
         self.assertEqual(extract.GetFluidScalarRange(), (0, 0))  # Nothing has run yet.
 
     def test_huge_run_is_announced(self):
-        """The warning about many cells comes before the run begins. This run is stopped as soon as it has come."""
+        """The warning about many cells comes before the run begins. This run is stopped as soon as the warning has
+        come."""
         extract = make_filter()
         warnings = []
         extract.AddObserver("WarningEvent", lambda *_: warnings.append(extract.GetEstimatedCells()))

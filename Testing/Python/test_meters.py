@@ -225,7 +225,7 @@ class TestComponents(MeterTest):
         for i, name, value, delta in ((0, "vy", 0, 1e-12), (0, "vz", 0.1, 1e-12), (3, "vx", 10, 0), (3, "x", 5, 1e-9),
                                       (3, "xmax", 5.5, 0.01), (3, "zmin", -0.5, 0.01)):
             self.assertAlmostEqual(rows[i][name], value, delta=delta)
-        # LeastParticles = 2 drops the drop together with its bubble, and the ball of one particle.
+        # With LeastParticles = 2 the drop is left out together with its bubble, and so is the ball of one particle.
         rows = self.measured(split, LeastParticles=2)
         self.assertEqual([(row["component"], row["closed"]) for row in rows], [(0, 1), (1, 1), (2, 0)])
         rows = self.measured(split, LeastParticles=0, LeastVolume=4 / 3 * math.pi * 0.55 ** 3)

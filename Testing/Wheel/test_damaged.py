@@ -88,7 +88,7 @@ class Hostile(Case):
         self.assert_refused("lies in other files", self.at("snap.hdf5"))
 
     def test_claims(self):
-        """Refuses files that claim larger sizes than they can have."""
+        """Files that claim larger sizes than they can have are refused."""
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file.create_dataset("PartType0/Coordinates", (10 ** 12, 3), "f8", chunks=(1024, 3))
         self.assert_refused("claims", self.at("snap.hdf5"))

@@ -524,7 +524,7 @@ class Layouts(Case):
                 io.read(self.at(kind))
 
     def test_quantities(self):
-        """Arguments of a call replace quantities of the file, and nothing else. They have the core's names."""
+        """Arguments of a call replace quantities of the file, and nothing else. The arguments have the core's names."""
         body = pyvista.PolyData(X)
         body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
         body.save(self.at("body.vtp"))

@@ -25,7 +25,7 @@ DX, SPIN, WORDS = 0.05, 2.0, ["--smoothing-length", "0.065", "--mass", "0.125", 
 
 
 def drop(time=0.0, radius=8, at=(0.0, 0.0, 0.0)):
-    """Returns the places and velocities of a drop's particles, which spins around z."""
+    """Returns the places and velocities of the particles of a drop that spins around z."""
     line = np.arange(-radius, radius + 1) * DX
     sites = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
     sites = sites[(sites ** 2).sum(axis=1) < (radius * DX) ** 2]

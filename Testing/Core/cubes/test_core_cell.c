@@ -66,8 +66,9 @@ static int32_t vertex_on(lattice* l, int node, int axis, int length)
   return *vertex;
 }
 
-/* Fails unless the triangles are an oriented closed manifold that encloses the nodes above iso. volume_above: one
- * cell's volume for each of these nodes. The surface encloses less, at least 0.4 of it. Frees the lattice. */
+/* Fails unless the triangles are an oriented closed manifold that encloses the nodes above iso. volume_above: the
+ * volume of one cell for each of these nodes. Around a lone node the surface encloses less than a cell, so 0.4 of
+ * volume_above suffices. Frees the lattice. */
 static void check_closed(lattice* l, double volume_above)
 {
   const mcor_surface surface = { .points = l->points,

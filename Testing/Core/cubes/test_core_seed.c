@@ -67,8 +67,8 @@ static marked_cells read_cells(mcor_context* context)
   return m;
 }
 
-/* Walks along a segment in small steps. Every cell on the segment must be marked, apart from rounding. Cells that
- * rounding may add get the value 2. */
+/* Walks along a segment in small steps. Every cell that the segment crosses by more than rounding must be marked. Cells
+ * that rounding may add get the value 2. */
 static void check_line(marked_cells* m, const double p[3], const double q[3], double cube)
 {
   enum

@@ -136,8 +136,8 @@ static void test_coincident(void** state)
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    /* Each two particles of the block lie in one place. All other particles lie together at another place, where a
-     * simulation parks unused particles. */
+    /* The block's particles come in pairs, each pair at one place. All other particles lie together at another place,
+     * where a simulation parks unused particles. */
     const int64_t twin = i < block.count ? i / 2 * 2 : 0;
     for (int a = 0; a < 3; ++a)
     {

@@ -105,8 +105,8 @@ static void test_absent(void** state)
   assert_true(core_told(*state, "ARRAY_VALUE|position of particle 1000"));
   particle_set_free(&set);
   particle_set_free(&block);
-  /* So many particles are read in several slices. Particles that are not ignored must keep their
-   * order. */
+  /* The set is so large that it is read in several slices. Particles that are not ignored must keep
+   * their order. */
   set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   block = particle_set_make(set.count);

@@ -18,7 +18,8 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  /* valid: a square at the edge is valid. close: rounding may decide whether it is. */
+  /* valid: a square at the edge is valid. close: rounding may decide whether the square is valid.
+   * */
   int valid, close;
   int found;
   int64_t next; /* the edge where the line that begins here ends, or -1 */

@@ -150,9 +150,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Returns whether a vertex at a place without an expected crossing is a cut, as its flag says. close: rounding decides
- * whether there is a crossing; the vertex is then a cut only if its weight is the threshold or it was cut linearly
- * (flag 2). */
+/* Returns whether a flagged vertex, at a place without an expected crossing, is a cut. close: rounding decides whether
+ * there is a crossing; the vertex is then a cut only if its weight is the threshold or it was cut linearly (flag 2). */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;

@@ -418,8 +418,7 @@ static void read_profile(const char* path, int64_t wanted, profiled* found)
   fclose(file);
 }
 
-/* A profile has the seconds of all phases of each call, and of the device's commands in each phase. It does not change
- * the surface. */
+/* A profile has the seconds of each phase and of the phase's commands on the device. The surface stays the same. */
 static void test_profile(void** state)
 {
   const char* path = "core_context_profile.csv";
@@ -469,8 +468,7 @@ static void test_profile(void** state)
   /* A call fails if its row of the profile does not fit on the disk. */
   CORE_CONTEXT full = NULL;
   CORE_OK(full, mcor_create_context(NULL, &full));
-  /* Drivers also write files when they build programs, so a run builds the programs before the limit of file sizes
-   * holds. */
+  /* Drivers also write files when they build programs, so this run builds them before the limit holds. */
   CORE_SURFACE built = core_extract(full, &input, &options);
   struct rlimit limit, small = { .rlim_cur = 200 };
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);

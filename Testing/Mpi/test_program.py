@@ -59,8 +59,7 @@ class Program(unittest.TestCase):
         return done
 
     def sentences(self, done):
-        """Returns the sentences that the program printed, except the one about a driver's first compilation, which any
-        run may print."""
+        """Returns the program's sentences, without the one about a driver's first compilation."""
         return [line for line in done.stderr.splitlines()
                 if line.startswith("marching-correctors:") and "for the first time" not in line]
 
@@ -78,8 +77,7 @@ class Program(unittest.TestCase):
                                           array.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
-        """Fails unless several processes, which read pieces of the particles, write one file with the same points, triangles and arrays as
-        one process."""
+        """Fails unless processes that read pieces write one file with the same points, triangles and arrays as one process."""
         done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
@@ -106,8 +104,7 @@ class Program(unittest.TestCase):
         return self.path("plane.vtp")
 
     def check_same(self, name, particles, pieces, *how):
-        """Fails unless several processes write the same bytes as one process. They read the particles from `pieces` files (0: from one
-        file). Returns both runs."""
+        """Fails unless processes that read `pieces` files (0: one) write the same bytes as one process. Returns both runs."""
         source = write_pieces(particles, self.folder.name, pieces) if pieces else particles
         alone = self.good(self.run_alone(particles, self.path("alone_" + name), *how))
         done = self.good(self.run_ranks(source, self.path(name), *how))
@@ -213,8 +210,7 @@ class Program(unittest.TestCase):
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_period_of_data(self):
-        """With --periodic auto the period comes from the field data, which one piece may lack. Different periods in two pieces are
-        refused."""
+        """The field data give the period, though one piece may lack it. Different periods in two pieces are refused."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin over processes: in pvbatch under mpirun, or in a pvserver of several processes. What they
-write in pieces is together what one process alone wrote. Renders nothing.
+"""Tests the plugin over several processes: in pvbatch under mpirun, or in a pvserver. The pieces that the
+processes write must together be what one process alone wrote. Renders nothing.
 
-    test_paraview.py 1 FOLDER         particles in pieces, and surfaces of one process
-    test_paraview.py RANKS FOLDER     the surfaces of so many, after that
+    test_paraview.py 1 FOLDER         first: writes particles in pieces, and the surfaces of one process
+    test_paraview.py RANKS FOLDER     then: compares the surfaces of RANKS processes with them
 """
 import os
 import sys

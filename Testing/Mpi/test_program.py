@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program under mpirun: what processes make together, and what they say where one process fails.
+"""Tests the program under mpirun: what processes make together, and what they say if one process fails.
 
     test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS PRELOAD
 
@@ -94,7 +94,7 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
     def write_plane(self):
-        """Writes the particles moved into the plane z = 0.5, with smoothing lengths of 1 to 4."""
+        """Writes the particles, moved into the plane z = 0.5, with smoothing lengths from 0.04 to 0.16."""
         plane = read(PARTICLES)
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = 0.5

@@ -162,7 +162,7 @@ class TestTogether(unittest.TestCase):
         self.assertFalse(surface.GetPointData().HasArray("Pair"))
 
     def test_walls(self):
-        """Walls are in a block of their own, recognised by its name, and lack the scalar. They are solids if the filter is set so."""
+        """One block has a name of walls, and lacks the scalar. If the filter detects the fluid, this block counts as walls, else as fluid."""
         data = cube()
         wall = points_of(data)[:, 2] < -0.45
         walls = take(data, wall)

@@ -111,8 +111,7 @@ class TestDerivatives(unittest.TestCase):
                     self.assertLess(abs(values_of(data, name) - expected).max(), 4 * tolerance, name)
 
     def test_solids(self):
-        """At walls derivatives are 0, and walls do not change the fluid's. Arrays of the input stay, unless a result
-        has the same name."""
+        """Derivatives are 0 on walls, and walls do not count for the fluid. Arrays of the input stay, unless ReplaceArrays is on."""
         x = points_of(cube())
         solid = x[:, 2] < -0.5
         velocity = numpy.stack([numpy.where(solid, math.nan, 2 * x[:, 1]), *0 * x[:, 1:].T], axis=1)

@@ -55,7 +55,8 @@ class FilterTest(unittest.TestCase):
 
 class TestPoints(FilterTest):
     def residual(self, extract, mean=True):
-        """Returns the largest difference from the iso value, at every thirteenth point, by brute force."""
+        """Returns the largest difference between the field and the iso value 0.6 at every thirteenth point of the surface. The field is summed by
+        brute force."""
         surface = self.surface = run(extract)[0]
         self.assertGreater(surface.GetNumberOfPoints(), 1000)
         particles = extract.GetInput()

@@ -74,7 +74,7 @@ class TestWeird(unittest.TestCase):
                 self.assertNotIn("\n", extract.GetErrorMessage())
 
     def test_legal(self):
-        """No particles, one particle alone, no surface at this value, and the same twice are no errors."""
+        """No particles, a single particle, two particles at one place, and an iso value without a surface are no errors."""
         empty, one = vtkPolyData(), particles_of([[1.0, 2.0, 3.0]])
         nothing = particles_of(numpy.empty((0, 3)))
         single = {"SmoothingLength": 0.1, "FreeSurface": 1}

@@ -155,7 +155,7 @@ def check_undo(extract):
     def now():
         return [extract.CubeSizeFactor, extract.Trim, list(extract.Isosurfaces), str(extract.Kernel).strip("'")]
 
-    # From here on the undo stack records states: the next change is relative to the first one.
+    # Undo keeps states from this first change on, so that undoing the next change leads back to this one.
     extract.CubeSizeFactor = 0.75
     before = now()
     builder.Begin("changes")
@@ -230,7 +230,7 @@ def turned(time):
 
 
 def write_step(path, time, order):
-    """Makes particles in this order. Height is z; particles at the lowest z (Kind 0) are walls, all others fluid."""
+    """Writes the particles at this time to a file, in this order. Height is z; particles at the lowest z (Kind 0) are walls, all others fluid."""
     points, velocities = turned(time)
     particles = vtkPolyData()
     particles.SetPoints(vtkPoints())

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filter's panel in ParaView's real window, used as a user does, by ParaView's own player of events.
+"""Tests the filter's panel in ParaView's real window. ParaView's own player of events uses the panel as a person does.
 
     test_plugin_panel.py PARAVIEW
 
-Lists of events say what the player does to widgets, and what it must find in them; the states that it saves in between tell the effect.
+Lists of events say what the player does to widgets, and what it must find in them. States that it saves in between show the effect.
 """
 import os
 import subprocess

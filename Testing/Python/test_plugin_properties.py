@@ -43,7 +43,7 @@ def other_text(found, before):
 
 
 def change(found):
-    """Sets all elements of the property to other values than they have."""
+    """Gives a property another value: changes all its numbers, or, if it holds texts, the last one."""
     count = found.GetNumberOfElements()
     if count == 0:  # a list of any length
         found.SetNumberOfElements(1)

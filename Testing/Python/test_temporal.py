@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests vtkSPHTemporalInterpolator, particles between stored steps, against known paths."""
+"""Tests that vtkSPHTemporalInterpolator moves particles between stored steps on known paths."""
 import math
 import unittest
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Words on options and statistics agree with the core's lists, mcor_options.def and mcor_statistics.def.
+"""Tests that the guide and the help name options and statistics as the core's lists do: mcor_options.def and mcor_statistics.def.
 
 test_lists.py SOURCES
 """

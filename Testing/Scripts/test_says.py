@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's sentences, mcor_says.def: each is used, its slots have words in every interface, compilers check its formats.
+"""Tests the core's sentences in mcor_says.def: each is used, its slots have words in every interface, and compilers check its formats.
 
 test_says.py SOURCES OUTPUT COMPILER
 

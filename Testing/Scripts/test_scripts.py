@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Wrong starts of quickstart.sh, run-tests.sh and CMake. Nothing is installed or built.
+"""Tests wrong starts of quickstart.sh, run-tests.sh and CMake, and the functions of their steps. Nothing is installed or built.
 
 test_scripts.py SOURCE SCRATCH [TESTS]
 """

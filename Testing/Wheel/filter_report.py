@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reports what the VTK filter, whichever there is, says and makes of particle files, as JSON.
+"""Prints as JSON what the VTK filter (the wheel's or the C++ one, whichever is installed) says and makes of particle files.
 
     filter_report.py CASES.json
 CASES: [[file, scalar, iso value, {property: value}]]; if the iso value is null, neither scalar nor iso value is chosen.

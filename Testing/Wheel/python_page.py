@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Goes through the guide's page "In Python": its blocks as they stand, PyVista's where that is installed, and what it says
-of the functions for NumPy. test_systems.py runs it under wine.
+"""Goes through the guide's page "In Python": runs its blocks as they stand (PyVista's blocks only if PyVista is installed), and
+checks what the page says of the functions for NumPy. test_systems.py runs this script under wine.
 
     python_page.py GUIDE/python.md
 """

@@ -79,8 +79,7 @@ def make_cases(folder):
 
 
 def make_found(folder):
-    """Makes particle sets of all kinds, with which nothing is chosen by options. Returns {name: [file, what
-    --list-arrays prints]}."""
+    """Makes files of particles in which the roles of arrays must be found. Returns {name: [file, words that --list-arrays prints, or None]}."""
     def of(name, *arrays, **more):
         return write(folder, "found " + name, *arrays, **more)
 

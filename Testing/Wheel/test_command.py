@@ -39,7 +39,7 @@ class Command(Case):
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
     def test_ply(self):
-        """The .ply file has the same bytes as the program's, with every array."""
+        """The .ply file equals the program's byte for byte, with and without arrays."""
         for words in (["--free-surface"], ["--free-surface", "--smooth", "--iso", "0.4,0.5", "--curvature"],
                       ["--scalar", "Velocity", "--iso", "1"], ["--no-attributes", "--free-surface"], ["--scalar", "Pressure", "--iso", "500,900"],
                       ["--scalar", "Velocity", "--component", "1", "--iso", "-0.1,0.1"], ["--scalar", "Velocity", "--iso", "1,2"]):

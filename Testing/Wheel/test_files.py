@@ -329,7 +329,7 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
     def test_sphinxsys(self):
-        """Reads files that are written as SPHinXsys writes them without VTK: as text, with a name even for vectors that are missing."""
+        """Reads files like those of SPHinXsys' own writer. They are text, and their Vectors attribute names an array that is not there."""
         def write(name, chosen, arrays):
             def array(name, values, more=""):
                 kind = "Int32" if values.dtype.kind == "i" else "Float32"
@@ -589,7 +589,8 @@ class Layouts(Case):
         self.assertEqual((list(particles._positions._kept), particles.arrays._kept), ([""], {}))
 
     def test_kernels(self):
-        """Each solver's name of a kernel gives the same surface as sph_kernel, with half of the support radius or the file's own h."""
+        """Each solver's kernel name gives the surface that sph_kernel gives with the file's support radii. read_pyvista() gives h: the
+        support radius divided by the kernel's own factor (2, 2.5 or 3)."""
         swift = {"Cubic spline (M4)": "cubic", "Quartic spline (M5)": "quartic", "Quintic spline (M6)": "quintic",
                  "Wendland C2": "wendland", "Wendland C4": "wendland_c4", "Wendland C6": "wendland_c6"}
         gizmo = {3: "cubic", 4: "quartic", 5: "quintic", 6: "wendland", 7: "wendland_c4", 9: "wendland_c6"}

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Films in USD files, read back by usd-core."""
+"""Tests films in USD files, which usd-core reads back."""
 import os
 import re
 import signal
@@ -307,7 +307,7 @@ class Films(Case):
             1, "marchingcorrectors: b.usdc needs the package usd-core, the extra [usd] of this one: pip install usd-core.\n"))
 
     def test_page(self):
-        """Runs the commands of the guide's page on Blender, with the steps of its page on films."""
+        """Runs the commands of the guide's page on Blender, with the steps that the guide's page on films makes."""
         guide = Path(os.environ["MCOR_TEST_SOURCES"]) / "Documentation" / "Guide"
         steps = re.search(r"^```python steps.py\n(.*?)^```$", (guide / "films.md").read_text(), re.M | re.S)[1]
         subprocess.run([sys.executable, "-c", steps], cwd=self.folder, check=True)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gives every keyword to every function, of arrays, of a file and of PyVista's points, with a value that must matter: the result differs, or one
-sentence says why it cannot act. None is passed over in silence."""
+"""Gives every keyword to every function (with arrays, with a file, and as a method of PyVista's accessor), with a value that must matter: the
+result differs, or one sentence says why the keyword cannot act. No keyword is ignored in silence."""
 import inspect
 import tempfile
 import unittest

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests gauge(), flux() and project(): for a block of particles by hand, for other particles against probe() and counts; PyVista's methods and
-files; and refusals."""
+"""Tests gauge(), flux() and project(). Results for a block of particles are known by hand; results for other particles are compared with
+probe() and counts. PyVista's methods and files must give the same. Wrong calls are refused."""
 import unittest
 
 import numpy as np

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions for NumPy: shapes, types, what is copied, errors, interrupts."""
+"""Tests the functions for NumPy: shapes, types, what is copied, errors, interrupts."""
 import os
 import signal
 import sys

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filter in Python as a plugin of ParaView: the panel's properties, a surface, a sentence. The reader beside it: solvers'
-files by their endings, a series as time steps, and the filter follows. In pvpython.
+"""Tests the plugin that is written in Python, in ParaView's pvpython. Its filter: the panel's properties, a surface, a sentence.
+Its reader: files of solvers, known by their endings, and a series as time steps, which the filter follows.
 
     test_paraview.py FOLDER_OF_THE_ENVIRONMENT
 """

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The wheels of other systems give the bytes that the wheel for Linux on x86-64 gives.
+"""Tests that the wheels of other systems give the bytes that the wheel for Linux on x86-64 gives.
 
     test_systems.py windows|arm64 FOLDER_OF_THE_ENVIRONMENT
 
-windows: in a Windows CPython under wine, where it also does what the guide's page for Python says, with PyVista, too. Where
-CPython's own site is not: its library and extension modules are taken from a wheel that has them (panda3d), its modules in
-Python from a CPython of the same version here. arm64: in Debian's Python for arm64, under qemu.
+windows: in a Windows CPython under wine. There the test also goes through the guide's page for Python, with PyVista. CPython
+is put together without its own site: its library and extension modules come from a wheel that has them (panda3d), and its
+modules in Python come from a CPython of the same version on this machine. arm64: in Debian's Python for arm64, under qemu.
 
-MCOR_WINDOWS_WHEEL, MCOR_ARM64_WHEEL: one that is built; else Python/build-wheels builds it. Status 77: there is no wine or
-qemu, or PyPI or Debian is out of reach.
+MCOR_WINDOWS_WHEEL, MCOR_ARM64_WHEEL: the path of a wheel; without it, Python/build-wheels builds the wheel. Status 77: there
+is no wine or qemu, or PyPI or Debian is out of reach.
 """
 import compileall
 import os

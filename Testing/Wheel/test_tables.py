@@ -390,7 +390,7 @@ PERIODS = {"a box": [-1, 1, 0, 0, 0, 4], "a tilted box": "none, as its cell is t
 
 
 class Others(Case):
-    """Tests formats that only Python reads. Random files are compared with the numbers that were written to them."""
+    """Tests more formats, most of which only Python reads: what is read from random files equals the numbers written to them."""
 
     def randoms(self):
         return (np.random.default_rng([57, seed]) for seed in range(12))
@@ -570,8 +570,7 @@ class AsTheProgram(Case):
         self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
 
     def test_tilted_cells(self):
-        """In tilted boxes, positions are those worked out by hand. A period of such a box is used on request, or
-        refused with a sentence."""
+        """Positions in tilted cells equal those worked out by hand. Commands refuse a tilted period; functions warn of it."""
         for case in ("a tilted box", "a tilted box of one period", "vectors"):
             self.at("a.dump").write_text(CASES[case][1])
             low = np.array([1.0, 2, 3]) if case == "vectors" else np.zeros(3)

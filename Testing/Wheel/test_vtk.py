@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests PyVista and VTK from PyPI: the accessor, and the filter compared with the functions."""
+"""Tests PyVista's accessor, and compares the filter with the functions. PyVista and VTK come from PyPI."""
 import os
 import re
 import unittest

@@ -273,6 +273,23 @@ static void test_same_bits(void** state)
   }
 }
 
+/* Particles on a line tell no plane, so they are measured in space. */
+static void test_particles_on_a_line(void** state)
+{
+  CORE_SET set = make_pool(0);
+  const double level = 0.1;
+  const mcor_gauge_line line = { .from = { 3, 0.5, -2 }, .to = { 3, 0.75, 3 } };
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&level);
+  input.count = 24;
+  CORE_GAUGES found, in_space;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &found));
+  options.dimension = 3;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &in_space));
+  assert_int_equal(found.crossing_count, 2);
+  assert_true(memcmp(found.crossings, in_space.crossings, 2 * sizeof(double)) == 0);
+}
+
 /* Checks that the call fails with a message in which core_told finds the words. */
 static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_gauge_line* line, const char* words)
@@ -319,4 +336,5 @@ static void test_weird(void** state)
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_pool_with_waves, test_noise,
-  test_still_pool_of_computed_volumes, test_period, test_same_bits, test_weird)
+  test_still_pool_of_computed_volumes, test_period, test_same_bits, test_particles_on_a_line,
+  test_weird)

@@ -142,6 +142,13 @@ static void test_rounded_plane(void** state)
     CORE_SURFACE surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.dimension, is_far ? 3 : 2);
     assert_int_equal(mcor_find_dimension(&input, NULL, 0), is_far ? 3 : 2);
+    const double y = set.position[1];
+    const mcor_gauge_line line = { .from = { 2, y, -8 }, .to = { 2, y, 8 } };
+    options.iso_count = 0;
+    CORE_GAUGES gauges;
+    CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
+    assert_int_equal(gauges.readings[0].crossing_count, 2);
+    options.iso_count = 1;
   }
 }
 

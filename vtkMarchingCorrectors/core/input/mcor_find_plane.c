@@ -24,15 +24,24 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
 {
   mcor_findings spread = mcor_no_findings();
   const int64_t count = mcor_has_positions(input) ? input->count : 0;
+  double x[MCOR_CHUNK];
   for (int a = 0; a < 3; ++a)
   {
-    for (int64_t i = 0; i < count && !(spread.least[a] < spread.most[a]); ++i)
+    for (int64_t begin = 0; begin < count && !(spread.least[a] < spread.most[a]);
+         begin += MCOR_CHUNK)
     {
-      const double x = mcor_array_at(&input->positions, i, a);
-      const bool solid = input->solid && input->solid[i], finite = isfinite(x);
-      if (mcor_is_present(input, i) && (finite || !solid))
+      const int read = mcor_chunk_of(count - begin);
+      mcor_read_array(&input->positions, begin, read, a, x);
+      const bool same =
+        !input->solid && mcor_is_all_within(x, read, spread.least[a], spread.most[a]);
+      for (int i = 0; i < read && !same; ++i)
       {
-        mcor_add_range(&spread, solid ? 3 + a : a, finite ? x : -DBL_MAX, finite ? x : DBL_MAX);
+        const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
+        if (mcor_is_present(input, begin + i) && (finite || !solid))
+        {
+          mcor_add_range(
+            &spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
+        }
       }
     }
   }
@@ -46,8 +55,8 @@ static mcor_status mcor_refuse_plane(
   const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
                            "positions, or choose {dimension 3}";
   const mcor_array* positions = &input->positions;
-  if (mcor_find_illegal(
-        context, positions, input->solid, MCOR_SKIP_SOLIDS, input->count, false) >= 0)
+  if (mcor_find_illegal(context, positions, input->solid, MCOR_SKIP_SOLIDS, input->count, false) >=
+    0)
   {
     return MCOR_OK; /* mcor_check_input reports it */
   }
@@ -119,7 +128,7 @@ static mcor_status mcor_drop_rounded_plane(
     counts[2] += mcor_is_present(input, i) && has_twin;
   }
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts + 1, 2));
-  plane->axis = 2 * counts[2] > counts[1] ? 0 : plane->axis;
+  *plane = 2 * counts[2] > counts[1] ? (mcor_plane){ 0 } : *plane;
   return MCOR_OK;
 }
 
@@ -162,7 +171,7 @@ static mcor_status mcor_look_for_plane(
   }
   if (options->dimension == 0 && constant != 1)
   {
-    plane.axis = 0; /* particles on a line, or at a point, do not tell their plane */
+    plane = (mcor_plane){ 0 }; /* particles on a line, or at a point, do not tell their plane */
   }
   if (options->dimension == 0 && plane.axis > 0)
   {

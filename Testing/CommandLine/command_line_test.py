@@ -25,8 +25,8 @@ WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh
 
 
 def drop_privileges():
-    """Drops root's rights, so that the modes of files count; for preexec_fn. The user stays root, because another user may not reach the
-    build tree."""
+    """Drops root's rights in a new process (as preexec_fn), so that the modes of files count. The user stays root, because another user
+    may not reach the build tree."""
     if os.geteuid() == 0:
         libc = ctypes.CDLL(None)
         for capability in range(64):
@@ -135,7 +135,7 @@ class CommandLineTest(unittest.TestCase):
         return [(float(e.get("timestep")), self.directory / e.get("file")) for e in root.iter("DataSet")]
 
     def misbehaving(self, **variables):
-        """Returns the environment for a run with misbehave.c; its variables MCOR_... have these names and values."""
+        """Returns the environment for a run with misbehave.c. Each keyword name=value sets the variable MCOR_NAME of misbehave.c."""
         named = {"MCOR_" + name.upper(): str(value) for name, value in variables.items()}
         return {**os.environ, "LD_PRELOAD": self.preload,
                 "MCOR_FAILING_FOLDER": str(self.directory), **named}

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program marching-correctors: test_command_line.py PROGRAM PRELOAD [unittest arguments].
+"""Tests the program marching-correctors: test_command_line.py PROGRAM PRELOAD [unittest arguments].
 
-What it computes is tested elsewhere; here it is files, options, sentences and exit statuses.
+Other tests check what the program computes. This test checks files, options, sentences and exit statuses.
 """
 import json
 import os
@@ -70,7 +70,7 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output; or, if the mode lacks what it needs, a sentence refuses it and says what. A surface
+        """A mode as the first word changes no output. If an option is missing that the mode needs, a sentence names the option. A surface
         without a scalar is the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
@@ -569,7 +569,7 @@ class Options(CommandLineTest):
 
 
 class Picture(CommandLineTest):
-    """--screenshot, with and without a display."""
+    """Tests --screenshot, with and without a display."""
 
     def picture(self, *arguments):
         """Returns the width, the height and the rows of (r, g, b) of the picture that the program draws."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Damaged files, over which VTK's readers crash: test_damaged_files.py PROGRAM PRELOAD.
+"""Tests damaged files, over which VTK's readers may crash: test_damaged_files.py PROGRAM PRELOAD.
 
 MCOR_MUTATIONS=N in the environment tries N damaged files (default 150), MCOR_FIRST_MUTATION=K begins
 at the Kth. A file that fails is the same in every run.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Films by the program marching-correctors: test_film.py PROGRAM PRELOAD."""
+"""Tests films of the program marching-correctors: test_film.py PROGRAM PRELOAD."""
 import json
 import re
 import signal
@@ -50,7 +50,7 @@ class Film(CommandLineTest):
     # Films
 
     def test_ten_steps_by_one_command(self):
-        """Of the ten times, five lie between two stored steps, so their particles are interpolated."""
+        """Five of the ten times lie between two stored steps. The particles at these times are interpolated."""
         self.write_steps(6)
         times = [0.05 * i for i in range(10)]  # One of these times is 0.30000000000000004.
         result = self.run_good("steps.pvd", self.film, *FREE, "--times", ",".join(map(repr, times)), "--stats", "s.json")

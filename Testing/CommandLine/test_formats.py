@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""File formats of the program marching-correctors: test_formats.py PROGRAM PRELOAD."""
+"""Tests file formats of the program marching-correctors: test_formats.py PROGRAM PRELOAD."""
 import pathlib
 import re
 import struct

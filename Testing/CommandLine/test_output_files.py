@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the program marching-correctors writes files: test_output_files.py PROGRAM PRELOAD."""
+"""Tests how the program marching-correctors writes files: test_output_files.py PROGRAM PRELOAD."""
 import json
 import os
 import pathlib
@@ -83,7 +83,7 @@ class OutputFiles(CommandLineTest):
         self.assertIn("statistics", json.loads(text[text.index("{"):]))
 
     def test_closed_standard_output(self):
-        # If standard output is closed, no file that the program opens may get its number.
+        # If standard output is closed, no file that the program opens may take its descriptor.
         result = subprocess.run(["sh", "-c", '"$@" >&-', "sh", self.program, self.input, self.output,
                                  "--free-surface", "--stats", "s.json"], cwd=self.directory,
                                 capture_output=True, text=True, timeout=1200)
@@ -256,8 +256,8 @@ class OutputFiles(CommandLineTest):
     # ---- Whole or untouched ----
 
     def test_what_may_not_be_written(self):
-        """A normal user gives an output that may not be written. It is not replaced, and the run fails before it
-        computes."""
+        """A normal user names an output file that may not be written. The file is not replaced, and the run fails before
+        it computes."""
         self.output.write_text("old")
         self.output.chmod(0o444)
         refused = self.extract(*FREE, preexec_fn=drop_privileges)

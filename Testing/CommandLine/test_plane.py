@@ -108,7 +108,7 @@ class Plane(CommandLineTest):
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
 
     def test_what_is_refused(self):
-        """Cases that are refused. The last one is refused before lines are made: one particle with a small smoothing length makes all
+        """Tests cases that are refused. The last one is refused before lines are made: one particle with a small smoothing length makes all
         squares small."""
         stl = self.directory / "surface.stl"
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
@@ -136,7 +136,7 @@ class Plane(CommandLineTest):
                 self.assertAlmostEqual(x, y, delta=1e-6)
 
     def test_particle_distance(self):
-        """By --dp, DualSPHysics' smoothing length depends on the number of dimensions."""
+        """--dp gives DualSPHysics' smoothing length, which depends on the number of dimensions."""
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]

@@ -182,7 +182,7 @@ class RealFiles(CommandLineTest):
 
     def test_pieces_of_meshes(self):
         """If any piece of a file has vertices, points of a piece with only other cells are no particles. If no piece has vertices, all
-        points are particles. Points of a piece without cells always are."""
+        points are particles. Points of a piece without cells are always particles."""
         tank, corners = block((6, 6, 6)), block((2, 2, 2), 5, (9, 9, 9))
         files.write_vtu(self.directory / "water.vtu", tank, {})
         files.write_vtu(self.directory / "hull.vtu", corners, {}, [(12, range(8))])

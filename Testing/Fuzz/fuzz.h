@@ -61,9 +61,9 @@ void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
-/* In fuzz_modules.c. fuzz_regions sets box, period, walls and cubes of the call. fuzz_flatten moves its particles into
- * a plane. fuzz_other_calls and fuzz_gauge make other calls with its particles: global values, ranks, probe,
- * derivatives, gauges. */
+/* In fuzz_modules.c. fuzz_regions sets box, period, walls and cubes of the call. fuzz_flatten moves
+ * the call's particles into a plane. fuzz_other_calls and fuzz_gauge make other calls with the same
+ * particles: global values, ranks, probe, derivatives, gauges. */
 void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_flatten(unsigned how, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);

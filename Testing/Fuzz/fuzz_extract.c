@@ -311,7 +311,7 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Makes a call fail that has the versions of the next call. */
+/* Makes a call that must fail, with the versions of `call`. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;

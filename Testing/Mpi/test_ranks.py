@@ -260,7 +260,7 @@ def compare_told(whole, all_told):
 
 
 def check_surface(number, name, file, settings):
-    """Checks one case of surfaces. Returns what differs; only rank 0 returns any."""
+    """Checks one case of surfaces. Returns what differs on rank 0, and nothing on other ranks."""
     particles, problems = make_particles(file), []
     whole, told = extract(settings, particles, None) if RANK == 0 else (None, None)
     for way in ways_of(number):

@@ -136,7 +136,7 @@ def make_filled(surface):
 
 
 def draw(actors, path, size, zoom, *places):
-    """Draws actors into a picture. places: of the camera, of the point that it looks at, and its upward direction."""
+    """Draws actors into a picture. places: the camera's position, the point that the camera looks at, and the upward direction."""
     renderer = vtkRenderer()
     for actor in actors:
         renderer.AddActor(actor)

@@ -173,7 +173,7 @@ class TestForgotten(unittest.TestCase):
 
 class TestChoices(unittest.TestCase):
     def test_blocks_are_fluid(self):
-        """A block that is named as the fluid is the fluid, whatever its name."""
+        """A block that is chosen by its name is the fluid, and the particles of other blocks are not."""
         x = lattice(20, 12, 8)
         wall = x[:, 2] < 0.25
         blocks = blocks_of(water=block(x[~wall]), bed=block(x[wall]))

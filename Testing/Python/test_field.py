@@ -335,7 +335,7 @@ class TestResample(unittest.TestCase):
         self.assertTrue(abs(low[1]) < 0.02 and low[1] == high[1] and -1.2 < low[0] < -1 and 1 < high[2] < 1.2)
         self.assertTrue(900 < made.GetNumberOfCells() < 40 * 39)  # Quads end where the fluid ends.
         self.assertGreaterEqual(run(self.made, OnlyFluid=0)[0].GetNumberOfCells(), 40 * 39)
-        # An inclined plane: its points lie on it, and it cuts off the cube's corner.
+        # All points of an inclined slice lie in one plane. This plane cuts off a corner of the cube.
         x = points_of(self.check_values(FitBounds=0, Origin=(0.5, 0.5, 0.5), Normal=(1, 1, 1)))
         self.assertLess(abs(x.sum(axis=1) - 1.5).max(), 1e-12)
         self.assertTrue(x[:, 0].min() < 0 and x[:, 0].max() > 1)

@@ -290,7 +290,7 @@ class TestComponents(MeterTest):
         return self.measured(vtkSPHComponents(), surface, particles, PeriodicBounds=period), chosen
 
     def test_sides(self):
-        """The period may begin anywhere. The surface ends at its sides, which need not be planes of the lattice."""
+        """The period may begin anywhere: the sides of the period, where the surface ends, need not be planes of the lattice."""
         def wanted(way):
             return (numpy.linalg.norm(way, axis=1) < 0.45) | (numpy.linalg.norm(way - 0.8, axis=1) < 0.3)
 
@@ -329,8 +329,8 @@ class TestComponents(MeterTest):
                 self.assertAlmostEqual(momentum / ball["mass"], ball["v" + axis], delta=1e-9)
 
     def test_drops_in_bubbles(self):
-        """The pieces of a ball, and of a layer without an end, hold all their particles wherever the period's sides cut
-        them."""
+        """A drop is in a bubble of a ball, or of a layer without an end. Each piece has all its particles, wherever the
+        sides of the period cut it."""
         for is_layer in (False, True):
             def wanted(way, is_layer=is_layer):
                 r = numpy.linalg.norm(way, axis=1)

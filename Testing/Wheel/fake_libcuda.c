@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A fake of CUDA's driver for tests without a card: the functions that the Python package calls, on the host's memory.
- * It counts copies and locked blocks. It refuses what a driver refuses: calls without a context, and copies into memory
- * that is not locked. */
+/* Replaces CUDA's driver in tests without a card. Has the functions that the Python package calls;
+ * the host's memory stands for the device's. Counts copies and locked blocks, and refuses what a
+ * driver refuses: calls without a context, and copies into memory that is not locked. */
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -151,7 +151,7 @@ class Hostile(Case):
         self.assertEqual(len(kept[0].positions), len(X))
 
     def test_cut_off(self):
-        """If its end is missing, a file of each kind gives one line on stderr, and no output file."""
+        """A file of each kind that lacks its end gives one line on stderr, and no output file."""
         for name, make in (("Part_0001.bi4", write_bi4), ("fluid.bgeo", write_bgeo), ("body.vtp", write_vtk),
                            ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", lambda path: write_vtk(path, version=42)),
                            ("text.vtk", lambda path: write_vtk(path, "text", 42)), ("snap.hdf5", write_gadget)):

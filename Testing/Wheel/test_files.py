@@ -377,7 +377,8 @@ class Layouts(Case):
         self.assertIsNone(io.read(self.at("PartFluid_0001.vtk")).solid)
 
     def test_legacy_of_all_kinds(self):
-        """.vtk files of versions 4.2 and 5.1, as text and binary, with all kinds of cells and cell arrays, are read as VTK reads them."""
+        """.vtk files of versions 4.2 and 5.1, of PolyData and of unstructured grids, as text and binary, with arrays of points and of cells,
+        are read as VTK reads them."""
         for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
             body = pyvista.PolyData(X.astype(np.float32) if grid else X)
             body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)

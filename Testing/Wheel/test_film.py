@@ -143,8 +143,7 @@ class Films(Case):
         self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, "--times", "0.05", status=1), "step_9.vtp has no ids")
 
     def test_convert(self):
-        """`convert` makes of surfaces that the program wrote, given as a list or one by one, the same film as the
-        command surface."""
+        """Converting the program's surfaces, given as a list or one by one, makes the same film as the command `surface`."""
         paths = self.write_steps()
         words = ["--smooth", *WORDS]
         if PROGRAM:
@@ -250,7 +249,7 @@ class Films(Case):
         self.assertEqual([len(self.values(prims["spray"], "points", 24 * time)) for time in range(3)], [0, 1, 2])
 
     def test_interrupted(self):
-        """If Ctrl-C ends a film, the file holds the steps that were made. Any other error leaves no file."""
+        """If Ctrl-C ends a film, the file holds the steps that were made. After any other error, the old file is there."""
         points = drop(radius=3)[0]
         surface = mc.free_surface(points, smoothing_length=0.065)
         Path(self.at("b.usdc")).write_text("old")

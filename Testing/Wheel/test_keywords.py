@@ -37,7 +37,7 @@ def closed():
     return context
 
 
-# {keyword: (value, keywords that both calls have, with it and without it)}
+# {keyword: (value to try, other keywords of both calls: the call with this keyword and the call without)}
 TRIALS = {
     "scalar": ("Noise", {}), "iso": (0.25, {}), "scalar_dot": ("Spin", {"scalar": "Velocity", "iso": 0.01}), "points": (POINTS + 0.1, {}),
     "attributes": (["Noise"], {}), "array": ("Spin", {}), "form": ("standard", {}), "return_volume": (True, {}),

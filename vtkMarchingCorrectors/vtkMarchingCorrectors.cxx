@@ -273,7 +273,8 @@ bool vtkMarchingCorrectors::FindWidening(
     return false;
   }
   statistics = widening.statistics;
-  // A process that owns no place has no statistics.
+  // A process without particles of its own has 0 as its least length. Infinity leaves it out of the
+  // minimum.
   const double least = statistics.smoothing_length_min;
   double range[2] = { least > 0.0 ? least : std::numeric_limits<double>::infinity(), 0.0 };
   sums->MergeRanges(range, 1);
@@ -317,7 +318,8 @@ std::vector<double> ListFactorOptions(const mcor_options& o)
 }
 
 // Gives the input the factors of the smoothing lengths. Uses the last run's factors again if
-// neither the particles nor the options have changed.
+// KeepDeviceData is on, and neither the particles nor the options have changed. Returns false if the
+// factors cannot be found.
 bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkSPHParticles& input)
 {
   vtkInternals& kept = *this->Internals;

@@ -32,7 +32,8 @@
  * values, the iso value. The output field data holds the arrays of the input's field data, and
  * "IsoValues", whose component has the name of the point array that gives each point's iso value.
  * GetRunStatistics() holds statistics of the run, "Device" and "Platform", and for each parameter
- * the value in use. All but the costs of the run depends only on the input and the properties.
+ * the value in use. All but the device, the platform and the costs of the run depends only on the
+ * input and the properties.
  *
  * If processes share a run, see SetController(), each gets the part of the surface in its share of
  * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
@@ -293,8 +294,10 @@ public:
   /**
    * Writes the particles that a run with this filter's settings would take, with the arrays
    * Widening (the factors), WidenedSmoothingLength (the products) and, if volumes are computed,
-   * WideningVolume. Returns false, after an error, if that fails. If several processes share the
-   * filter's runs, all must call this together, and each gets its own particles.
+   * WideningVolume. Returns false, and leaves `output` as it is, if that fails (after an error), if
+   * there is no fluid (after a warning), if there are no particles, or if the run was cancelled. If
+   * several processes share the filter's runs, all must call this together, and each gets its own
+   * particles.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
@@ -416,8 +419,9 @@ public:
    * default iso value (NaN: not known), the number of components of the chosen array (1 for a dot
    * product), whether there is a free surface, the dimension, EstimatedCells (of all blocks),
    * UsedFluid, the array that is contoured if none is chosen, and a warning of very many cells.
-   * Values that are not known are 0 or empty. If processes share a run, the values are those of the
-   * last update, because one process cannot ask the others without waiting for them.
+   * Values that are not known are 0 or empty. If processes share a run, one process cannot ask the
+   * others without waiting for them. FluidScalarRange, EstimatedCells and UsedFluid are then those
+   * of the last update, and the other values are not known.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
   double GetNextIsoValue() { return this->LookAhead().IsoValue; }

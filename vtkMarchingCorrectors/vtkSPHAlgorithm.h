@@ -305,9 +305,10 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid. Leaves out a few particles (at most 0.1 %, or 8) if they are farther
-   * from the box of the others than this box is long. Returns false if no particle is fluid. densest: see
-   * GetNextDensest(); may be null. Collective if processes share a run.
+   * Finds the box of the fluid. Leaves out a few particles (at each side at most 0.1 %, or 8) if they
+   * are farther from the box of the others than this box is long. Returns false, and writes nothing,
+   * if no particle is fluid. densest: see GetNextDensest(); may be null. Collective if processes
+   * share a run.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
 
@@ -456,7 +457,8 @@ protected:
    * data. The set is kept while the input is the same. Returns null for other data.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
-  /** Calls TakeParticles() before an update. If the data are empty, updates the input first. */
+  /** Calls TakeParticles() before an update. If the data are empty, updates the input first, unless
+   * processes share a run. */
   vtkSmartPointer<vtkPointSet> TakeParticlesAhead(vtkDataObject* data);
   /** Makes one set of particles of the result of TakeVertices(), as TakeParticles() does. */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);

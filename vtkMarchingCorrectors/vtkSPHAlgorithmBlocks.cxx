@@ -39,7 +39,8 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 }
 
 // A block that fails leaves its place empty, and does not touch the others. An observer of the
-// progress may take blocks out of the input, or change blocks that come later.
+// progress may take blocks out of the input, or change blocks that come later, so the tree and the
+// later blocks are copied first.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
   auto blocks = vtkSmartPointer<vtkDataObjectTree>::Take(input->NewInstance());
@@ -52,8 +53,9 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(blocks->NewTreeIterator());
-  std::vector<vtkSmartPointer<vtkDataObject>> taken; // further blocks use copies, because kept data
-                                                     // belong to the first one
+  // The blocks, in order. All but the first are shallow copies, so that they do not take over the
+  // data that the filter has kept for the first block.
+  std::vector<vtkSmartPointer<vtkDataObject>> taken;
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
     vtkDataObject* block = iterator->GetCurrentDataObject();

@@ -11,9 +11,10 @@
  * Documentation/Guide/pieces.md explains its columns: component, iso, parent, closed, area, volume,
  * x, y, z, xmin, xmax, ymin, ymax, zmin, zmax, diameter, particles, mass, vx, vy, vz.
  *
- * A value that does not apply is NaN. The last five columns need the particles, the second input,
- * and are filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles
- * are left out, with the cavities in them. Open pieces, which have no volume and no particles, stay.
+ * A value that does not apply is NaN; a piece without a parent has -1. The last five columns need
+ * the particles, the second input, and are filled for each closed piece with fluid inside. Pieces
+ * below LeastVolume or LeastParticles are left out, with the cavities in them. Open pieces, which
+ * have no volume and no particles, stay.
  *
  * With PeriodicBounds, a piece ends at the sides of the period only where it has caps in them, and
  * particles count in whichever piece holds an image of them.

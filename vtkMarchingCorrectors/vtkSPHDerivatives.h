@@ -5,7 +5,8 @@
  * @brief   gradients of SPH particle arrays, vorticity, Q-criterion, lambda2
  *
  * vtkSPHDerivatives adds the SPH gradient of a point array to the particles and, for a vector with
- * three components, the quantities below. The array is chosen as for vtkMarchingCorrectors.
+ * three components (in two dimensions also with two), the quantities below. The array is chosen as
+ * for vtkMarchingCorrectors.
  *
  *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
  *     corrected (default) M_i^-1 G_i,  M_i = sum_j V_j grad W(x_i - x_j, s h_j) (x_j - x_i)^T
@@ -24,8 +25,9 @@
  *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex; not in two dimensions
  *     StrainRate           S, nine values
  *
- * They are float if the input array is, else double. Sums are over fluid particles; solid particles
- * get zeros, and so do particles that vtkGhostType marks as duplicates.
+ * All but GradientsCorrected are float if the input array is, else double. Sums are over fluid
+ * particles. Solid particles get zeros; if processes share the run, so do particles that
+ * vtkGhostType marks as duplicates.
  *
  * @warning
  * If a block is processed by itself (see SetBlocks()), or a piece is not shared by processes,

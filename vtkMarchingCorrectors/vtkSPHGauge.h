@@ -8,8 +8,9 @@
  * tank does, see mcor_gauge in mcor.h. vtkSPHMeter says what is fluid.
  *
  * The lines come from AddGauge() and from the line cells of the second input, each from its first
- * point to its last. If there are none, the only line goes from Point1 to Point2. Gauges of the
- * second input have the names of its cell array "Name", if there is one.
+ * point to its last. If there are none, and no second input, the only line goes from Point1 to
+ * Point2. Gauges of the second input have the names of its cell array "Name", if there is one;
+ * else their names are "line" and the number of the cell.
  *
  * The output is a vtkTable with a row for each gauge:
  *

@@ -67,8 +67,9 @@ struct vtkSPHParticlesChoice
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UnusedType; ///< a sentence: no fluid was chosen, although an array seems to tell it
-  vtkTypeBool IgnoreSolids = 0; ///< a filter has a setter for this member, or sets it by another
-                                ///< setting
+  /** Whether solid particles are left out when volumes are computed. Most filters have a setter for
+   * this member; vtkMarchingCorrectors sets it by SetSolids(). */
+  vtkTypeBool IgnoreSolids = 0;
   int Kernel = 0;
   int Dimension = 0;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

@@ -121,9 +121,9 @@ struct ChunkProgress
 };
 
 /**
- * Version of the particles in a run of several chunks; no kept run has the same version. Without a
- * version, each chunk would make the search grid anew. A run of a single chunk has no version, so
- * that only particles near its points go to the device.
+ * Version of the particles in a run of several chunks, if KeepDeviceData is off; no kept run has the
+ * same version. Without a version, each chunk would make the search grid anew. A run of a single
+ * chunk then has no version, so that only particles near its points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 

@@ -44,7 +44,7 @@ public:
   vtkTypeMacro(vtkSPHProbe, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /** The data set of port 0 with the new arrays, of its class. */
+  /** Returns the data set of port 0 with the new arrays, in data of the same class. */
   vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
 
   ///@{

@@ -73,8 +73,8 @@ public:
   vtkSPHTextMacro(WeightArrayName, "");
 
   /**
-   * The point array that is integrated. Empty, or "(density)" (the default): the density, or the
-   * array of SetInputArrayToProcess(0, ...).
+   * The point array that is integrated. Empty (the default), or "(density)": the array of
+   * SetInputArrayToProcess(0, ...), or the density if no array is chosen there.
    */
   vtkSPHTextMacro(ScalarArrayName, "");
 

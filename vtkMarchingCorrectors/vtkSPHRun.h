@@ -134,11 +134,15 @@ public:
   /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
-   * Collects the particles, and notes which arrays were found. Warns if there is no fluid, or if
-   * a setting has no effect. Returns false, after an error, if an array is not usable.
+   * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if there is no
+   * fluid, or if a setting has no effect. Returns false, after an error, if an array is not usable.
+   * Does nothing if no process has particles.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
-  /** Finds the period and, in a shared run, the globals: those of mcor_probe if forSamples is set, else of mcor_extract. */
+  /**
+   * Finds the period. A shared run also measures the particles of all processes (mcor_globals): for
+   * mcor_probe if forSamples is set, else for mcor_extract.
+   */
   virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
   /** Finds the period and, if smoothing lengths are estimated, the estimate from all processes' particles. */
   virtual bool MeasureLengths(vtkSPHParticles& particles) { return this->Measure(particles, true); }
@@ -176,7 +180,8 @@ public:
    * processes of the particles. home: the data set of this process that gets results; may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
-  /** Lists, for each interpolated array, the first particle of all processes whose value is not finite. */
+  /** In a shared run, lists for each interpolated array the first particle of all processes whose
+   * value is not finite, or -1. A run of one process changes nothing. */
   virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
   /** Adds what each process has done to the statistics of the run. */
   virtual void AddShares() {}
@@ -193,7 +198,8 @@ public:
 
 protected:
   void Fail(const std::string& message);
-  /** Finds the period if the filter wants that. Returns false, after an error, if there is none. */
+  /** Finds the period if the filter wants that. Returns false, after an error, if there is none, or if
+   * it is not usable. */
   bool SetPeriod();
   /** Returns the bounds of the period that field data tell; empty if they tell none. */
   virtual std::vector<double> FindPeriod(std::string& problem);

@@ -83,7 +83,7 @@ public:
   vtkSPHClampMacro(ResampleFactor, int, 1, 1, 1000000);
 
   ///@{
-  /** The arrays used for the last requested time between two steps; empty if none was used. */
+  /** The arrays that the last update used; empty if none was used, as at the time of a stored step. */
   vtkSPHToldMacro(UsedIdArrayName);
   vtkSPHToldMacro(UsedVelocityArrayName);
   ///@}
@@ -91,14 +91,15 @@ public:
   ///@{
   /**
    * The particles' motion between the last two steps, divided by the motion that their velocities
-   * give, if a warning tells of it; else 0.
+   * give, if a warning tells of it; else 0. A second time between the same two steps makes it 0.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);
   ///@}
 
   /**
-   * Why the last update failed, in one sentence, which is also reported as a VTK error; else empty.
+   * Why the last update failed: a sentence, or one for each block that failed, one a line. They are
+   * also reported as VTK errors. Empty: the update did not fail.
    */
   vtkSPHToldMacro(ErrorMessage);
 

@@ -42,7 +42,8 @@ class Data:
     corrected: tuple = (None,) * 6
     total: tuple = ()
     total_corrected: tuple = (None,) * 6
-    # Tables IV and V have h scale 1, and cubes of 0.5 h and h.
+    # Tables IV and V: the members below have one entry for cubes of 0.5 h, and one for cubes of h. Smoothing lengths are not
+    # scaled.
     cube: tuple = ()
     cells: tuple = ()
     lengths: tuple = ()

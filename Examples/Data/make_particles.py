@@ -39,12 +39,12 @@ def tank(count, ratio=1.28):
 
 
 def dam_break(count, ratio=1.28):
-    """Collapsing water column with particles of different sizes, smoothing lengths 1.5 : 1; ratio: h / V^(1/3).
+    """Makes a collapsing water column. The largest smoothing length is 1.5 times the smallest. ratio: h / V^(1/3).
 
-    The column, 1.228 x 1.0 x 0.55 m, 0.3 s after the dam at x = 1.228 broke: z up, depth by Ritter's solution for a dry bed.
-    Particles are a jittered lattice, finest at the front and at the bottom, coarse far from both: a particle's volume V follows
-    from its lattice cell. Arrays: SmoothingLength, Density (1000), Mass = 1000 V, Lambda2 (1/s^2) of a periodic flow made of
-    vortices; below 0 in their cores, try -140.
+    The column was 1.228 x 1.0 x 0.55 m; the dam at x = 1.228 broke 0.3 s ago. z points up. The depth is Ritter's solution for a
+    dry bed. The particles are a jittered lattice, finest at the front and at the bottom, coarse far from both. A particle's
+    volume V is the volume of its lattice cell. Arrays: SmoothingLength, Density (1000), Mass = 1000 V, and Lambda2 (1/s^2) of a
+    periodic flow made of vortices. Lambda2 is negative in the vortices' cores; try the iso value -140.
     """
     length, width, height, time = 1.228, 1.0, 0.55, 0.3
     wave = np.sqrt(GRAVITY * height)

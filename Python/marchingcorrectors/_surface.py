@@ -82,8 +82,8 @@ class Surface(Result):
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
     line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
     band_value: Optional[np.ndarray] = None  #: filled: (triangles,) float64, the iso value with which the band begins
-    #: {name: (points,) or (points, components)}, of each array's own type: means of real arrays, else the nearest
-    #: particle's value
+    #: {name: (points,) or (points, components)}. An array of floating-point numbers has its SPH mean at each point; any
+    #: other array has the value of the nearest particle. Each array keeps its type.
     attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
     #: {name: particle}: attributes that are left out, because they are NaN or infinite at this particle
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)

@@ -37,7 +37,7 @@ std::string vtkSPHNameOf(vtkAbstractArray* array);
 /** Returns the name, or "" for "(automatic)" and "(none)", which ParaView's lists of arrays show in place of a name. */
 std::string vtkSPHRealName(const std::string& name);
 
-/** Returns the sentence "Point arrays: A, B." */
+/** Returns the sentence "Point arrays: A, B.", or "The input has no point arrays." */
 std::string vtkSPHListNames(vtkPointSet* points);
 
 /** Adds an object's address and modification time to a signature. No two changes in VTK have the same time. */
@@ -85,7 +85,8 @@ vtkSmartPointer<vtkDataArray> vtkSPHBorrow(const ValueT* values, int components,
   return array;
 }
 
-/** Makes a VTK array that owns these malloc'ed values, and sets `values` to null. */
+/** Makes a VTK array that owns these malloc'ed values, and sets `values` to null. If there are no
+ * tuples, the caller still owns them. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
 {
@@ -130,7 +131,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds one tuple for each level, its count, up to the last level with a count above 0. */
+/** Adds one tuple for each level, its count, up to the last level with a count above 0; at least one. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 

@@ -36,8 +36,8 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 /**
  * Joins the arrays of all blocks that are named as `first`, one block after the other. A wall that
  * lacks the array gets the first tuple of `first`. Returns null if a block that is no wall lacks
- * the array, if a wall lacks an array of particle types, or if a wall's array has another type or
- * size.
+ * the array, if a wall lacks an array of particle types, or if a block's array of this name has
+ * another type or size.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
@@ -124,8 +124,8 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 /**
  * Returns, for each block with points, whether it is a wall. If `fluidArray` chooses blocks as
  * fluid, all other blocks are walls, else the blocks whose names tell of walls. Returns an empty
- * list if no block, or every block, is a wall. Blocks without points count for this, so that all
- * processes agree.
+ * list if no block is a wall, or if all blocks are walls. Here blocks without points are counted,
+ * too, because a block may have its points on another process.
  */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {

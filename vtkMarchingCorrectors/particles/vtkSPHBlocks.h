@@ -26,16 +26,16 @@ VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
  * Returns the particles of a data set, or of each of its blocks, in data of the same class. If a
  * block has other cells than vertices, and any block or process has vertices (haveVertices), points
  * without a vertex are nodes of a mesh, and are left out. Arrays of vertices become arrays of their
- * points, unless the points have an array of that name. Returns the data set itself if nothing
- * changes.
+ * points, unless the points have an array of that name, or a point that stays has no vertex. Returns
+ * the data set itself if nothing changes.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);
 
 /**
  * Lists "Block 'NAME', index N" for each block that is not null, in the order of iteration. A
- * partition without a name has the name of its partitioned data set. N is the flat index that
- * ParaView shows.
+ * partition without a name has the name of its partitioned data set. A block without any name is
+ * "Block index N". N is the flat index that ParaView shows.
  */
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
 
@@ -46,9 +46,9 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
  * Joins the points of all blocks that are point sets, one block after the other, with the point
  * arrays that all of them have (same name, type and number of components). If the names of some
  * blocks, but not of all, tell of walls, the array MCOR_WALL_BLOCK is 1 for particles of walls. An
- * array that only walls lack is kept; its values for the walls mean nothing. If `fluidArray` names
- * a block, see vtkSPHListFluidBlocks(), all other blocks are walls. Field data of all blocks are
- * kept.
+ * array that only walls lack is kept, unless it tells the particles' types; its values for the walls
+ * mean nothing. If `fluidArray` names a block, see vtkSPHListFluidBlocks(), all other blocks are
+ * walls. Field data of all blocks are kept.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
@@ -58,8 +58,8 @@ std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
  * Makes `output` a copy of `tree`, and adds to each block its part of the arrays that a filter has
- * made: the point arrays of `joined` that `before` does not have. before: the particles that
- * vtkSPHJoinBlocks() made of `tree`.
+ * made: the point arrays of `joined` that `before` does not have. Blocks that are no point sets
+ * become empty. before: the particles that vtkSPHJoinBlocks() made of `tree`.
  */
 void vtkSPHSplitBlocks(
   vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output);

@@ -53,15 +53,16 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Writes the detected fluid into the choice, and the array to contour into `first` if `first` has
- * no name. Collective.
+ * Writes the detected fluid and UnusedType into the choice. Writes the array to contour into `first`
+ * if `first` is not null and has no name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);
 
 /**
  * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or
- * densities of the first `count` particles. Returns why that failed, else an empty text.
+ * densities of the first `count` particles. Returns why that failed; an empty text if it did not
+ * fail, or was cancelled.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
   std::int64_t count, double* values);
@@ -90,7 +91,8 @@ public:
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /** The name of an array that sends sums over neighbours to other processes. */
+  /** The name of an array that sends sums over neighbours, or factors of widening, to other
+   * processes. */
   static std::string NameMade(const std::string& name);
   /** Whether NameMade() returned this name. */
   static bool IsMade(const char* name);

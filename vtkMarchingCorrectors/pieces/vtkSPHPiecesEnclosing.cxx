@@ -133,8 +133,8 @@ private:
 };
 
 /**
- * Sets `innermost` to the piece with the volume of least magnitude, among the pieces around the
- * point and the present `innermost`.
+ * Replaces `innermost` if a piece encloses the point and has a volume of smaller magnitude, or if
+ * `innermost` is -1. The piece `without` is ignored.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)

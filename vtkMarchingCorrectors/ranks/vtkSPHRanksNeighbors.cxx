@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Computes sums over neighbours that lie on several ranks. Each rank gets the particles in its box
-// of space. Smoothing lengths that are found from these particles alone are too long. So spheres
-// with these lengths as radii hold all neighbours: the rank asks the other ranks for the particles
-// in the spheres.
+// of space. Smoothing lengths that are found from these particles alone are never too short. So
+// spheres that are somewhat larger than the supports of these lengths hold all neighbours: the rank
+// asks the other ranks for the particles in the spheres. For densities, the smoothing lengths are
+// known.
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIncrementalOctreePointLocator.h"

@@ -47,9 +47,10 @@ public:
   void Enter(double at[3]) const;
 
   /**
-   * Divides the work evenly. input: this rank's particles; work: of each particle; 0: nobody needs
-   * the particle; places: further work of this rank; parts: how many ranks get a box. Returns, for
-   * each rank, the particles whose supports, or images of them, reach its box. Collective.
+   * Divides the work evenly. input: this rank's particles. work: how much work each particle costs,
+   * or 0 if no rank needs it. places: further work of this rank. parts: how many ranks get a box.
+   * Returns, for each rank, the particles that the rank needs: their supports, or images of them,
+   * reach its box, or they are near enough to be neighbours of such particles. Collective.
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
     const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places, int parts);

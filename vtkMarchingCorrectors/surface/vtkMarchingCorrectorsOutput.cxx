@@ -203,8 +203,8 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 }
 
 // Chooses the active scalars among the particles' attributes that vary on the surface, and the iso
-// value if there are several iso values. The contoured scalar does not count: it varies by rounding
-// alone. For vectors, the magnitudes must vary.
+// value if there are several iso values. The contoured scalar does not count if there is only one
+// iso value: it varies by rounding alone. For vectors, the magnitudes must vary.
 void vtkMarchingCorrectorsOutput::ChooseActive(vtkPolyData* output, const Merge& merge) const
 {
   vtkPointData* data = output->GetPointData();

@@ -40,7 +40,7 @@ public:
   vtkMarchingCorrectorsOutput(
     const vtkSPHParticles& input, const mcor_options& options, mcor_surface& surface);
 
-  /** Lists the names of the arrays that the core must compute, in the output's order. */
+  /** Lists the names of the arrays that the core must compute. */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
   /**
@@ -49,9 +49,11 @@ public:
    */
   using Merge = std::function<void(double* ranges, int count)>;
   void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);
-  /** Returns the largest magnitude of the mesh's coordinates if they are floats; else 0. */
+  /** Returns the largest magnitude of the mesh's coordinates if they are floats; else 0. Call it
+   * before BuildMesh(). */
   double FindLargestFloat(int precision) const;
-  /** Adds statistics and parameters. Except the costs of the run, they depend on input and options alone. */
+  /** Adds statistics and parameters. Except the device and the costs of the run, they depend on input
+   * and options alone. */
   void AddRun(vtkFieldData* run) const;
 
 private:

@@ -50,7 +50,10 @@ struct Values
   const mcor_array View;
 };
 
-/** Makes an array like `a` with the values value(tuple, component), in parallel: of floats if `a` and `b` are floats, else of doubles. */
+/**
+ * Makes an array like `a`, of floats if `a` and `b` are floats, else of doubles. Its values are
+ * value(tuple, component), which several threads call.
+ */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
   const Values& a, const Values& b, vtkIdType count, const ValueT& value)
@@ -272,8 +275,8 @@ bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, 
   return this->Error.empty();
 }
 
-// Warns if a velocity is not finite, or if the particles' motion along their mean velocities is much
-// less or more than the velocities say.
+// Warns if a velocity is not finite, or if the particles' motion along their mean velocities is less
+// than half, or more than twice, what the velocities say. The velocities are then not used.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

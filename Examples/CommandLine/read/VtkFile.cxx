@@ -40,7 +40,8 @@ namespace
 
 // ---- The counts that a file declares ----
 
-/// Returns the whole numbers of a text, up to the first word that is none.
+/// Returns the numbers at the beginning of a text, up to the first word that is not a number. Reads
+/// at most 200 characters.
 std::vector<double> Numbers(View text)
 {
   std::vector<double> numbers;

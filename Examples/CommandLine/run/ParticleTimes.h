@@ -12,7 +12,7 @@
 class StoredSteps;
 class vtkSPHTemporalInterpolator;
 
-/// Returns the time as text, with as few digits as it was given with.
+/// Returns the time as text, rounded to 12 digits, without trailing zeros.
 std::string TimeText(double time);
 
 /// The particles of a series at stored times, or at requested times, also between two steps.

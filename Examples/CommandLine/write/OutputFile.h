@@ -35,7 +35,7 @@ private:
   std::vector<OutputTarget> Files;
 };
 
-/// Writes one file that belongs to no other output, as OutputFiles does.
+/// Writes a single file in the way of OutputFiles: under a fresh name, which then replaces `file`.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
 /// A file of all steps so far, which can be read during the run, and after the program was ended. In a long series it

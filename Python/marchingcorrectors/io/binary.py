@@ -193,10 +193,14 @@ def read_gadget_binary(path, types):
                     "types": wanted})
 
 
-# DualSPHysics: Part_0000.bi4. A head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64 bits (0, 1). Then one
-# item. An item has, in this order: size of its definition, "\nITEM\n", name, hidden, values hidden, two formats, numbers of arrays and
-# items, bytes of values; "\nVALUES", number, (name, type, value) for each value; its arrays; its items. An array has: size of its
-# definition, "\nARRAY", name, hidden, type, count, bytes, data. A text has: length, letters. Arrays stay in the file until they are used.
+# DualSPHysics: Part_0000.bi4. A file begins with 64 bytes. Bytes 0 to 59: title. Byte 60: byte order, 0 little or 1 big, plus 10 if sizes
+# have 64 bits. Byte 61: 1 if sizes have 64 bits. One item follows. An item consists, in this order, of:
+#   the size of its definition; the text "\nITEM\n"; its name; two flags (it is hidden, its values are hidden); two texts of formats;
+#   the number of its arrays; the number of its items; the size of its values in bytes;
+#   unless this size is 0: the text "\nVALUES", the number of its values, and the name, type and value of each value;
+#   its arrays; its items.
+# An array consists of: the size of its definition; the text "\nARRAY"; its name; a flag (it is hidden); its type; the number of its
+# values; their size in bytes; the values. A text consists of its length and its letters. Arrays stay in the file until they are used.
 PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
          20: "i4", 21: "u4", 22: "f4", 23: "f8"}
 TEXT, DEPTH = 1, 8

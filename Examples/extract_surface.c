@@ -27,7 +27,7 @@ static int is_fluid(const float position[3])
 }
 
 /* Makes particles on a lattice in the unit cube, slightly shifted so that the lattice does not
- * show. Returns their number; the caller frees positions and temperatures. */
+ * show. Returns their number, 0 if memory runs out; the caller frees positions and temperatures. */
 static int64_t make_particles(float** positions, float** temperatures)
 {
   const int n = (int)(1.0 / SPACING);

@@ -73,7 +73,7 @@ double rounded(double value)
   return QString::number(value).toDouble();
 }
 
-// Returns the values as text; "-" if there are none: nothing was drawn, or a free surface has none.
+// Returns the values as text; "-" if all are 0 or empty: nothing was drawn, or a free surface has none.
 QString textOf(vtkSMProperty* property)
 {
   const vtkSMPropertyHelper values(property, true);

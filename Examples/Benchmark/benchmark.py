@@ -5,9 +5,9 @@
 
   benchmark.py PROGRAM [--tables a,b] [--sizes 60k,670k] [--runs 5] [--particles FILE...] [-- OPTIONS OF THE PROGRAM]
 
-Times are medians over --runs, in seconds. Every measurement of the program and of other software is a process of its own;
-reading the particles and writing the surface are not timed, unless the case says so. Memory is the largest resident set of the
-process. A case prints what it does in the words of its docstring.
+Unless the docstring of a case says otherwise, times are medians over --runs, in seconds; each measurement of the program or of
+other software is a process of its own; and reading the particles and writing the surface are not timed. Memory is the largest
+resident set of the process. The docstring of a case says what the case measures and prints.
 """
 import argparse
 import collections

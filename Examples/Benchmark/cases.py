@@ -52,7 +52,8 @@ MASK = (1 << 21) - 1
 
 
 def split_bricks(positions, lengths, cube):
-    """Returns, for each level from 1 on, the keys (one number each) of the bricks that smaller bricks replace."""
+    """Returns a list with one entry for each level: the keys (one number each) of the bricks that smaller bricks replace.
+    The entry of level 0, the smallest bricks, is empty."""
     sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
     split = [np.empty(0, np.int64)]
@@ -216,7 +217,7 @@ class Watch:
 
     def run(self, stop_at=None):
         """Returns the seconds of the whole run; the longest gaps between reports, by clock and by processors, with the phase in which each begins;
-        and the seconds that the run goes on after a stop."""
+        and the seconds from the report with number stop_at, which cancels the run, to the return; 0 without a cancelled run."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -330,7 +331,8 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids outside of the fluid, one spacing away; each solid has the volume of a fluid particle."""
+    """Writes the particles with a layer of solids around their box. The least smoothing length is the
+    distance of the layer from the box and of a solid from the next; its cube is the volume of a solid."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing

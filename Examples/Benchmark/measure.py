@@ -77,8 +77,8 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """Writes these particles with one array alone, and returns options that replace the other arrays: smoothing length, mass and density must be
-        the same for all particles."""
+        """Writes these particles with one array alone. Returns the file's path, and options that replace the arrays of smoothing
+        length, mass and density. Raises ValueError if one of these three differs from particle to particle."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)
@@ -153,7 +153,8 @@ class Program:
             "bytes": found["peak_resident_bytes"]}
 
     def start(self, path, options, repeat=1, environment=None, output=None, before=()):
-        """Runs one process. Returns its report, if it makes a surface, and the seconds from its start to its end, by the clock and of processors."""
+        """Runs one process, and ends the benchmark if the process fails. Returns the report of the process, or None if repeat is 0, and the
+        seconds from its start to its end, by the clock and of processors."""
         report = self.folder / "statistics.json"
         report.unlink(missing_ok=True)
         statistics_of = ["--repeat", str(repeat), "--stats", report] if repeat else []

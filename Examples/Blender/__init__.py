@@ -45,7 +45,8 @@ def words_of(settings):
 
 
 def refresh(thing, scene):
-    """Makes the mesh of the scene's frame, unless the object has it already. Returns the sentence that says what went wrong, or ""."""
+    """Makes the mesh of the scene's frame, unless the object has it already. Returns the error or the
+    warnings as text, or ""."""
     settings = thing.sph
     if not len(settings.steps):
         return ""

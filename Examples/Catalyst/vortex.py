@@ -9,7 +9,7 @@ SPACING = 0.015
 
 
 def ball():
-    """Returns the particles at rest."""
+    """Returns the positions of the particles at time 0."""
     axis = np.arange(0.0, 1.0, SPACING)
     points = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1).reshape(-1, 3)
     return points[np.linalg.norm(points - (0.5, 0.72, 0.5), axis=1) < 0.15]

@@ -59,7 +59,8 @@ bool IsReaderGone()
   return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
 }
 
-/// Runs the command line. Returns false if something failed, after the error was printed.
+/// Runs the command line. Returns false if something failed, after the error was printed; throws
+/// all other errors.
 bool Execute(int argc, char* argv[])
 {
   Job job;

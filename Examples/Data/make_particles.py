@@ -98,14 +98,14 @@ def lambda2(positions, wave_number, speed):
 def graded(count, ratio=1000):
     """Particles whose size goes with the distance from the middle, for adaptive cubes; ratio: largest h / smallest h.
 
-    Jittered shells around a small hole, a wedge of them left out: the free surface goes from the hole, where particles are
-    smallest, along the wedge to the outside. Arrays: SmoothingLength, Volume, Sphere (the distance from a sphere that passes
+    Jittered shells around a small hole, a cone of them left out: the free surface goes from the hole, where particles are
+    smallest, along the cone to the outside. Arrays: SmoothingLength, Volume, Sphere (the distance from a sphere that passes
     beside the hole, divided by the distance from the middle).
     """
     def shells(step):
         return 1 + int(math.log(ratio) / math.log(1 + 0.9 * step))
 
-    low, step = 1e-3, 1.0  # spacing over distance from the middle, for about `count` particles; the wedge takes 0.3
+    low, step = 1e-3, 1.0  # spacing over distance from the middle, for about `count` particles; the cone takes 0.3
     for _ in range(60):
         middle = (low + step) / 2
         more = 0.7 * shells(middle) * 4 * math.pi / middle**2 > count

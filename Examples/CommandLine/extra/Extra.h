@@ -26,8 +26,8 @@ using Picture = std::function<std::string(const std::string& file, vtkDataSet* d
 // a small run, so the functions are in a library of their own. All throw std::runtime_error with one
 // sentence.
 
-/// Makes the function that draws. Fails if this VTK renders through an X server and finds none: VTK itself
-/// would abort.
+/// Makes the function that draws. The options must live as long as this function. Fails if this VTK renders
+/// through an X server and finds none: VTK itself would abort.
 Picture NewPicture(const PictureOptions& options);
 
 /// Reads the points of one step of a .vtkhdf file, or lists the times of its steps, if it has any. Reads poly

@@ -48,7 +48,7 @@ namespace
 
 /// Connects to the X server, if this VTK renders through one. The running program is searched for
 /// X's functions, because only VTK's rendering library knows whether it is linked to them. The
-/// connection is held until the picture is drawn: a server that loses its last client starts anew
+/// connection is held until the last picture is drawn: a server that loses its last client starts anew
 /// (Xvfb does), and does not answer meanwhile. Throws if a server is certainly needed and cannot be
 /// reached.
 std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)

@@ -88,11 +88,11 @@ struct Job
   /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
   /// Lists the files that the command line names to be read. Leaves out files that only these files
-  /// name.
+  /// name. Some names may be empty.
   std::vector<std::string> InputFiles() const;
   /// Returns one of the modes, which the options and the names of the files tell.
   unsigned Mode() const;
-  /// Whether there are surfaces of several times.
+  /// Whether the run makes a film, of surfaces or of images.
   bool IsFilm() const;
 
   /// The options that were given, with the text behind each. Text() returns "" if there is none.
@@ -165,9 +165,9 @@ std::vector<double> ToGaugeGrid(const std::string& option, const std::string& te
 /// Reads NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Adds the places of the options, then those of their file, to the job's filter of fluxes or of
-/// gauges. Returns how many there are. Throws UsageError if two places have one name, or
-/// std::runtime_error if a file cannot be read.
+/// Adds the places of the options, then those of their file, then the grid of gauges, to the job's
+/// filter of fluxes or of gauges. Returns how many there are. Throws UsageError if two places have
+/// one name, or a file has a wrong line or no place; std::runtime_error if a file cannot be read.
 std::size_t AddPlaces(const Job& job);
 
 /// Reads the command line into the job. Throws UsageError, see Text.h.

@@ -87,7 +87,8 @@ void Need(
 /// Returns the texts between the signs `sign`.
 std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
 
-/// Returns true, and sets the value, if the whole text is one finite number.
+/// Returns true, and sets the value, if the whole text is one finite number. Else the value may have
+/// changed, too.
 bool ParseNumber(const std::string& text, double& value);
 
 /// Returns "; did you mean NAME?" with the name that is most like the text; empty if none is near.
@@ -159,8 +160,8 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
   return Joined(endings, ", ", " or ");
 }
 
-/// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent
-/// sign.
+/// Whether a film's name has one place for the number of a step, %d, perhaps with one or two digits
+/// as in %04d, and no other percent sign.
 bool HasStepNumber(const std::string& name);
 
 /// Returns the name of a step: frame_0007.png for frame_%04d.png.

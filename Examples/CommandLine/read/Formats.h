@@ -30,8 +30,8 @@ FileBytes BytesOf(const std::string& file);
 /// Returns points without arrays at these places.
 vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places);
 
-/// Opens a file that is to be read, so that IsSource() knows it. Refuses a name that is not a file, a file that cannot
-/// be opened, and one that can only be read from its begin to its end, such as a pipe.
+/// Checks a file that is to be read, and makes it known to IsSource(). Fails unless it is a regular file that may be
+/// read: a directory, a device or a pipe is refused.
 void CheckRegularFile(const std::string& file);
 
 /// Runs a library that reads a file. The user gets a sentence if the library crashes over the file, asks for too much
@@ -44,10 +44,11 @@ void ReadWithCare(const std::string& file, const std::function<void()>& read);
 ///@{
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
-/// Returns the time in the field data at the file's beginning (TimeValue, TIME, time), or nothing. Points and their
-/// arrays are not read.
+/// Returns the time in the field data (TimeValue, TIME, Time or time) within the first 64 KiB of the file, or nothing.
+/// Points and their arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Returns the number in the first of the arrays `names` that the same field data have, or nothing.
+/// Returns the number in the first of the arrays `names` that the same field data have with one finite number, or
+/// nothing.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
@@ -141,8 +142,8 @@ struct Column
 
   std::string Name;
   std::vector<double> Numbers;
-  std::vector<std::string> Words;  ///< texts of a column that has no numbers; else empty
-  std::vector<vtkTypeInt64> Whole; ///< a column that may have identifiers; else empty
+  std::vector<std::string> Words;  ///< texts of a column that begins with a word; else empty
+  std::vector<vtkTypeInt64> Whole; ///< the numbers, if all are whole; else empty
 
   void Add(View cell);
 };

@@ -41,7 +41,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The files that the run has opened for reading.
+/// The files that the run reads, as CheckRegularFile() has met them.
 std::set<std::pair<dev_t, ino_t>>& Sources()
 {
   static std::set<std::pair<dev_t, ino_t>> sources;
@@ -196,8 +196,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns only the points and their arrays. Nothing else in the data is used, and cells would cost
-/// memory for each particle.
+/// Returns only the points, their arrays, and the field data that tell a period. Nothing else in the
+/// data is used, and cells would cost memory for each particle.
 vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();

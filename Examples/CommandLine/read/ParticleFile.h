@@ -49,12 +49,12 @@ double StoredTimeStep(const std::vector<std::string>& files);
 /// Reads the particles that --walls names, as one set; null if there are none.
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
-/// Opens these files, and the files of their parts, before they are read, so that IsSource() knows
+/// Checks these files, and the files of their parts, before they are read, so that IsSource() knows
 /// them. Errors are reported later, when a file is read.
 void OpenSources(const std::vector<std::string>& files);
 
-/// Whether the run has opened this file to read it. Device and inode decide, not the name. Every
-/// writer asks this.
+/// Whether this is a file that the run reads, see CheckRegularFile(). Device and inode decide, not the
+/// name. Every writer asks this.
 bool IsSource(const struct stat& file);
 
 /// Particles of files at one time. Cells are kept until all files are read: if one file has
@@ -82,9 +82,10 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 /// Name of the array that AddWalls() makes: 0 for fluid, 1 for walls.
 extern const char* const WallArrayName;
 
-/// Returns the fluid, followed by the walls; the fluid itself if `walls` is null. Keeps the fluid's
-/// arrays of numbers. If walls lack an array, they get the fluid's median: only the smoothing
-/// length and the arrays that give volumes matter for solids, which take part in no field.
+/// Returns the fluid, followed by the walls; the fluid itself if it is empty or `walls` is null. Keeps
+/// the fluid's arrays of numbers. Throws if one of them has the name WallArrayName. If walls lack an
+/// array, they get the fluid's median: only the smoothing length and the arrays that give volumes
+/// matter for solids, which take part in no field.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
 /// Returns the period for "--periodic auto". Fails with the problem, or because no period was found.

@@ -297,8 +297,9 @@ const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = 
 
 // ---- Times ----
 
-/// Returns the text of an empty data set that has the field data of a file's beginning, in the
-/// file's own format, so that VTK's reader can read the field data alone.
+/// These functions return the text of an empty data set that has the field data of a file's
+/// beginning, in the file's own format, so that VTK's reader can read the field data alone. They
+/// return "" if no complete field data are found.
 std::string FieldOfXml(const std::string& head)
 {
   // A search from npos on finds nothing, so `close` is npos if any search failed.

@@ -57,12 +57,12 @@ private:
 };
 
 /// Makes a new file, and appends six characters to `name`, which then names the file. Returns the
-/// file's descriptor; below 0, `name` is "", and errno tells why. The file is removed when the program
-/// ends, unless EndTemporary() was called.
+/// file's descriptor; below 0, `name` is "", and errno tells why. The file is removed if a crash or a
+/// signal ends the program before EndTemporary() is called.
 int MakeTemporary(std::string& name);
 
 /// Lets the file take the place of `target`, or, without one, removes the file. Returns false, and
-/// sets errno, if this fails.
+/// sets errno, if it cannot take that place; the file is then still there.
 bool EndTemporary(const std::string& name, const std::string& target = "");
 
 #endif

@@ -141,8 +141,9 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
   }
 }
 
-/// Adds a row for each point. The first step decides on the columns. A value is empty if there is
-/// no fluid at the point, or no such array.
+/// Adds a row for each point. The first step decides on the columns, and adds their names. A value is
+/// empty if the step lacks the array, or if there is no fluid at the point, unless the array was
+/// read with the points.
 void AddPointRows(const Job& job, double time, vtkDataSet* points,
   std::vector<std::pair<std::string, int>>& columns, std::string& text)
 {

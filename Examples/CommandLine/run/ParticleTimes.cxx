@@ -79,7 +79,8 @@ NumberedName Numbered(const std::string& name)
 }
 
 /// Adds the walls of a file to all steps. If the name has %d, each step gets the file of its number.
-/// From a .pvd file, each step gets the walls of its time, or, if steps have no times, the next walls.
+/// From a list, each step gets the walls of its time, or, unless `haveTimes`, the next walls. haveTimes:
+/// the steps come from a list, too. Throws std::runtime_error if a step gets no walls.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {

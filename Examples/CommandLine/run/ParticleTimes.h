@@ -49,7 +49,7 @@ public:
   /// Lists the files from which the particles at a time are made, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
-  /// Opens all files that will be read, see OpenSources(), and checks the outputs.
+  /// Makes all files that will be read known to IsSource(), and checks the outputs.
   void CheckFiles(const std::vector<std::string>& outputs) const;
 
   /// Works on each time. outputs: the file of each time, or empty. If a time fails, says so, calls

@@ -84,7 +84,8 @@ void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   before = now;
 }
 
-/// Returns the iso values of a run, ascending; if the run had no particles, the requested values.
+/// Returns the iso values of a run, ascending; if the run had no particles, the requested values; one
+/// NaN if there are none.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 {
   std::vector<double> values = NumbersOf(run, "IsoValues");

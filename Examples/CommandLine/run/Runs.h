@@ -24,7 +24,8 @@ struct Job;
 /// The runs of the program. All return false if a step failed, after its error was printed, and throw UsageError or
 /// std::runtime_error with one sentence.
 
-/// Extracts the surface, and writes it with its tables: all files, or none.
+/// Extracts the surface. Writes it and the table of its pieces: both, or none. Then writes the widened particles, the
+/// statistics and the picture, each by itself.
 bool MakeSurface(Sharing& sharing);
 
 /// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them. If
@@ -45,7 +46,8 @@ bool MakeField(Sharing& sharing);
 /// The functions below are parts of the runs above.
 
 /// Makes the settings that depend on the input, for one of the job's filters. Returns the
-/// particles, with the arrays of --derive. Throws std::runtime_error with one sentence if an array
+/// particles, with the arrays of --derive and, unless the filter is the surface's, with the
+/// smoothing lengths of --widen or --smooth. Throws std::runtime_error with one sentence if an array
 /// is missing.
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
@@ -63,9 +65,9 @@ struct Run
   double WallSeconds = 0.0; // of the whole filter, which are more than those of its phases
 };
 
-/// Extracts the surface of the particles once, with the array ComponentId. Drops the pieces that are to
-/// be left out, and adds a row for each piece to the table `pieces`, if this table is wanted. Throws as
-/// Update() does.
+/// Extracts the surface of the particles once. If the table `pieces` is wanted: gives the surface the
+/// array ComponentId, drops the pieces that are to be left out, and adds a row for each other piece to
+/// the table. Throws as Update() does.
 Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
   const std::string& progress = "");
 
@@ -104,7 +106,7 @@ double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 /// count, or a number with six digits.
 std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
-/// Describes a run's field data in four lines. atLength: in more lines, for users who know the method;
+/// Describes a run's field data in four or five lines. atLength: in more lines, for users who know the method;
 /// onlySeconds: tells only the run's seconds. Returns "" if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds);
 

@@ -72,7 +72,7 @@ int LaunchedRank();
 ///@}
 
 /// Begins MPI for a job that processes share; MPI ends with the object. Call this once in a
-/// process.
+/// process. Returns null in a build without MPI.
 std::unique_ptr<Sharing> NewRankSession(Job& job);
 
 #endif

@@ -47,7 +47,7 @@ bool IsFilmStep(const std::string& file);
 bool HoldsArrays(const std::string& file);
 
 /// Returns a sentence about the arrays that a file in this format cannot hold; empty if it can hold
-/// all.
+/// all. more: names of arrays that were not interpolated to the surface, because of this format.
 std::string LostArrays(
   const std::string& file, vtkPolyData* surface, const std::vector<std::string>& more);
 

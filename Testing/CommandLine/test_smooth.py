@@ -32,8 +32,7 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_gauges_read_the_widened_field(self):
-        """A gauge's level lies on the widened surface. In a film, gauges and pieces read the same field. Both hold with computed volumes,
-        too."""
+        """A gauge's level lies on the widened surface. A film's gauge gives the same level. Computed volumes change neither."""
         files.write_vtp(self.directory / "bare.vtp", self.points, {"SmoothingLength": self.arrays["SmoothingLength"]})
         for source in (self.input, "bare.vtp"):
             levels = []

@@ -9,8 +9,8 @@
 
 #define NO_BRICK 4
 
-/* The cells that the last extraction with pairs marked: one byte per cell of a box of the lattice. Bricks that are
- * certainly on one side of iso have no marked cells. */
+/* The cells that the last extraction by pairs of particles (MCOR_PAIRS) marked: one byte per cell of a box of the
+ * lattice. Bricks that are certainly on one side of iso have no marked cells. */
 typedef struct marked_cells
 {
   int low[3], size[3];

@@ -6,7 +6,7 @@
 
 #include "core_fixture.h"
 
-/* Computes W h^3 and its gradient at offsets in two ways: as sums at nodes do, and as the correction does. */
+/* Computes W h^3 at offsets in two ways: alone, as the sums at nodes do, and with its gradient, as the correction does. */
 static const char source[] =
   "__kernel void test_kernel(const int count, const real inv_h, __global const real* offset,\n"
   "  __global real* out)\n"

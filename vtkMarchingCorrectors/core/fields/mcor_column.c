@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes the table of an SPH kernel's columns by quadrature: their integrals over rectangles. Only
- * operations that all processors round alike are used. */
+/* Integrates an SPH kernel along lines of sight, and over rectangles across them, and keeps the
+ * integrals in a table. Uses only operations that all processors round alike. */
 
 #include "mcor_plane.h"
 #include "mcor_project.h"

@@ -106,8 +106,8 @@ static void mcor_place_sample(
   }
 }
 
-/* Takes pieces until the batch is full. Halves pieces that are longer than a cell; drops pieces that
- * no particle is near, and cells that another rank owns. */
+/* Takes pieces until the batch is full. Halves pieces that are longer than a cell. Drops pieces that
+ * are far from all particles, and pieces that belong to another rank. */
 static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
 {
   mcor_context* context = job->base.context;

@@ -613,7 +613,8 @@ static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
     !(f->request->has_iso_values && strcmp(a->name, f->found->iso_value_name) == 0);
 }
 
-/* Makes attributes of all arrays of floats and doubles, and lists the others. */
+/* Of the arrays that the surface is to have, floats and doubles become attributes. The others, which
+ * cannot be interpolated, are listed for the nearest particle's value. */
 static void mcor_find_attributes(mcor_finder* f)
 {
   for (int i = 0; i <= (mcor_join_velocity(f) < 0 ? f->count - 1 : f->count); ++i)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds which particles are fluid, by an array that is given or that clearly tells it; and which particles count at
- * all. */
+/* Finds which particles are fluid: by the array that the caller names, else by an array whose name and values leave
+ * no doubt. Also finds which particles are left out altogether. */
 
 #include "mcor_finder.h"
 
@@ -214,7 +214,7 @@ static char* mcor_describe_choice(const mcor_finder* f)
   double b[6];
   for (int side = 0; side < 6; ++side)
   {
-    /* A tiny side stands for 0, because six zeros would choose no box. */
+    /* Six zeros mean that no box is chosen, so a box's side at 0 may be given as a tiny number. */
     b[side] = fpclassify(request->within[side]) == FP_SUBNORMAL ? 0 : request->within[side];
   }
   char* text = has

@@ -370,8 +370,8 @@ mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input
   return mcor_is_explained(warning, &suspicion) ? MCOR_NO_MESSAGE : checks[warning](&suspicion);
 }
 
-/* The longest step between two coordinates without a warning, as a share of the cube size. It is
- * short, because some triangles are far smaller than cubes. */
+/* A warning comes if neighbouring coordinates in single precision differ by more than this share of
+ * the cube size. The share is small, because some triangles are far smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
 mcor_message mcor_describe_single_points(double largest, double cube_size)

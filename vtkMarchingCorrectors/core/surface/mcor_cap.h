@@ -200,7 +200,8 @@ typedef struct mcor_cap_triangle
   cl_int corner[3];
 } mcor_cap_triangle;
 
-/* What the host makes of caps, or of a filled region, before it goes to the mesh. */
+/* The vertices and triangles of caps, or of a filled region. The host collects them here before
+ * they are added to the mesh. */
 typedef struct mcor_cap_job
 {
   mcor_context* context;

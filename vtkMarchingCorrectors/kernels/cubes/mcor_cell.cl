@@ -188,7 +188,8 @@ int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_
   {
     const int edge = row->edges[i], axis = edge >> 3, x = edge & 1, y = edge >> 1 & 1;
     const int number = numbers[axis][first + x + 5 * y + 25 * (edge >> 2 & 1)];
-    /* The second fan belongs to the cell below the edge along the first other axis. */
+    /* A negative number marks an edge with two vertices. A cell that lies below the edge along the
+     * first of the other two axes takes the second vertex. */
     to[i] = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
   return row->triangles;

@@ -201,8 +201,9 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   }
 }
 
-/* One work-item = MCOR_LANES listed particles. Reads their tapers and least sums. Writes their
- * factors, and to `outside` whether their sums with the widest factor are below the iso value. */
+/* One work-item = MCOR_LANES listed particles. Reads each particle's taper from `factor`, and from
+ * `least` the weight sum that the particle needs. Replaces the taper by the particle's factor.
+ * outside: whether the sum is below the iso value even with the widest factor. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, __global const real* least, __global const real* sizes, const int listed,
   __global const int* list, __global real* factor, __global int* outside)

@@ -49,8 +49,9 @@ ulong mcor_trim_key(int a, int b)
   return (ulong)min(a, b) << 32 | (uint)max(a, b);
 }
 
-/* One work-item = one batch of triangles. Writes the keys of their cut edges: from the lone corner
- * to the next corner, then to the last one. */
+/* One work-item = one batch of triangles. Writes the keys of their cut edges. A cut triangle has two,
+ * which begin at the corner that is alone on its side of the threshold: first the edge to the next
+ * corner, then the edge to the corner after that. */
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* cuts, __global ulong* keys)
 {

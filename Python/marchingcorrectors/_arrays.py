@@ -108,7 +108,7 @@ def as_named(attributes):
     return arrays
 
 
-SUMMED = "Density"  # isosurface() has none if there is no such array.
+SUMMED = "Density"  # If there is no array of this name, its values are summed from the masses.
 
 
 def as_bytes(text):
@@ -295,7 +295,7 @@ class Arguments(Found):
         return values
 
     def bounds_of_period(self, period):
-        """Returns six bounds. For three lengths, the particles tell where the bounds begin."""
+        """Returns six bounds, or None for None. For three lengths, the particles tell where the bounds begin."""
         if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
             raise InvalidArgument(f"periodic is {period!r}; it must be {BOUNDS}, or three lengths, 0 along axes that are not "
                                   "periodic.")

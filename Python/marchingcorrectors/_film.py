@@ -50,9 +50,9 @@ def in_order(paths):
 
 
 def run(given, inputs, steps, add):
-    """Writes a film of all steps, pairs of (label, function that returns a thing and its time). add(film, thing, time): adds one step.
-    A step that fails is reported, and left out. Returns how many steps the film has, as text. Raises InvalidArgument at the end if a
-    step failed."""
+    """Writes a film of all steps, pairs of (label, function that returns a thing and its time). add(film, thing, time): adds one step, and
+    returns what is printed of it. A step that fails is reported, and left out. Returns how many steps the film has, as text. Raises
+    InvalidArgument at the end if a step failed, although the film of the others was written."""
     failed, words = 0, {name: getattr(given, name) for name in ("fps", "slow", "meters_per_unit", "velocity")}
     with Film(given.output, inputs, **{name: value for name, value in words.items() if value is not None}) as film:
         for i, (label, load) in enumerate(steps):
@@ -112,7 +112,8 @@ def run_particles(given, surface_of):
 
 def between_steps(steps, times, rate, velocity):
     """Yields (label, function that returns particles and their time) for each of `times` or, without times, for each frame of this rate
-    from the first step on. At most two steps are in memory."""
+    from the first step on. The function raises an error for a step that cannot be read, and for a time outside of the steps. At most
+    two steps are in memory."""
     before, number, label = None, 0, ""
     for label, load in steps:
         try:
@@ -140,9 +141,10 @@ def between_steps(steps, times, rate, velocity):
 def between(before, after, first, last, time, velocity=None):
     """Returns the particles at a time between two steps, which are at the times first and last.
 
-    Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps; without
-    velocities they are linear in time. Other real numbers are linear in time, and integers are those of the nearer step.
-    A particle that only one step has exists in the half of the interval next to this step.
+    Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps. They are linear
+    in time without velocities, or, with a warning, if the velocities say less than half or more than twice the motion. Other
+    real numbers are linear in time. Integers, and arrays that one step lacks, are those of the nearer step. A particle that only
+    one step has exists in the half of the interval next to this step. Raises InvalidArgument if ids are missing or not unique.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []
@@ -298,7 +300,7 @@ def encloses(corners, points):
 
 
 def without_points(surface, left_out):
-    """Returns the surface without these points, and without triangles that have one."""
+    """Returns the surface without these points and their triangles. left_out: True for all points of each piece that goes."""
     if not left_out.any():
         return surface
     number = np.cumsum(~left_out) - 1

@@ -121,8 +121,8 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
 
 
 def _describe_empty(arguments, found):
-    """Returns a sentence about an empty surface that the core does not explain; "" if a box is given, because the box may lie
-    elsewhere."""
+    """Returns a sentence about an empty surface that the core does not explain; "" if the surface is not empty, if there is no
+    fluid, or if a box is given, because the box may lie elsewhere."""
     values, options, n = arguments.options.iso_values, arguments.options, found.statistics
     if len(found.points) or not arguments.input.count or any(options.box):
         return ""

@@ -49,9 +49,9 @@ class Film:
 
     Example: with Film("film.usdc", fps=24) as film: film.add(surface, time)
 
-    The film is written to a file beside `path`, which gets the name `path` at the end of the with block, also if Ctrl-C ends
-    the block after a step. Any other exception leaves no file. Steps are written to the disk during the block, and
-    leave memory; the text of .usda is made from all steps at the end.
+    The film is written to a file beside `path`, which gets the name `path` at the end of the with block, also if Ctrl-C or
+    SystemExit ends the block after a step. Any other exception, or a block without a step, leaves no file. Steps are written to
+    the disk during the block, and leave memory; the text of .usda is made from all steps at the end.
 
     path: .usdc (binary), .usda (text) or .usd. It cannot be one of the inputs.
     fps: frames of a second of film; a step's time code is time x fps x slow.
@@ -214,8 +214,8 @@ def _extent(points, more=0.0):
 
 
 class _Part:
-    """A prim with attributes that all have a value at each time code. An attribute that a step lacks is blocked at the step's time; otherwise
-    the previous step's value would stay."""
+    """A prim with attributes that all have a value at each time code. An attribute that a step lacks is blocked at the step's time, or is
+    empty if the step has no points of this prim; otherwise the previous step's value would stay."""
 
     def __init__(self, stage, kind, name):
         from pxr import UsdGeom
@@ -230,7 +230,7 @@ class _Part:
         self.attributes, self.names = {}, set()  # {our name: (attribute, USD's type of array)}
 
     def write(self, code, values, first):
-        """Sets values: {name: (type, array)}; first: the film's first time code. Returns the number of bytes of the values."""
+        """Sets values: {name: (type, array)}; first: the film's first time code. Returns about how many bytes the values have."""
         from pxr import Sdf
 
         has_points, is_new, size = bool(values) and len(values["points"][1]) > 0, not self.attributes, 0

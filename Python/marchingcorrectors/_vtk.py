@@ -37,7 +37,7 @@ def is_single(array):
 
 
 def to_numpy(array):
-    """Returns the array's values without a copy, or a copy if they do not lie in one piece."""
+    """Returns the array's values without a copy, or a copy if they are bits or do not lie in one piece."""
     if not array.HasStandardMemoryLayout() or array.GetDataTypeAsString() == "bit":
         copy = vtkDataArray.CreateDataArray(3 if array.GetDataTypeAsString() == "bit" else array.GetDataType())
         copy.DeepCopy(array)
@@ -166,8 +166,8 @@ def add_values(data, count, chosen, made):
 
 
 def take_vertices(data, have=None):
-    """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does. Returns the data
-    set itself if nothing has to change."""
+    """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does, but as a vtkPolyData
+    without cells. Returns the data set itself if nothing has to change."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):
@@ -214,8 +214,9 @@ def list_all(data):
 
 
 def join_array(sets, like, joined):
-    """Joins an array's values, one block after the other. Returns None if a fluid block lacks the array, or a block of walls lacks an array
-    that tells kinds of particles apart."""
+    """Joins an array's values, one block after the other, and adds the array to `joined`. Walls that lack the array get the first values of
+    `like`. Adds nothing if a fluid block lacks the array, if a block of walls lacks an array that tells kinds of particles apart, or if a
+    block's array of this name has another type or size."""
     made, name = like.NewInstance(), name_of(like)
     made.SetName(name)
     made.SetNumberOfComponents(like.GetNumberOfComponents())
@@ -237,8 +238,8 @@ def join_array(sets, like, joined):
 
 
 def join_blocks(tree):
-    """Returns the points of all blocks, with the point arrays that all of them have. If the names of some blocks, but not
-    of all, tell of walls, an array marks their points."""
+    """Returns the points of all blocks, with the point arrays that all of them have, or that only walls lack. If the names of
+    some blocks, but not of all, tell of walls, the array WALL_BLOCK marks the points of walls."""
     leaves = [(data, tells_of_walls(name)) for data, name, *_ in leaves_of(tree, True)]
     some = len({wall for _, wall in leaves}) == 2
     sets = [(data, wall and some) for data, wall in leaves
@@ -376,7 +377,7 @@ class Particles(Arguments):
 # -- surfaces, and field data --
 
 def add(data, name, values):
-    """Adds an array of these values; one text, number or tuple gives one tuple."""
+    """Adds an array of these values, with a tuple for each row, and returns the array. A text gives one tuple."""
     values = np.asarray(values)
     if values.dtype.kind == "U":
         array = vtkStringArray()

@@ -62,7 +62,8 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
             return io.read(name, step=step)
 
     def _list_steps(self):
-        """Returns (time, file, number of the step in the file) of each step. If the times in the files do not ascend, times are 0, 1, ..."""
+        """Returns (time, file, number of the step in the file) of each step. If a file tells no time, or the times do not
+        ascend, times are 0, 1, ..."""
         if self._steps is None:
             found = []
             for name in self._names:

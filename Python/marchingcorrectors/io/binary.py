@@ -55,7 +55,8 @@ TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_h
 
 
 def files_of(path, count):
-    """Lists all files of a snapshot that has several, NAME.0.hdf5, ..., or NAME.0, ..."""
+    """Lists all files of a snapshot that has several, NAME.0.hdf5, ..., or NAME.0, ...; else the one file. Raises FileError if one is
+    missing."""
     found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5|)", path.name)
     if count <= 1 or not found:  # Some whole files say 0.
         return [path]
@@ -316,9 +317,9 @@ def bi4_period(values):
     return [bound for i in range(3) for bound in ((low[i], high[i]) if "xyz"[i] in axes else (0.0, 0.0))]
 
 
-# Houdini: .bgeo of version 5, plain or gzipped, big endian: "BgeoV", version, numbers of points, primitives, groups of points and of
-# primitives, attributes of points, vertices, primitives, detail; attributes of points (name, size, type, defaults); points: x, y, z, w,
-# attributes.
+# Houdini: .bgeo of version 5, plain or gzipped, big endian. A file consists, in this order, of: the text "BgeoV"; the version; the numbers
+# of points, primitives, groups of points, groups of primitives, and attributes of points, of vertices, of primitives and of the whole; the
+# name, size, type and defaults of each attribute of points; x, y, z, w and the attributes of each point. The rest is not read.
 BGEO_TYPES = {0: ">f4", 1: ">i4", 5: ">f4"}  # float, int, vector
 
 

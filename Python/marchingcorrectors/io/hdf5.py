@@ -19,7 +19,7 @@ KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or 
 
 def get(group, place):
     """Returns a member of a group by its path, or None. Raises FileError for a link, because a file of an attacker could link
-    to any file that the user may read."""
+    to any file that the user may read; and for data that lie in other files."""
     file = os.path.basename(group.file.filename)
     for name in place.strip("/").split("/"):
         link = group.get(name, getlink=True) if isinstance(group, h5py.Group) else None
@@ -167,8 +167,9 @@ def attributes(file, name):
 
 
 def period_of(file, box):
-    """Returns the period if the file says that the run is periodic: open runs have a BoxSize, too. AREPO is periodic along the
-    axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or over 2^LONG_X_BITS (GADGET-4)."""
+    """Returns the six bounds of the period, or None unless the file says that the run is periodic: open runs have a BoxSize, too.
+    AREPO is periodic along the axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or over
+    2^LONG_X_BITS (GADGET-4)."""
     parameters, config = attributes(file, "Parameters"), attributes(file, "Config")
     periodic = number(parameters, "InitialConditions:periodic", 0) == 1 or "PERIODIC" in config \
         or len(config) and "PeriodicBoundariesOn" in parameters

@@ -30,7 +30,7 @@ def take_step(file, step, steps):
 
 
 def value_of(comment, key):
-    """Returns the text behind KEY= in the second line of extended XYZ, with or without quotes."""
+    """Returns the text behind KEY= in the second line of extended XYZ, with or without quotes; "" if there is none."""
     found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
     return (found[1] if found[1] is not None else found[2]) if found else ""
 
@@ -78,7 +78,8 @@ def read_xyz(path, step):
 
 
 def period_of(cell, origin, is_periodic):
-    """Returns six bounds, 0 for axes without a period; or the cell's sides, nine numbers, if a side with a period is tilted."""
+    """Returns six bounds, 0 for axes without a period; or the cell's sides, nine numbers, if a side with a period is tilted; or None if
+    there is no period."""
     bounds = [0.0] * 6
     for a, side in enumerate(cell):
         if is_periodic[a] and any(side[b] for b in range(3) if b != a):

@@ -165,7 +165,7 @@ def number_columns(count):
 
 
 def read_table(path):
-    """Reads rows of values below a row of names, which may be a comment."""
+    """Reads rows of values below a row of names, which may be a comment. Without names, the columns are x, y, z, Column4, ..."""
     comment, rows = "", []
     for line in lines_of(path):
         start = line.lstrip()[:1]

@@ -72,7 +72,7 @@ def find_vertices(types, offsets, points, count):
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
     of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
-    arrays of the points, too.
+    arrays of the points, too. Warns if points are left out. Sets is_mesh if there are cells.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.
@@ -369,7 +369,7 @@ class Legacy:
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
 
     def line(self):
-        """Returns the words of the next line that is not blank."""
+        """Returns the words of the next line that is not blank; [] at the end of the file. Skips METADATA."""
         while self.at < len(self.data):
             end = self.data.find(b"\n", self.at, self.at + 1000)
             end = min(len(self.data), self.at + 1000) if end < 0 else end
@@ -402,8 +402,8 @@ class Legacy:
         return values.reshape(count, columns) if columns > 1 else values
 
     def skip_strings(self, count, in_lines):
-        """Skips texts. In text files, each is a line. In others, each follows its length; the length's first two bits tell how many bytes the length
-        has: 8, 4, 2 or 1."""
+        """Skips texts. With in_lines, each is a line. Otherwise, each follows its length; the length's first two bits tell how many bytes
+        the length has: 8, 4, 2 or 1."""
         for _ in range(count):
             if in_lines:
                 self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1

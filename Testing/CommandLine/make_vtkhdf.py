@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf, film.vtkhdf (three steps) and the files that point to other files. It needs
-h5py."""
+"""Makes lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf, film.vtkhdf (three steps) and the files that point to other files. The script
+needs h5py."""
 import pathlib
 
 import h5py

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// For LD_PRELOAD: system calls that fail or take long, a library that takes a signal for itself, and an
-// XML library that fails, which tests cannot bring about otherwise.
+// A library for LD_PRELOAD that causes faults which tests cannot cause otherwise: system calls that
+// fail or take long, a library that takes a signal for itself, and an XML library that fails.
 //
-//   MCOR_FAILING_CALL=fsync|close|rename  fails for files below MCOR_FAILING_FOLDER
-//   MCOR_RENAME_SECONDS=N                 rename takes that long
-//   MCOR_TAKES_HANGUPS=1                  SIGHUP does nothing any more, as with UCX, which some MPIs load
+//   MCOR_FAILING_CALL=fsync|close|rename  this call fails for files below MCOR_FAILING_FOLDER
+//   MCOR_RENAME_SECONDS=N                 each rename takes N seconds
+//   MCOR_TAKES_HANGUPS=1                  SIGHUP does nothing any more, as with some MPIs' UCX
 //   MCOR_READER=abort|recursion|fault     what the XML library does when VTK asks for it
-//   MCOR_READER_CALL=N                    when it is asked for the Nth time (default 1)
-//   MCOR_DRIVER=abort                     as a driver of OpenCL, not preloaded: it crashes when it is loaded
+//   MCOR_READER_CALL=N                    does so when VTK asks for the Nth time (default 1)
+//   MCOR_DRIVER=abort                     crashes as soon as it is loaded as an OpenCL driver
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -261,7 +261,7 @@ class BadData(CommandLineTest):
 
 
 class Options(CommandLineTest):
-    """Tests what options do, as far as statistics and output show it."""
+    """Tests effects of options that the statistics or the output show."""
 
     def test_summary(self):
         result = self.extract_good(*ISO)
@@ -344,8 +344,8 @@ class Options(CommandLineTest):
                       "--threads", "1", "--device", "built in", told=True)
 
     def test_derive(self):
-        """--derive makes arrays from a particle array. They may be contoured, and are carried to the surface. They replace stored arrays of
-        the same name."""
+        """--derive makes arrays from a particle array. The new arrays may be contoured, are carried to the surface, and replace stored arrays
+        of the same name."""
         self.arrays["Lambda2"] = [17.0] * len(self.points)
         files.write_vtp(self.input, self.points, self.arrays)
         self.succeed("--derive", "Velocity", *ISO)

@@ -114,7 +114,7 @@ class DamagedFiles(CommandLineTest):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_crash_of_the_reader(self):
-        """The program survives any crash in VTK's XML library. Here a library that aborts, faults or recurses takes its place."""
+        """The program survives any crash in VTK's XML library. Here a library that aborts, faults or recurses replaces VTK's."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):

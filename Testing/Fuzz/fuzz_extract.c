@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes a call of mcor_extract from bytes, and checks what must hold for every call. It does not
- * crash, and its status is in range. If it fails, there is a message and an empty surface. If not,
- * indices are valid, numbers are finite, and no triangle names a point twice. A context that keeps
- * data gives the same bits as one that keeps nothing. */
+/* Makes a call of mcor_extract from bytes, and checks what must hold for every call. The call does
+ * not crash, and the status is in range. After a failure there is a message and an empty surface.
+ * After a success indices are valid, numbers are finite, and no triangle names a point twice. A
+ * context that keeps data gives the same bits as one that keeps nothing. */
 
 #include "fuzz.h"
 

@@ -5,7 +5,7 @@
 
     test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS PRELOAD
 
-PRELOAD is ../CommandLine/misbehave.c.
+PRELOAD is the library made of ../CommandLine/misbehave.c.
 """
 
 import filecmp
@@ -304,7 +304,7 @@ class Program(unittest.TestCase):
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
 
     def test_names_of_factors(self):
-        """Arrays of the particles may have the names of arrays that widening makes. They are contoured and interpolated as usual."""
+        """Arrays of the particles may have the names of arrays that widening makes. Such arrays are contoured and interpolated as usual."""
         particles = read(PARTICLES)
         x = vtk_to_numpy(particles.GetPoints().GetData())[:, 0]
         write(add(particles, Widening=x, WideningVolume=x), self.path("in.vtp"))

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by mpirun: what ranks make together is, bit for bit, what rank 0 makes alone, however particles and points are strewn over the ranks.
+"""Tests, run by mpirun, that ranks together make bit for bit what rank 0 makes alone, however particles and points are spread over the ranks.
 
-    test_ranks.py FOLDER_OF_DATA surfaces|samples [some | CASE]     some: strews each case in one way only; the ways take turns
+    test_ranks.py FOLDER_OF_DATA surfaces|samples [some | CASE]     some: spreads each case in one way only; the ways take turns
 """
 import math
 import os
@@ -138,8 +138,8 @@ SURFACES = {
     "filled": (PLANE, {**LINES, "Filled": 1}),
     "filled, period and box": (PLANE, {**LINES, "Filled": 1, "PeriodicBounds": (0, 0, -0.2, 0.9, 0, 0), **BOX})}
 
-# Statistics that describe the surface do not depend on how ranks share the work. Those in EXACT must be equal, the others equal except for
-# rounding.
+# Statistics that describe the surface do not depend on how ranks share the work. Statistics in EXACT must be equal; all others may differ
+# by rounding.
 EXACT = ("Area", "Volume", "Length")
 STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
               "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices", "TrimVerticesLinear",

@@ -6,13 +6,13 @@
 /* An independent, brute-force reference in double precision.
  *
  * It answers one question: which lattice edges does the isosurface of an SPH field cross, and how are
- * they joined? Every node that a particle reaches is evaluated, nothing is excluded, no code is shared with
- * the library under test. Written for being obviously right, not for speed: nodes sum over all particles of
- * their brick (oracle_lattice.h), points are evaluated through a kd-tree.
+ * they joined? Every node that a particle reaches is evaluated. Nothing is excluded, and no code is
+ * shared with the library under test. The code is meant to be obviously right, not fast: nodes sum
+ * over all particles of their brick (oracle_lattice.h), and points are evaluated through a kd-tree.
  *
- * Field (V: volume, A: scalar, W: kernel with h_scale * own smoothing length, fluid particles
- * only): Shepard  sum V A W / sum V W        sum  sum V A W        weight  sum V W The trimming
- * weight is sum V W over fluid particles and, unless ignored, solid ones.
+ * V: volume, A: scalar, W: kernel with h_scale * own smoothing length. The field sums over fluid
+ * particles. Shepard: (sum V A W) / (sum V W); sum: sum V A W; weight: sum V W. The trimming weight
+ * is sum V W over fluid particles and, unless solids are ignored, over solid particles.
  */
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filters choose what nobody has set: places, resolutions, arrays and colours. They also say if an input is missing."""
+"""Filters choose what nobody has set: places, resolutions, arrays and colours. If an input is missing, filters say so."""
 import unittest
 
 import numpy

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Every property of every filter is restored by a trace and by a state, whatever its value. Runs in pvpython and computes nothing, because many of
-these choices together make no sense."""
+the changed values make no sense together."""
 import os
 import pathlib
 import re

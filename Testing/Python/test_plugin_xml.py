@@ -172,7 +172,7 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(made, command), legal, element.get("name"))
 
     def test_box(self):
-        """The box widget's position is the lower corner, and its scale the lengths. They may be set in any order."""
+        """The box widget's position is the lower corner, and its scale the lengths. Either may be set first."""
         group = self.main.find("PropertyGroup[@panel_widget='InteractiveBox']")
         functions = {e.get("function"): e.get("name") for e in group.findall("Property")}
         self.assertEqual(functions, {"Position": "BoxPosition", "Scale": "BoxLength"})
@@ -196,8 +196,8 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([extract.GetExcludedArray(i) for i in range(extract.GetNumberOfExcludedArrays())], ["Density", "Id"])
 
     def test_places(self):
-        """As long as a property equals its default, ParaView fits it to the particles' bounds. So these properties have no default, and
-        every value that a user sets is kept."""
+        """As long as a property equals its default, ParaView fits it to the particles' bounds. Such properties have no default here, so
+        that every value that a user sets is kept."""
         fitted = [e for proxy in self.proxies for e in proxy.iter("DoubleVectorProperty") if e.find("BoundsDomain") is not None]
         self.assertEqual({e.get("default_values") for e in fitted}, {"none"})
         self.assertEqual(len(fitted), 9)

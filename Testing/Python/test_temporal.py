@@ -18,7 +18,7 @@ START = lattice(7, 7, 7, around_origin=True)
 
 
 def turned(time):
-    """Returns the places and velocities of the particles of START at this time. They turn around the z axis and fall."""
+    """Returns the places and velocities of the particles of START at this time. The particles turn around the z axis and fall."""
     c, s = math.cos(RATE * time), math.sin(RATE * time)
     x, y, z = START.T
     a, b = c * x - s * y, s * x + c * y

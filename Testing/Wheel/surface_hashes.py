@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints the SHA-256 sums of results, one per line. They must be the same on every system, because the script uses NumPy alone, and operations
-that round alike everywhere. They must also be the same on DEVICE as on the built-in device.
+"""Prints the SHA-256 sums of results, one per line. The sums must be the same on every system, because the script uses NumPy alone, and operations
+that round alike everywhere. The sums must also be the same on DEVICE as on the built-in device.
 
     surface_hashes.py [DEVICE]
 """

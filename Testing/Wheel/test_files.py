@@ -329,7 +329,7 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
     def test_sphinxsys(self):
-        """Reads files like those of SPHinXsys' own writer. They are text, and their Vectors attribute names an array that is not there."""
+        """Reads files like those of SPHinXsys' own writer. Such files are text, and their attribute Vectors names an array that is not there."""
         def write(name, chosen, arrays):
             def array(name, values, more=""):
                 kind = "Int32" if values.dtype.kind == "i" else "Float32"

@@ -63,8 +63,9 @@ static int compare_shares(const void* a, const void* b)
   return (s > t) - (s < t);
 }
 
-/* Returns the expected share: at each solid, the solids' share of the weight; of these, the median weighted by the
- * fluid's weight there. Images lie one period away along y. */
+/* Returns the expected share. At each solid particle the solids have a share of the weight. The
+ * result is the median of these shares, weighted by the fluid's weight at the solid. Images lie one
+ * period away along y. */
 static double find_share(const particle_set* set, oracle_kernel kernel, double period)
 {
   wall_weight at[1000];

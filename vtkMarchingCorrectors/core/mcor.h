@@ -420,10 +420,10 @@ extern "C"
   {
     MCOR_PHASE_INPUT = 0,   /* checks, unit conversion, transfer to the device */
     MCOR_PHASE_SEARCH_GRID, /* search grid and volumes */
-    MCOR_PHASE_SEEDS,       /* seed selection; complete seeds: node evaluation */
-    MCOR_PHASE_EXTRACTION,  /* the rest of the nodes, marching cubes */
+    MCOR_PHASE_SEEDS,       /* seed selection, evaluation of nodes */
+    MCOR_PHASE_EXTRACTION,  /* marching cubes; MCOR_TOPOLOGY_FIELD: evaluation of samples */
     MCOR_PHASE_CORRECTION,  /* Newton iteration, normals, attributes */
-    MCOR_PHASE_TRIMMING,
+    MCOR_PHASE_TRIMMING,    /* trimming, caps, compact contours */
     MCOR_PHASE_OUTPUT, /* compaction and transfer to the host */
     MCOR_PHASE_COUNT
   } mcor_phase;
@@ -582,8 +582,9 @@ extern "C"
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
-  /* Lists the devices, each in a line "number: device (platform)\n". *text is empty if there is no
-   * OpenCL device. Free it with free(). */
+  /* Lists the devices, each in a line "number: device (platform)\n"; the built-in device, which
+   * comes first, has no platform there. *text is empty if there is no device, and NULL if memory
+   * ran out. Free it with free(). */
   mcor_status mcor_list_devices(char** text);
 
   /* Says in one sentence, with C's words in its slots, why the last failed call on this context
@@ -732,9 +733,10 @@ extern "C"
   double mcor_least_smoothing_length(const mcor_input* input);
 
   /* Returns about how many cubes (squares in a plane) of the virtual grid the fluid fills, in
-   * the box if there is one: a particle takes (h / 1.3)^3. 0 if the cube size follows from a
-   * smoothing length that is to be estimated. least: mcor_least_smoothing_length, over all ranks
-   * that share the particles; the results of ranks add up. */
+   * the box if there is one: a particle takes (h / 1.3)^3. 0 without fluid, and if the
+   * smoothing length is to be estimated but options.cube_size is given, so that their ratio is not
+   * known. least: mcor_least_smoothing_length, over all ranks that share the particles; the results
+   * of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */

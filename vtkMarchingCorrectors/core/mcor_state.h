@@ -25,7 +25,8 @@ typedef struct mcor_lattice
 {
   double cube, edge[3];
   int64_t step[3];           /* an edge in fixed-point units, at most 2^fix_bits */
-  int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
+  int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES; with several levels, a multiple of
+                              * the edge of a brick one level above the highest */
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, counted from origin */
   int fix_bits;
   int levels; /* of cubes; 1: all have one size */
@@ -276,8 +277,8 @@ typedef struct mcor_box
   int ring;               /* width of the ring of cells that are examined around the owned ones */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
   int
-    halves[6]; /* the owned cells' box with adaptive cubes: from and to along x, y, z, in halves of
-                * the smallest cubes */
+    halves[6]; /* the box of the owned cells, in halves of the smallest cubes: from x, y, z, to x,
+                * y, z */
   bool of_points;  /* whether this is the box of a probe's points, `points`: x from, to, y ... */
   bool has_points; /* whether `points` is known */
   double points[6];

@@ -164,8 +164,8 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Keeps the triangles whose corners still differ. Copies each appended vertex to the place of the
- * vertex that it replaces. */
+/* Keeps the triangles whose corners still differ. Copies each appended vertex that is still in use
+ * to the place of the vertex that it replaces. */
 static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
 {
   mcor_context* context = bunches->context;

@@ -136,8 +136,9 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
 /* mcor_compact.c. Appends to the mesh the vertices that begin at `starts`, and corrects them. */
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
-/* mcor_compact_bunch.c. Finds the bunches, and merges each bunch that can be merged whatever
- * happens to the others. Fills `starts` with the merged bunches. */
+/* mcor_compact_bunch.c. Finds the bunches. Merges each bunch that can be merged whatever happens to
+ * the others, and bunches that can be merged beside these (`leans`). Fills `starts` with the merged
+ * bunches. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
 /* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over.

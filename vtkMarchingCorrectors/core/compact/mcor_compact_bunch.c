@@ -10,7 +10,10 @@
  * are one closed fan of three or more different vertices, both if all other bunches are merged and
  * if none is. A bunch therefore depends only on the cells near it, whatever part of the surface a
  * call makes, and may be taken apart at any time. A closed piece that would keep fewer than 8
- * triangles stays as it is. */
+ * triangles stays as it is.
+ *
+ * A bunch that fails this test may still be merged beside the bunches that pass it. It leans on
+ * them: if one of them is taken apart, it is taken apart, too. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"

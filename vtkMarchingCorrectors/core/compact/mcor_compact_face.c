@@ -14,9 +14,9 @@
 /* A triangle with a larger badness is a sliver: its least angle is below 20 degrees. */
 #define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
-/* Returns a triangle's badness: four times the squared cosine of its least angle, which is opposite
- * to the shortest side; 4 if it has no area. A line's badness is 0 unless the line is turned over.
- * widest: the corner opposite to the longest side. */
+/* Returns the badness of a triangle or line: MCOR_TURNED if it is turned over or has no extent;
+ * else 0 for a line, and for a triangle four times the squared cosine of its least angle, which is
+ * opposite to the shortest side. widest: the corner opposite to the longest side. */
 static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], int* widest)
 {
   double side[3][3], square[3], normal[3], uphill[3] = { 0 };
@@ -146,8 +146,8 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 
 /* ---- Slivers ---- */
 
-/* The farthest start of a line from its vertex's node, in edges. A line from there ends within
- * MCOR_POINT_EXTENT of the node. */
+/* The farthest start of a line from its vertex's node along each axis, in edges. A line from there
+ * ends within MCOR_POINT_EXTENT of the node. */
 #define MCOR_FARTHEST_START 2.5
 
 /* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles

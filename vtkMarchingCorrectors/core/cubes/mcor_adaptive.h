@@ -45,7 +45,8 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
-/* mcor_correct.c. Launches the correction of vertices, level by level. */
+/* mcor_correct.c. Launches the correction of vertices, level by level: along their lattice edges,
+ * or, with `lines`, along the gradient from where their offsets are. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines);
 
 /* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless this is done

@@ -204,8 +204,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
   return b * (b - 1) / 2 + a;
 }
 
-/* Returns the third vertex of the cheapest triangle with side a-b in the loop's part from a to b.
- * *least: the cost of this part without side a-b. */
+/* Returns the third vertex of the triangle with side a-b in the cheapest cut of the loop's part
+ * from a to b. *least: the cost of this cut without side a-b. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {

@@ -5,8 +5,8 @@
  *
  * The cells on the line between the particles of a pair are marked. From the marked cells, others
  * are reached through crossed faces, and from one end of a period to the other. Which cells are
- * marked and reached depends on the particles alone. Only bricks with nodes of reached cells are
- * evaluated.
+ * marked and reached depends only on the particles, the lattice and the iso value. Only bricks with
+ * nodes of reached cells are evaluated.
  *
  * Pairs are for comparisons with the paper: all cubes have one size, and one process makes the
  * whole surface. */
@@ -40,7 +40,7 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
 }
 
 /* Gives slots to the bricks that have nodes of reached cells, and evaluates these bricks. *placed:
- * whether any brick is new. */
+ * whether bricks got slots, because some are new or because this is the first call. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -94,7 +94,7 @@ mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
 /* Finds the position of the brick with a key. */
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
-/* Splits the bricks with these keys. */
+/* Splits the bricks with these keys. Fails if a key is not of a brick of this tree's lattice. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 

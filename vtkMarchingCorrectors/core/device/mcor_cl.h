@@ -73,7 +73,7 @@ typedef struct mcor_kernel
   cl_kernel kernel;
   mcor_program program;
   bool launched[2]
-               [2]; /* [first item is 0, or not][few work-groups, or many]: drivers compile a kernel
+               [2]; /* [first item is 0, or not][few work-items, or many]: drivers compile a kernel
                      * for each case */
   double part;      /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
@@ -172,15 +172,17 @@ typedef enum mcor_load
 /* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
  * names, or else the default. place, count: see mcor_create_shared_context. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Called before each call. If the user named no device, and the open one cannot run the build,
- * opens the best device that can. release: frees everything on the old device first. */
+/* Called before each call. Does nothing if the user named a device. Else opens the best device that
+ * can run the build, if the open device cannot run it, or is itself a replacement. Fails if no
+ * device can run it. release: frees everything on the old device first. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
 /* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
-/* Begins to build those programs of a set that are missing, in threads of their own, in the order
- * in which a run needs them. Does nothing if no driver compiles them. */
+/* Chooses the build, and begins to build those programs of a set that are missing, in threads of
+ * their own, in the order in which a run needs them. Does nothing on the built-in device, or if
+ * only one thread may be used. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds building the missing programs takes; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
@@ -214,7 +216,7 @@ typedef struct mcor_mapping
   size_t bytes;
   void** data;
 } mcor_mapping;
-/* Maps the buffers in order, up to the first failure. */
+/* Maps the buffers for reading, in order, up to the first failure. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
 /* Unmaps all of the buffers that are mapped. Returns `status` or, if that is MCOR_OK, the first
  * failure. */

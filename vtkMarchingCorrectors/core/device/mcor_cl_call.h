@@ -110,8 +110,9 @@ void mcor_drop_programs(mcor_cl* cl, int programs);
 #define MCOR_PARTS_ALL ((1 << MCOR_PROGRAM_COUNT) - 1)
 mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program);
 
-/* mcor_cl_build.c. Waits for a program that is built ahead, and takes it. Does not change *program
- * if the program is not built ahead. */
+/* mcor_cl_build.c. Takes a program that is built ahead: waits for it, or builds it if no thread has
+ * begun to. *error: OpenCL's result of the build. *program and *error do not change if the program
+ * is not built ahead, or if the user cancels the call. */
 mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
 

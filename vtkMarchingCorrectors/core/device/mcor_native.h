@@ -45,8 +45,8 @@ int mcor_best_instructions(void);
  * none. */
 const mcor_native_program* mcor_find_program(const char* options);
 
-/* Returns the built-in device's platform; NULL if this processor has none of the instruction
- * sets. */
+/* Returns the built-in device's platform; NULL if the library has no programs for this
+ * processor. */
 cl_platform_id mcor_native_platform(void);
 /* Returns the threads of a context; these may be fewer than the device's units. */
 mcor_pool* mcor_native_pool(cl_context context);

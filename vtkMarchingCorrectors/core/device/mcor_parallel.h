@@ -39,8 +39,8 @@ int mcor_parallel_for(
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices);
 
-/* Returns how many processors one process may use if `count` processes share the processors that
- * the calling thread may use; at least 1. */
+/* Returns how many processors one process may use if `count` processes share the machine's
+ * processors: at most as many as the calling thread may use, and at least 1. */
 int mcor_processors(int count);
 
 /* Returns how many threads to use on `usable` processors. If MCOR_THREADS in the environment is a
@@ -58,7 +58,7 @@ typedef struct mcor_pool
   int count;      /* how many exist */
   pthread_t* all; /* [threads - 1] */
   long process; /* the process that created them (a process made by fork has none of them); 0: none */
-  pthread_mutex_t lock; /* protects the members below */
+  pthread_mutex_t lock; /* protects open, ends, round and active */
   pthread_cond_t wake, done;
   bool open, ends; /* open: there is a loop to join; ends: the threads must end */
   unsigned round;  /* counts the loops */

@@ -25,12 +25,13 @@ void mcor_system_release(void* memory);
 #define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 
-/* Returns clGetPlatformIDs of the system's OpenCL loader; NULL: there is none. The loader stays
- * open, as drivers do not survive being closed. */
+/* A function of any type. */
 typedef void (*mcor_function)(void);
 /* Whether drivers can start: they start a thread for each of the machine's processors, and map
  * their libraries. PoCL ends the process if it cannot do this. */
 bool mcor_system_bears_drivers(void);
+/* Returns clGetPlatformIDs of the system's OpenCL loader; NULL: there is none. The loader stays
+ * open, as drivers do not survive being closed. */
 mcor_function mcor_system_opencl(void);
 
 /* Compiles a function of long loops twice, the second time for processors with AVX2, if the loader

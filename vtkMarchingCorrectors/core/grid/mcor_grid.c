@@ -21,7 +21,7 @@
 #define MCOR_CELL_LIMIT (1 << 19)
 
 /* Divides an axis into cells of a level. A cell is `cell` cubes long, or a little longer if whole
- * cells must fill a period. */
+ * cells must fill a period. A period no longer than `cell` is one cell. */
 static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
 {
   const int period = lattice->period[axis];
@@ -347,7 +347,8 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     MCOR_INT(to_row));
 }
 
-/* Chooses A0, the shift of the scalar. A Shepard mean shifts with its values, so A - A0, with A0
+/* Copies the scalar A, less a shift A0, to the sorted particles; does nothing for a weight sum.
+ * Only a Shepard mean has a shift other than 0: the mean shifts with its values, so A - A0, with A0
  * near most values, keeps the digits of a scalar with a large offset or a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {

@@ -15,8 +15,8 @@
 /* Adds the caps to the trimmed mesh. */
 mcor_status mcor_cap(mcor_context* context);
 
-/* Packs a node, or three other numbers below 2^21, into a key; an axis has at most 2^20 + 64
- * nodes. */
+/* Packs a node, or three other numbers below 2^21, into a key. Surfaces have no nodes beyond
+ * MCOR_NODE_LIMIT. */
 static inline uint64_t mcor_cap_key(const cl_int node[3])
 {
   return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;

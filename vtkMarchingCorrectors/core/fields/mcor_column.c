@@ -19,7 +19,7 @@
 #define MCOR_PROFILE 2048
 /* Kernels change to another polynomial only at multiples of this, in h. */
 #define MCOR_KINK 0.5
-#define MCOR_KINKS 16 /* most pieces of a line of sight through a tensor kernel */
+#define MCOR_KINKS 16 /* room for the kinks on a line of sight through a tensor kernel */
 
 /* Gauss quadrature from 0 to 1: MCOR_CELL_POINTS for a cell; MCOR_LINE_POINTS for one piece of a
  * line of sight, exact for products of three cubic polynomials. */
@@ -43,8 +43,8 @@ typedef struct mcor_column_job
   double profile[MCOR_PROFILE + 4]; /* column density at the places along the axis, beginning one
                                      * step before the centre */
   mcor_column* column;
-  double* sums;   /* [places along x][cells + 1]: integral of the density along y */
-  double* values; /* [places along x][cells + 1]: the density */
+  double* sums;   /* [places along x][cells + 1]: integral of `values` along y */
+  double* values; /* [places along x][cells + 1]: the density, times both lengths of the cell */
 } mcor_column_job;
 
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])

@@ -192,7 +192,8 @@ static mcor_status mcor_add_disc(
 }
 
 /* Appends the pieces of a section with the number of points that its shape has. *has_size becomes
- * false if the section has no area; in two dimensions, an area outside of the plane counts. */
+ * false if a section other than lines has no area; in two dimensions, an area outside of the plane
+ * counts. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];

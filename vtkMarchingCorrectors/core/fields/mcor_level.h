@@ -42,7 +42,7 @@ mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
 /* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered
  * near solids so that they fall below the level where the fluid ends at them. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
-/* Whether a point is in a cell that this call owns. */
+/* Whether a point is in a cell that this call owns. Without a box, the call owns all points. */
 bool mcor_owns_point(const mcor_level_job* job, const double point[3]);
 
 #endif

@@ -443,8 +443,8 @@ static mcor_status mcor_run_probe(
 }
 
 /* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the
- * free surface: without solids, unless they count in computed volumes. Returns whether solids
- * are used. */
+ * free surface: without solids, unless they count in computed volumes and the caller's field is
+ * not the weight sum. Returns whether solids are used. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {
   const bool uses_solids =

@@ -110,7 +110,7 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 }
 
 /* Finds the sides of the image. It shows the box or the period, seen along the line of sight, or
- * else all that particles reach. */
+ * else all that particles reach. *is_empty: whether nothing gives the image an extent. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {
   mcor_context* context = job->context;

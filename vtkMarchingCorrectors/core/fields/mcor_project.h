@@ -50,7 +50,7 @@ typedef struct mcor_splat
 {
   double at[2];          /* from the corner, in pixels */
   double pixel[2];       /* side of a pixel, in h */
-  double amount[2];      /* V A; or, for a mean, V B A and V B */
+  double amount[2];      /* V A; or, for a mean, V B A and V B; each divided by a pixel's area */
   int first[2], last[2]; /* first and last pixel that the particle reaches */
 } mcor_splat;
 

@@ -19,8 +19,8 @@
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Reads the amounts of particles, see mcor_splat. For the density, V A is the mass. If the weight
- * is the masses' array, V B is the mass. */
+/* Reads the amounts of particles, see mcor_splat, but not divided by an area. For the density, V A
+ * is the mass. If the weight is the masses' array, V B is the mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {

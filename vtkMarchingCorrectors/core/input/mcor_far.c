@@ -24,7 +24,7 @@
 #define MCOR_REGION_MARGIN 16
 
 /* Sums: particles in use; particles that become absent; fluid that stays. `first` is the first
- * absent one, and the range is what the staying particles' supports reach. */
+ * absent one. Range 0 ends at the greatest reach, slack included, of the particles that stay. */
 enum
 {
   MCOR_USED,

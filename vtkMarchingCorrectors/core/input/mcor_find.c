@@ -164,7 +164,8 @@ int mcor_find_named(
   return found;
 }
 
-/* Joins vx, vy and vz to one vector, unless there is an array "Velocity". The vector is float only if all three are. */
+/* Joins vx, vy and vz to one vector, unless there is an array "Velocity". The vector is float only
+ * if all three are. Returns the vector's index, f->count; -1: there is none. */
 static int mcor_join_velocity(mcor_finder* f)
 {
   mcor_named* made = f->found->made;

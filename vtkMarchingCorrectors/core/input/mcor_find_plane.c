@@ -48,7 +48,8 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
   return spread;
 }
 
-/* Fails, and names the first particle off the plane (a solid one if all fluid shares a plane). */
+/* Fails. If all fluid shares a plane, names the plane of the solids or, if they share none, the
+ * first solid off the fluid's plane. Returns MCOR_OK if a position is not finite. */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {

@@ -38,8 +38,8 @@ static inline bool mcor_is_present(const mcor_input* input, int64_t i)
     (!input->ignore_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* The particles that a search of values skips: those with this mark in mcor_input.solid or a
- * greater one. */
+/* The particles that a search of values skips: all that mcor_input.solid marks, or only absent
+ * ones. */
 typedef enum mcor_skip
 {
   MCOR_SKIP_SOLIDS = 1,
@@ -157,8 +157,8 @@ struct mcor_far
   uint8_t* solid; /* [count], freed by the caller; replaces the input's array */
   bool is_cut;    /* the lattice surrounds only a region: a box, or a probe's points */
   double region[6];
-  int64_t count, first; /* number of absent particles, and the first of them */
-  double place[3];
+  int64_t count, first; /* number of absent particles, 0 if is_cut; and the first of them */
+  double place[3];      /* position of the first absent particle of all ranks; not if is_cut */
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
 /* In a call with globals, marks the particles that the measuring call left out: all particles

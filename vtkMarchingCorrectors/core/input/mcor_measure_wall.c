@@ -120,8 +120,8 @@ static int mcor_compare_shares(const void* a, const void* b)
                               : (s->fluid > t->fluid) - (s->fluid < t->fluid);
 }
 
-/* Sorts the samples by share, and returns the share at which half of the fluid's weight is
- * counted. */
+/* Sorts the samples by share, and returns the share at which half of the fluid's weight is counted,
+ * at least 0.01 and at most 0.99. Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
 static double mcor_median_share(mcor_wall_measure* wall)
 {
   int count = 0;

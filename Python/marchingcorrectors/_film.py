@@ -197,7 +197,8 @@ def to_times(text):
     found = set()
     for part in text.split(","):
         begin, *ends = [float(each) for each in part.split(":")]
-        if len(ends) not in (0, 2) or ends and not 0 <= (ends[0] - begin) / ends[1] < 1e6:
+        if len(ends) not in (0, 2) or not np.isfinite([begin, *ends]).all() or ends and not (
+                ends[1] and 0 <= (ends[0] - begin) / ends[1] < 1e6):
             raise ValueError(text)
         if ends:
             count = int(np.floor((ends[0] - begin) / ends[1] + 1e-9)) + 1

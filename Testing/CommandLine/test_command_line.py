@@ -121,6 +121,7 @@ class Usage(CommandLineTest):
         good = [self.input, self.output]
         for arguments, sentence in [
             ([], "INPUT or OUTPUT is missing"),
+            ([self.input], "INPUT or OUTPUT is missing"),
             ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
             ([self.input, "film.usdc", *ISO], "marchingcorrectors surface INPUT... film.usdc .*convert FILM.pvd film.usdc"),
             ([self.input, "surface.png", *ISO],
@@ -144,6 +145,7 @@ class Usage(CommandLineTest):
             ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
+            ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
             ([*good, *ISO, "--component", "-2"], "--component needs a whole number from 0"),
             ([*good, *ISO, "--component", "2147483648"], "whole number up to 2147483647, not '21"),
             ([*good, "-iso", "1"], "unknown option -iso; did you mean --iso[?]"),
@@ -154,6 +156,9 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--iso", "0.4"], "--iso is given twice"),
             ([*good, *ISO, "--stats", "-h"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
+            ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
+            ([*good, *ISO, "--memory-limit", "0"], "--memory-limit needs a whole number from 1"),
+            ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
             ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, or .* not '--quiet'"),
             ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
             ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
@@ -175,6 +180,7 @@ class Usage(CommandLineTest):
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
             ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "--line is for lines, not for slices; leave it out"),
+            ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
             ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "--screenshot is for .* not for lines"),
         ]:
             with self.subTest(sentence):
@@ -278,13 +284,14 @@ class Options(CommandLineTest):
 
     def test_quiet(self):
         self.assertEqual(self.extract_good(*ISO, "--quiet").stdout, "")
+        self.assertTrue(self.output.exists())
 
     def test_statistics(self):
         found = self.succeed(*ISO)
         self.assertGreater(found["statistics"]["triangles"], 100)
         self.assertEqual(found["statistics"]["fluid_particles"], len(self.points))
         self.assertLessEqual({"smoothing_length_array": "SmoothingLength", "mass_array": "Mass"}.items(), found["arrays"].items())
-        self.assertEqual(found["parameters"]["iso_values"], [0.3])
+        self.assertEqual((found["parameters"]["iso_values"], found["parameters"]["kernel"]), ([0.3], "cubic"))
         seconds = dict(found["seconds"])
         total = seconds.pop("total")
         self.assertLessEqual({"search_grid", "seeds", "extraction", "correction", "trimming",

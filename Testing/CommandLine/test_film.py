@@ -325,6 +325,7 @@ class Film(CommandLineTest):
             ([self.input, "surface.vtp", "--times", "1"], "--times is for films, .*; leave it out, or make a film"),
             ([self.input, "film.pvd", "--time-step", "2"], "--time-step is the time between one INPUT and the next, and there is one"),
             ([pvd, "film.pvd", "--time-step", "2"], "a .pvd or .series file has times of its own"),
+            ([*paths, "film.pvd", "--time-step", "0"], "--time-step must be greater than 0"),
             ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside the times of the steps, 0 to 0.1"),
             ([pvd, "film.pvd", "--times=-0.1"], "-0.1 is outside"),
             ([pvd, "film.pvd", "--screenshot", "a.png"], "a film has a picture of each step: --screenshot frame_%04d.png"),

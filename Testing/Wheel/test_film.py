@@ -137,6 +137,8 @@ class Films(Case):
         self.assertEqual([len(between(io.read(steps[0]), few, 0.0, 0.1, time)) for time in (0.04, 0.06)], [len(points), len(points) - 5])
         for words, sentence in ((["--times", "0,0.3"], "0.3 lies beyond the last step"), (["--times", "-1,0"], "-1 lies before the first")):
             self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, *words, status=1), sentence)
+        for times in ("0:0.1:0", "0.2:0:0.1", "nan"):
+            self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, "--times", times, status=2), "--times: it must be T")
         data = pyvista.read(steps[0])
         data.point_data.remove("id")
         data.save(steps[0])

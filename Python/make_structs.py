@@ -115,8 +115,8 @@ class Header:
 class Rows:
     """The core's lists of statistics and of options.
 
-    statistics: (how, when, member, name); options: {member: ({word: number}, scope, property)}; types: {member: its
-    type in Python}
+    statistics: a list of (how, when, member, name). options: {member: ({word: number}, scope, property)}. types: {member:
+    its type in Python}.
     """
 
     def __init__(self, folder, header):

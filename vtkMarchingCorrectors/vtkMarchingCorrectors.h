@@ -191,9 +191,10 @@ public:
 
   ///@{
   /**
-   * CubeSizeFactor: size of the virtual grid's cubes / smallest smoothing length (unscaled). No
-   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. CubeSize sets the size itself, unit L; 0 (the
-   * default): use CubeSizeFactor, with which the lattice may differ between time steps or pieces.
+   * CubeSizeFactor: the size of the virtual grid's cubes, divided by the smallest smoothing length
+   * (unscaled). No unit, > 0, 0.5 by default; 0.5 to 1 is sensible. CubeSize sets the size itself,
+   * unit L. If CubeSize is 0 (the default), CubeSizeFactor is used; the lattice may then differ
+   * between time steps or pieces.
    */
   vtkSPHValueMacro(CubeSizeFactor, double, 0.5);
   vtkSPHValueMacro(CubeSize, double, 0.0);

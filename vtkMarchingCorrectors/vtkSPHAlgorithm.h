@@ -108,8 +108,9 @@ public:
 
   ///@{
   /**
-   * The point array of smoothing lengths (unit L, > 0); an empty name (the default): found by its
-   * usual name. SmoothingLength: one for all particles; 0 (the default): use the array.
+   * The point array of smoothing lengths (unit L, > 0). If the name is empty (the default), the array
+   * is found by its usual name. SmoothingLength is one value for all particles; if it is 0 (the
+   * default), the array is used.
    */
   vtkSPHChoiceTextMacro(SmoothingLengthArrayName);
   vtkSPHChoiceMacro(SmoothingLength, double);
@@ -142,10 +143,10 @@ public:
 
   ///@{
   /**
-   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0); empty
-   * names (the default): found by their usual names. A volume array that is found is used unless
-   * mass and density are both set, or ComputeVolumes is on. Mass and Density: one value for all
-   * particles; 0 (the default): use the array.
+   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Arrays
+   * without a name (the default) are found by their usual names. A volume array that is found is used
+   * unless mass and density are both set, or ComputeVolumes is on. Mass and Density are one value for
+   * all particles; if they are 0 (the default), the arrays are used.
    */
   vtkSPHChoiceTextMacro(VolumeArrayName);
   vtkSPHChoiceTextMacro(MassArrayName);
@@ -387,7 +388,7 @@ public:
   /** Lists the OpenCL devices, one a line: "number: device (platform)". Empty: there is none. */
   static std::string ListDevices();
 
-  /** Frees the memory on the device. The next run takes as long as the first. */
+  /** Frees the memory on the device; during a run, at its end. The next run must send the particles again. */
   void ReleaseDeviceMemory();
 
   ///@{

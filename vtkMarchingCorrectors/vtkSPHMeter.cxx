@@ -49,7 +49,7 @@ int vtkSPHMeter::FillInputPortInformation(int port, vtkInformation* info)
 }
 
 // Requests all of both inputs, whatever piece of the table is wanted. If processes share a run,
-// requests only all of the places.
+// requests all of the places, but leaves to the pipeline which particles this process gets.
 int vtkSPHMeter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {

@@ -67,8 +67,8 @@ struct vtkSPHParticlesChoice
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UnusedType; ///< a sentence: no fluid was chosen, although an array seems to tell it
-  /** Whether solid particles are left out when volumes are computed. Most filters have a setter for
-   * this member; vtkMarchingCorrectors sets it by SetSolids(). */
+  /** Whether solid particles play no part, not even in weights and in computed volumes. Most filters
+   * have a setter for this member; vtkMarchingCorrectors sets it by SetSolids(). */
   vtkTypeBool IgnoreSolids = 0;
   int Kernel = 0;
   int Dimension = 0;

@@ -70,7 +70,7 @@ public:
   vtkSPHClampMacro(Resolution, int, 500, 2, 100000);
 
   /**
-   * How many points a volume has along x, y and z. 0, the default: the shape of the fluid decides;
+   * How many points a volume has along x, y and z. 0, the default: the shape of the volume decides;
    * about a million in all. If the particles lie in a plane, one point along the constant axis.
    */
   vtkSPHVector3Macro(Dimensions, int, 0, 0, 0);

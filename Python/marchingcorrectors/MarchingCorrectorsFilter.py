@@ -81,8 +81,8 @@ WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"),
 # What the panel shows of a run, before the run has found anything.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-# What the filter keeps of its last run, here of none: a mark of the particles and a mark of the scalar, which tell whether the data on the
-# device can be used again; the options that the factors of smoothing lengths depend on; and these factors.
+# The filter keeps of its last run: a mark of the particles and a mark of the scalar, which tell whether the data on the device can be used
+# again; the options that the factors of smoothing lengths depend on; and these factors. NO_RUN stands for no last run.
 NO_RUN = None, None, None, None
 
 

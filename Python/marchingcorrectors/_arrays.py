@@ -154,9 +154,9 @@ class Found:
         self.positions, self.count, self.found = positions, len(positions), c.mcor_found()
 
     def find(self, arrays, wants, names=None, values=None, only=(), taken=(), excluded=(), **words):
-        """Lets the core find `wants` among the arrays. Returns self. arrays: {name: array}, or pairs; wants: names of mcor_want;
-        names: {role: name}; values: {role: number}; only: (name, low, high); taken, excluded: names;
-        words: further members of mcor_request."""
+        """Lets the core find `wants` among the arrays. Returns self. arrays: {name: array}, or pairs. wants: names of mcor_want.
+        names: {role: name}. values: {role: number}. only: a list of (name, low, high). taken, excluded: names of arrays.
+        words: further members of mcor_request. If something is missing, `error` says so; raises MemoryError without memory."""
         pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
         request = c.mcor_request(wants=sum(WANTS[name] for name in wants), active=-1)
         for role, name in (names or {}).items():

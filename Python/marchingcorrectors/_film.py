@@ -261,7 +261,7 @@ def label_pieces(triangles, count):
 
 def small_pieces(surface, label, positions, fluid, least):
     """Returns (piece, its particles) for each closed piece with fewer than `least` particles. The particles of a piece
-    are enclosed by the piece, or nearest to one of its points. A cavity is listed if such a piece surrounds it."""
+    are enclosed by the piece, or nearest to one of its points. A cavity is listed if its box lies in the box of such a piece."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))

@@ -268,8 +268,8 @@ class Particles(Arguments):
     """Arguments whose quantities the core finds among the point arrays. If something is missing, raises InvalidArgument, whose member
     `particles` has what was found.
 
-    choice: a copy of the filter's properties; wants: names of mcor_want; requests: for the scalar, and for the
-    second vector of a dot product.
+    choice: a copy of the filter's properties. wants: names of mcor_want. requests: two, for the scalar and for the second
+    vector of a dot product.
     """
 
     def __init__(self, choice, points, wants, requests=(Request(), Request()), taken=(), options=None):

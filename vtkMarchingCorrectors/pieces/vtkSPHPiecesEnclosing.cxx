@@ -133,8 +133,8 @@ private:
 };
 
 /**
- * Replaces `innermost` if a piece encloses the point and has a volume of smaller magnitude, or if
- * `innermost` is -1. The piece `without` is ignored.
+ * Replaces `innermost` by a piece that encloses the point if the piece's volume has a smaller
+ * magnitude, or if `innermost` is -1. The piece `without` is ignored.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)

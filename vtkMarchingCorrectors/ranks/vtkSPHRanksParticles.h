@@ -38,9 +38,9 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
 
 /**
  * Sends each element's tuple back to the rank from which the element came. Returns arrays of
- * `count` tuples; a tuple that nobody sent is 0. from: how many elements came from each rank;
- * owned: marks the elements whose tuples are sent, null: all; to: for each rank, the places of its
- * tuples in the result. Collective.
+ * `count` tuples; a tuple that no rank sent is 0. from: how many elements came from each rank.
+ * owned: marks the elements whose tuples are sent; null: all are sent. to: for each rank, the places
+ * of its tuples in the result. Collective.
  */
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const std::vector<vtkIdType>& from, const std::uint8_t* owned, const vtkSPHRanksLists& to,
@@ -48,7 +48,7 @@ vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays
 
 /**
  * Gathers all ranks' tuples on the first rank; the other ranks get none. numbers: the place of each
- * of this rank's tuples in the result; null: tuples come in the order of ranks. Collective.
+ * of this rank's tuples in the result. If it is null, tuples come in the order of ranks. Collective.
  */
 vtkSPHRanksArrays vtkSPHGatherTuples(
   vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers);

@@ -77,7 +77,7 @@ public:
   vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
   vtkSPHRanksBox Whole = {};       ///< holds all ranks' boxes
-  std::int64_t OwnedParticles = 0; ///< number of all ranks' particles that lie in this rank's box
+  std::int64_t OwnedParticles = 0; ///< number of all ranks' particles with work in this rank's box
   std::int64_t Particles = 0;      ///< number of particles that this rank gets, owned or not
   std::int64_t Work = 0;           ///< work of the particles in this rank's box
 

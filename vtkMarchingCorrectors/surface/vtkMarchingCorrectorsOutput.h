@@ -44,8 +44,9 @@ public:
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
   /**
-   * Writes the mesh, its arrays and the iso values to `output`. precision: of the points, as in
-   * vtkAlgorithm; merge: merges ranges over all processes, see vtkRun::MergeRanges().
+   * Writes the mesh, its arrays and the iso values to `output`. precision: the points' precision, as
+   * in vtkAlgorithm. merge: merges ranges over all processes, see vtkRun::MergeRanges(); so all
+   * processes that share a run must call this.
    */
   using Merge = std::function<void(double* ranges, int count)>;
   void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);

@@ -43,7 +43,8 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
     path: a file, or a list of files of bodies (VTK's, tables) that are one set.
     types: for GADGET-like files: names, such as "gas", "dark_matter", "stars", or numbers; by default gas.
-    walls: the listed files that hold walls; by default their names tell (Wall, Boundary, ...).
+    walls: files that hold walls, listed in `path` or not; by default, if there are several files, their names tell (Wall,
+        Boundary, ...).
     step: the number of a step in a file of several (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part, lists); -1 is the last one. The
         result's `times` are the times of all steps.
 

@@ -41,9 +41,9 @@ class RawArray(NamedTuple):
         return self._replace(begin=self.begin + begin * width, count=count)
 
 
-# GADGET: records of Fortran, each between two copies of its number of bytes, in one file or several. The first record is a header of 256
-# bytes. Each other record is an array: of all types of particles in order, of the types that have no mass in the header, or of gas. In
-# format 2, a record with the array's name comes before each record; in format 1, the order of the arrays tells their names.
+# GADGET: one file or several, of Fortran's records. Each record stands between two copies of its number of bytes. The first record is a
+# header of 256 bytes. Each other record is an array: of all types of particles in order, of the types that have no mass in the header, or
+# of gas. In format 2, a record with the array's name comes before each record; in format 1, the order of the arrays tells their names.
 HEADER = "6i6d2d2i6I2i4d"
 LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS": "Masses", "U": "InternalEnergy",
           "RHO": "Density", "NE": "ElectronAbundance",

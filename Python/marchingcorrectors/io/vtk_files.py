@@ -99,9 +99,9 @@ def take_vertices(file, body, lists, cell_arrays):
 
 
 # -- XML --
-# An array is text, or base64 in the file, or base64 or bytes at an offset behind an underscore in <AppendedData>. Bytes begin with their number;
-# packed bytes begin with the number of blocks, the bytes of a block, the bytes of the last block if it is shorter (else 0), and the packed bytes
-# of each block.
+# An array is text; or base64 in the file; or base64 or bytes in <AppendedData>, at an offset behind the underscore there. Before the bytes
+# of an array stands their number. Before packed bytes stand the number of blocks, the size of a block, the size of the last block if it is
+# shorter (else 0), and the packed size of each block.
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}

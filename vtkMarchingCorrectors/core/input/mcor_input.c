@@ -201,28 +201,40 @@ double mcor_largest(
 
 typedef struct mcor_legal_job
 {
-  mcor_array all; /* the elements of all components */
-  double least;
+  const mcor_array* array;
+  bool positive;
   bool illegal[MCOR_SLICES];
 } mcor_legal_job;
 
-static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
+/* Compilers vectorise this loop. */
+#define MCOR_TEST_ALL(type, most)                                                                  \
+  for (int64_t i = first; i < last; ++i)                                                           \
+  {                                                                                                \
+    const type x = ((const type*)job->array->data)[i];                                             \
+    illegal |= !((x <= most) & (positive ? x > 0 : x >= -most));                                   \
+  }
+
+MCOR_VECTOR_LOOPS static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
-  double x[MCOR_CHUNK];
-  for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
+  const bool positive = job->positive;
+  int illegal = 0;
+  if (job->array->type == MCOR_FLOAT64)
   {
-    mcor_read_array(&job->all, first, count, 0, x);
-    job->illegal[slice] |= !mcor_is_all_within(x, count, job->least, DBL_MAX);
+    MCOR_TEST_ALL(double, DBL_MAX)
   }
+  else
+  {
+    MCOR_TEST_ALL(float, FLT_MAX)
+  }
+  job->illegal[slice] = illegal;
 }
 
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive)
 {
   const int components = mcor_components(array);
-  mcor_legal_job job = { .all = *array, .least = positive ? DBL_TRUE_MIN : -DBL_MAX };
-  job.all.components = 1;
+  mcor_legal_job job = { .array = array, .positive = positive };
   const int slices = array->data
     ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
     : 0;

@@ -215,10 +215,14 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   uint8_t* level = (uint8_t*)staging->level + to;
   /* Rounds positions to the digits that evaluations use. */
   const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
+  double unit = 1;
   for (int i = 0; i < count && are_rounded; ++i)
   {
-    const double unit =
-      ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
+    const bool is_like_last =
+      i > 0 && chunk->h[i] == chunk->h[i - 1] && chunk->level[i] == chunk->level[i - 1];
+    unit = is_like_last
+      ? unit
+      : ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
@@ -241,9 +245,12 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   }
   for (int i = 0; i < count; ++i)
   {
+    level[i] = 0;
+  }
+  for (int i = 0; i < count && m->support_min < m->support_max; ++i)
+  {
     const double support = chunk->h[i] * reach;
-    const bool is_short = m->support_min < m->support_max && support < m->support_max;
-    const int of = is_short ? ilogb(m->support_max / support) : 0;
+    const int of = support < m->support_max ? ilogb(m->support_max / support) : 0;
     level[i] = (uint8_t)(of < 0 ? 0 : of >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : of);
   }
   for (int i = 0; i < count; ++i)
@@ -285,9 +292,12 @@ static void mcor_stage_chunk_at(
   {
     return;
   }
+  /* Mostly all lengths are the same, so one division is enough. */
+  const double h = chunk->h[0], inverse = scaled_cube / h;
+  const bool are_same = mcor_is_all_within(chunk->h, count, h, h);
   for (int i = 0; i < count; ++i)
   {
-    inv_h[i] = scaled_cube / chunk->h[i];
+    inv_h[i] = are_same ? inverse : scaled_cube / chunk->h[i];
   }
   for (int i = 0; i < weighed; ++i)
   {

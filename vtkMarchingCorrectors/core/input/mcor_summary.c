@@ -38,8 +38,9 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   const bool has_box = mcor_has_box(options) != 0;
   const mcor_array positions = mcor_positions_of(input), lengths = mcor_lengths_of(input);
   const int levels = options->filled || options->capping ? 0 : options->level_limit;
+  const bool are_alike = !lengths.data && !input->solid && !has_box;
   double cubes = 0.0;
-  for (int64_t i = 0; i < input->count; ++i)
+  for (int64_t i = 0; i < (are_alike ? 1 : input->count); ++i)
   {
     bool counts = !input->solid || !input->solid[i];
     for (int a = 0; a < 3 && counts && has_box; ++a)
@@ -55,6 +56,7 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
     }
     cubes += counts ? mcor_power(h, is_plane ? 2 : 3) : 0;
   }
+  cubes *= are_alike ? (double)input->count : 1;
   const bool is_radius =
     input->smoothing_length_is_support_radius && !input->estimate_smoothing_length;
   const double per_length = is_radius ? 1.0 / mcor_support_factor(options->sph_kernel) : 1.0;

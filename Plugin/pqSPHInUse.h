@@ -9,10 +9,11 @@
  * would find (the properties that begin with Next, if the filter has them). The list of iso values
  * begins with the usual value for the array, and changes with the array until the user sets others.
  *
- * The panel of a new filter begins with what suits its particles: the free surface if walls are
- * found, an estimate if there are no smoothing lengths, and a plane, line or box that spans the
- * fluid. Lists of arrays also offer what the filter accepts as an array: blocks as fluid; vx, vy
- * and vz as velocity. Fields of numbers that are not given are empty.
+ * The panel of a new filter begins with what suits its particles: the free surface unless a gas
+ * fills its bounds, filled regions in two dimensions, an estimate if there are no smoothing lengths,
+ * and a plane or line through the fluid. Lists of arrays also offer what the filter accepts as an
+ * array: blocks as fluid; vx, vy and vz as velocity. Fields of numbers that are not given show the
+ * words "not given".
  *
  * Pictures of the output have colours that span most of its area; charts show only its best array.
  * A gauge or a flux has a button that plots it at all times.

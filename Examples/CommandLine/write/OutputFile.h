@@ -18,9 +18,9 @@ void CheckOutputs(const std::vector<std::string>& outputs);
 /// Outputs that belong together. Each is written under a fresh name beside its target; Commit()
 /// lets them replace their targets. Without Commit(), also if the program is ended, targets stay as
 /// they were. If a target is a symbolic link, the file that it leads to is replaced. Mode, owner and
-/// group stay. Other hard links of a replaced file keep the old contents. Commit() writes into a
-/// target that is not a regular file (a device, a FIFO, /dev/stdout). All functions throw
-/// std::runtime_error with one sentence.
+/// group stay, as far as the system allows. Other hard links of a replaced file keep the old
+/// contents. Commit() writes into a target that is not a regular file (a device, a FIFO,
+/// /dev/stdout). All functions throw std::runtime_error with one sentence.
 class OutputFiles
 {
 public:

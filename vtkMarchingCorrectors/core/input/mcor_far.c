@@ -14,7 +14,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Far particles are left out if they are at most one in MCOR_FAR_SHARE, or at most MCOR_FAR_FEW. */
+/* Far particles are left out if they are at most one in MCOR_FAR_SHARE, or at most MCOR_FAR_FEW, and
+ * fewer than half of all. */
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
@@ -119,7 +120,7 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 }
 
 /* Leaves out particles beyond a region that reaches `half` from the middle of a sample of the fluid
- * along each axis. Fails if they are too many; the error sentence is set already. */
+ * along each axis. Fails if there are none, or too many; the error sentence is set already. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, double half)
 {
   const mcor_sample_list* samples = &context->samples[0];

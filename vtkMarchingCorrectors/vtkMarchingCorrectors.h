@@ -28,12 +28,12 @@
  *
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
- * velocities, the first vector, or the first scalar of the particles that varies; with several iso
- * values, the iso value. The output field data holds the arrays of the input's field data, and
- * "IsoValues", whose component has the name of the point array that gives each point's iso value.
- * GetRunStatistics() holds statistics of the run, "Device" and "Platform", and for each parameter
- * the value in use. All but the device, the platform and the costs of the run depends only on the
- * input and the properties.
+ * velocities, the first vector, or the first scalar of the particles that varies on the surface;
+ * with several iso values, the iso value is the last of the scalars. The output field data holds the
+ * arrays of the input's field data, and "IsoValues", whose component has the name of the point array
+ * that gives each point's iso value. GetRunStatistics() holds statistics of the run, "Device" and
+ * "Platform", and for each parameter the value in use. All but the device, the platform and the
+ * costs of the run depends only on the input and the properties.
  *
  * If processes share a run, see SetController(), each gets the part of the surface in its share of
  * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
@@ -360,7 +360,8 @@ public:
    * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
    * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone.
+   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone
+   *   or inside a filled region.
    */
   vtkSPHFlagMacro(ComputeNormals, 1);
   vtkSPHFlagMacro(ComputeScalars, 1);

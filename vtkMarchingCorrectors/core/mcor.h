@@ -315,7 +315,8 @@ extern "C"
     /* Highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24. mcor_probe and
      * mcor_derive do not read it. */
     int level_limit;
-    const double* iso_values; /* [iso_count], finite; none give an empty surface */
+    /* [iso_count], finite, above 0 with MCOR_WEIGHT_SUM; none give an empty surface */
+    const double* iso_values;
     int iso_count;
     /* Cells with a node whose weight is below this are discarded; default 0.1. With MCOR_SHEPARD,
      * cells with a node whose fluid weight is below 0.001 are discarded, too. */
@@ -460,7 +461,7 @@ extern "C"
     int dimension;          /* 2 or 3, see mcor_options.dimension */
     double cube_size;       /* unit L; the shortest of cube_edges */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
-    double scalar_min, scalar_max; /* over fluid particles */
+    double scalar_min, scalar_max; /* over fluid particles; 0 and 1 with MCOR_WEIGHT_SUM */
     /* With a box, the lattice and all counts of cells, triangles and vertices are for the box
      * alone; a vertex that ranks share is counted by one of them. Counts of bricks, nodes, faces
      * and evaluations include the work done around the box. */
@@ -470,9 +471,11 @@ extern "C"
     /* Complete seeds: with uniform cubes, the cells that bounds of the field, each for 8 x 8 x 8
      * nodes, do not exclude; with adaptive cubes, the cells of leaves through which the surface
      * passes. Pair seeds: the cells between the two particles of each pair.
-     * seed_cells_not_intersected: how many of these cells the surface does not use. These and the
-     * following counts are summed over iso values. */
+     * seed_cells_not_intersected: how many of these cells the surface does not use. These counts
+     * and most of the following ones are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
+    /* Not summed over iso values: bricks that exist after the last one, and nodes that have values
+     * then, also from earlier calls. */
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
@@ -648,7 +651,8 @@ extern "C"
   /* Finds the period that field data give: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box
    * with a periodic boundaryType (SPH-EXA). Case, blanks, "_" and "-" of names do not matter.
    * Returns how many numbers `period` has: 6 bounds, as in mcor_options.periodic; 3 lengths, see
-   * mcor_place_period; 0 if no array gives a period. which: the index of the array; may be NULL. */
+   * mcor_place_period; 0 if no array gives a period. which: becomes the index of the array, or
+   * -1; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
   /* Finds the bounds of a period of known lengths. Along each axis the period begins at 0, or is
@@ -767,9 +771,10 @@ extern "C"
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* Returns the warning with its numbers; no message if there is nothing to warn of. Pass the
-   * input, options and surface of mcor_extract. The last three warnings hold for any call; they
-   * read nothing of the surface but its statistics. */
+  /* Returns the warning with its numbers; no message if there is nothing to warn of, if another
+   * warning already tells the cause, or with globals, whose input has only some of the particles.
+   * Pass the input, options and surface of mcor_extract. The last three warnings hold for any call;
+   * they read nothing of the surface but its statistics. */
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
@@ -786,7 +791,8 @@ extern "C"
     int64_t count;           /* of points */
     double* weight_sum;      /* [count], of fluid particles */
     double* weight_gradient; /* [count][3], unit 1 / L; NULL without MCOR_OUT_GRADIENTS */
-    uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
+    uint8_t* valid; /* [count], 1 where the weight sum is above 1e-30 and not below
+                     * options.node_threshold */
     /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard
      * mean), and its gradient. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
@@ -1018,8 +1024,9 @@ extern "C"
   } mcor_derivatives;
 
   /* Computes gradients of the attributes of the input at the particles, from sums over fluid
-   * particles. The options of mcor_probe apply, except field, outputs and node_threshold. A
-   * gradient too large for a double is infinite. *derivatives is overwritten. */
+   * particles. The options of mcor_probe apply, except outputs and node_threshold; field only
+   * decides whether solids count in computed volumes. A gradient too large for a double is
+   * infinite. *derivatives is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);

@@ -222,7 +222,8 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 typedef mcor_status (*mcor_body)(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
 
-/* Runs the body; runs it again if memory ran out and some could be freed. */
+/* Runs the body. Without ranks, runs it again if memory ran out and some could be freed. Fails if
+ * mcor_create_context failed. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);

@@ -38,7 +38,9 @@ extern "C"
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;
-    double low[3], high[3];          /* of positions minus and plus scaled support radii */
+    /* The range of positions minus and plus scaled support radii; along a period, the range that
+     * the images in use may reach. */
+    double low[3], high[3];
     double x_low[3], x_high[3];      /* range of the positions of fluid particles */
     double h_min, h_max;             /* range of the smoothing lengths of fluid particles */
     double support_min, support_max; /* range of scaled support radii of particles that take part */
@@ -47,7 +49,7 @@ extern "C"
     double widening_min, widening_max; /* range of the factors of fluid particles; 0: there are none */
     int64_t widening_sum;            /* sum of these factors, times 2^23 */
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
-    double scalar_min, scalar_max;                /* over fluid particles */
+    double scalar_min, scalar_max;                /* as in mcor_statistics */
     int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */
     double cube;        /* cube size, or longest edge of a cube; ignored if a cube size is given */
     double edge[3];     /* edges of the cubes along x, y, z; ignored if a cube size is given */

@@ -68,7 +68,7 @@ typedef struct mcor_stage_data
 {
   mcor_buffer x, y, z, inv_h, size, level; /* of each particle, in input order */
   mcor_buffer values;                      /* real: values of one component, in input order */
-  mcor_buffer density;                     /* masses, while volumes are computed */
+  mcor_buffer density;                     /* of sorted particles, while volumes are computed */
   mcor_buffer found;                       /* int: what a kernel has found in all particles */
 } mcor_stage_data;
 

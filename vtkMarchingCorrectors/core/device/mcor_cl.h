@@ -20,8 +20,8 @@ typedef struct mcor_buffer
   size_t size; /* bytes */
 } mcor_buffer;
 
-/* Memory of the host that a driver has locked. The host maps a buffer of a device with memory of
- * its own as such a copy. */
+/* Memory of the host that a driver has locked. If the device has memory of its own, the host sees a
+ * mapped buffer as a copy in such memory. */
 typedef struct mcor_locked
 {
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */

@@ -18,13 +18,13 @@
  *   mcor_free_surface(&surface);
  *   mcor_free_context(context);
  *
- * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs
- * are empty and safe to free. The library never prints, never exits and keeps no global state. Only
- * one thread at a time may use a context; several threads may use several contexts at once. A call
- * starts helper threads on the processors that its thread may use. On the built-in device, the
- * helpers wait for the context's next call, and end with the context. On other devices, up to 15
- * helpers work and up to 12 build programs; all end before the call returns, even if it is
- * cancelled.
+ * Functions that can fail return an mcor_status, MCOR_OK being 0, unless their comments say
+ * otherwise; after a failure, outputs are empty and safe to free. The library never prints, never
+ * exits and keeps no global state. Only one thread at a time may use a context; several threads may
+ * use several contexts at once. A call starts helper threads on the processors that its thread may
+ * use. On the built-in device, the helpers wait for the context's next call, and end with the
+ * context. On other devices, up to 15 helpers work and up to 12 build programs; all end before the
+ * call returns, even if it is cancelled.
  *
  * Lengths are in the unit of the particle positions ("length unit L"). */
 
@@ -185,10 +185,11 @@ extern "C"
     /* For programs with an OpenCL context of their own: a cl_mem of any context, which holds the
      * values if data is NULL. The values of the first particle begin at byte `offset`, of each next
      * particle `stride` bytes later; stride 0: values are packed. Calls on a mcor_context map such
-     * arrays of mcor_input for reading. On a CPU nothing is copied; from a GPU the values pass
-     * through the host, which checks and measures all particles. Commands that write to the memory
-     * must have finished. `memory` is read only in arrays of mcor_input, and only by functions with
-     * a context. mcor_store writes results to such memory. */
+     * arrays of mcor_input for reading. On a CPU nothing is copied if values are packed and
+     * `offset` is a multiple of a number's size; from a GPU the values pass through the host, which
+     * checks and measures all particles. Commands that write to the memory must have finished.
+     * `memory` is read only in arrays of mcor_input, and only by functions with a context.
+     * mcor_store writes results to such memory. */
     void* memory;
     size_t offset, stride;
   } mcor_array;
@@ -342,11 +343,12 @@ extern "C"
     int filled;
     /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices
      * that belong to one node of the virtual grid, and that edges of triangles join, are merged.
-     * The merged vertex moves onto the surface along the gradient, not along a lattice edge. A
-     * merge is undone if it would join or split pieces of the surface, or turn a triangle over. The
-     * widest corner of each remaining sliver moves to the middle of its neighbours, and from there
-     * onto the surface. Points on the sides of periods, at caps and on borders do not change.
-     * Cannot be combined with `filled`. */
+     * The merged vertex moves onto the surface along the gradient, not along a lattice edge.
+     * Nothing is merged where this would join or split pieces of the surface. A merge is undone if
+     * the vertex does not reach the surface, or if a triangle turns over. The widest corner of each
+     * remaining sliver moves to the middle of its neighbours, and from there onto the surface.
+     * Points on the sides of periods, at caps and on borders do not change. Cannot be combined with
+     * `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; mcor_spell_out sets what this stands for */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
@@ -578,10 +580,10 @@ extern "C"
 
   typedef struct mcor_context mcor_context;
 
-  /* device: NULL or "" for the default (the built-in device if it can do the run, else a GPU, else
-   * another), a number as listed by mcor_list_devices, or part of the name of a device or platform. On
-   * failure *context is still a context, whose mcor_last_error says why (NULL only if host
-   * memory ran out). */
+  /* device: a number as listed by mcor_list_devices, or part of the name of a device or platform.
+   * NULL or "": what MCOR_DEVICE in the environment says in this way, else the default (the
+   * built-in device if it can do the run, else a GPU, else another). On failure *context is still a
+   * context, whose mcor_last_error says why (NULL only if host memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 

@@ -94,7 +94,8 @@ typedef struct mcor_brick_data
   mcor_buffer bricks;        /* int4: position in bricks */
   mcor_buffer known;         /* ulong: nodes evaluated, all or none of a brick */
   mcor_buffer value, weight; /* real [64] */
-  mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
+  mcor_buffer above, valid;  /* ulong: signs of nodes whose value is known or whose side is certain,
+                              * see mcor_node_signs */
   int count;
 } mcor_brick_data;
 
@@ -324,7 +325,8 @@ typedef struct mcor_kept
 {
   mcor_input input;
   mcor_options options;
-  mcor_globals globals; /* the last call's globals, without arrays; 0: none were given */
+  mcor_globals globals; /* the last call's globals, whose arrays must not be read; 0: none were
+                         * given */
   uint64_t splits;      /* hash of the globals' split bricks */
   bool uses_solids;     /* whether solid particles are on the device */
   bool grid, value;

@@ -272,7 +272,10 @@ def run_probe(given, particles, points, make, command):
         mesh = make(pyvista)
         for name, values in arrays.items():
             mesh.point_data[name] = values.reshape(len(points), -1) if values.ndim > 2 else values
-        mesh.save(given.output)
+        try:
+            mesh.save(given.output)
+        except ValueError:  # PyVista does not know the ending.
+            raise InvalidArgument(f"The output is a {COMMANDS[command][2]} file, not '{os.path.basename(given.output)}'.") from None
     return f"{len(points)} points, {int(found.valid.sum())} of them in the fluid"
 
 

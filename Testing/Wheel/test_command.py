@@ -173,6 +173,9 @@ class Command(Case):
             self.assertIn(sentence, self.said)
         self.run_it("gauge", "a.vtp", "--gauge", "a=0,0,0:0,0,1", *FLUID, status=1)
         self.assertIn("a .csv file, not 'a.vtp'", self.said)
+        for command, place, sentence in (("slice", "z=0", "a .vti or .npz file, not 'a.x'"), ("line", "0,0,0,1,0,0", "a .vtp, .csv or .npz file, not 'a.x'")):
+            self.run_it(command, "a.x", f"--{command}={place}", "--resolution", "9", *FLUID, status=1)
+            self.assertIn(sentence, self.said)
         self.run_it("slice", "a.npz", "--slice", "z=nan", status=2)
         self.assertIn("--slice: it must be AXIS=PLACE, not 'z=nan'", self.said)
         done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", "--help"], stdout=subprocess.PIPE, text=True)

@@ -253,8 +253,8 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return seen == fan->count;
 }
 
-/* Whether a closed piece would keep enough vertices: counts a bunch, the bunches of its ring, and
- * the bunches in triangles around these, as if all were merged. */
+/* Whether a closed piece would keep enough vertices: counts a bunch, the vertices of its ring, and
+ * the bunches, as if all were merged, in triangles around the ring's bunches. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);

@@ -50,7 +50,7 @@ typedef enum mcor_program
   MCOR_PROGRAM_CHOICES, /* topology, boxes, pairs */
   /* Compiled for each build that makes surfaces. */
   MCOR_PROGRAM_ATTRIBUTES, /* the same for all fields */
-  MCOR_PROGRAM_DENSITY,    /* volumes that are computed; the same for all fields */
+  MCOR_PROGRAM_DENSITY,    /* computed volumes, of any call; the same for all fields */
   MCOR_PROGRAM_NODES,      /* seeds and values at nodes */
   MCOR_PROGRAM_VERTICES,   /* correction */
   MCOR_PROGRAM_TRIM,
@@ -116,7 +116,7 @@ typedef struct mcor_cl
   int kept_count;
   mcor_locked locked[MCOR_LOCKED_LIMIT];
   int64_t kept_bytes, used_peak,
-    used_before; /* The most bytes used, without kept buffers: in this call, in the last call. */
+    used_before; /* the most bytes used, without kept buffers: in this call, in the last call */
   double build_seconds;   /* how long the present call has built programs */
   mcor_observer observer; /* progress of the present call; NULL: none */
   double terms;           /* about the number of terms in the sum at a point, for mcor_enqueue_cut */

@@ -386,9 +386,20 @@ def check_few():
     return problems
 
 
+def check_sent():
+    """Arrays that a run does not need stay on their ranks."""
+    sent = []
+    for count in 0, 6:
+        own, derive = take_part(make_particles(DAMS), "scattered at random"), vtkSPHDerivatives()
+        add(own, **{f"Other{i}": vtk_to_numpy(own.GetPoints().GetData()) for i in range(count)})
+        sample(lambda made=derive: made, DERIVE, own, None, CONTROLLER)
+        sent.append(np.sum(vtk_to_numpy(derive.GetRunStatistics().GetArray("RankBytesSent"))))
+    return [] if 0 < sent[1] < 1.1 * sent[0] else [f"{sent} bytes"]
+
+
 def main():
     cases, check, problems = ((SURFACES, check_surface, check_named() + check_few()) if sys.argv[2] == "surfaces" else
-                              (SAMPLES, check_sample, check_without_points()))
+                              (SAMPLES, check_sample, check_without_points() + check_sent()))
     for number, (name, case) in enumerate(cases.items()):
         problems += check(number, name, *case) if SOME or WANTED in name else []
     problems = COMM.allreduce(problems)

@@ -283,7 +283,7 @@ void vtkMarchingCorrectors::ContourDistributed(
   run.Work = vtkSPHExpectWork(run.Ranks, mine.Core, options, run.Globals);
   // Lines go on from rank to rank, so the first rank makes all of them.
   const bool hasLines = run.Globals.measured.plane.axis > 0;
-  vtkSPHParticles* input = run.Send(mine, hasLines ? 1 : run.Ranks.GetCount());
+  vtkSPHParticles* input = run.Send(mine, run.Own, hasLines ? 1 : run.Ranks.GetCount());
   if (!input)
   {
     return;

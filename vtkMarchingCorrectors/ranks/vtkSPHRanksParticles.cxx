@@ -408,6 +408,43 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
+// Arrays stay in their order, and computed arrays come after them, so that all are found again.
+vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
+{
+  vtkSPHRanksArrays wanted;
+  for (int role = 0; role < MCOR_ROLE_COUNT; ++role)
+  {
+    wanted.push_back(used.ArrayFor(static_cast<mcor_role>(role)));
+  }
+  for (const vtkSPHAttribute& attribute : used.Interpolated)
+  {
+    wanted.emplace_back(attribute.Array);
+  }
+  for (const vtkSPHOnly& only : used.Description.Only)
+  {
+    wanted.emplace_back(own->GetPointData()->GetAbstractArray(only.Name.c_str()));
+  }
+  auto kept = vtkSmartPointer<vtkPolyData>::New();
+  kept->SetPoints(own->GetPoints());
+  vtkPointData* to = kept->GetPointData();
+  for (const auto& array : vtkSPHListArrays(own->GetPointData()))
+  {
+    if (std::find(wanted.begin(), wanted.end(), array) != wanted.end() ||
+      vtkSPHParticles::IsMade(array->GetName()))
+    {
+      to->AddArray(array);
+    }
+  }
+  for (const auto& array : wanted)
+  {
+    if (array && !to->HasArray(array->GetName()))
+    {
+      to->AddArray(array);
+    }
+  }
+  return kept;
+}
+
 void vtkSPHMatchEmpty(vtkMultiProcessController* controller, vtkPolyData* result)
 {
   vtkSPHRanks ranks(controller);

@@ -18,6 +18,7 @@ class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
+class vtkSPHParticles;
 struct vtkSPHParticlesChoice;
 
 using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
@@ -62,6 +63,9 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
   const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken = nullptr);
+
+/** Returns the particles with only the arrays that describe them or are interpolated. */
+vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used);
 VTK_ABI_NAMESPACE_END
 
 #endif

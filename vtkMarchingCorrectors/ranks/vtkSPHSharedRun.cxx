@@ -257,10 +257,11 @@ void vtkSPHAlgorithm::vtkSharedRun::PlacePoints(vtkDataSet* data)
 
 vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Share(vtkSPHParticles& mine)
 {
-  return this->Send(mine, this->Ranks.GetCount());
+  return this->Send(mine, vtkSPHKeepUsed(this->Own, mine), this->Ranks.GetCount());
 }
 
-vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(vtkSPHParticles& mine, int parts)
+vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(
+  vtkSPHParticles& mine, vtkPointSet* particles, int parts)
 {
   this->Work.resize(static_cast<std::size_t>(mine.Core.count), 1);
   this->Space = vtkSPHRanksSpace(this->Options, this->Globals);
@@ -271,7 +272,7 @@ vtkSPHParticles* vtkSPHAlgorithm::vtkSharedRun::Send(vtkSPHParticles& mine, int 
     return vtkSPHMakePoints(
       vtkSPHSendTuples(this->Ranks, vtkSPHListArrays(points), lists, &this->From), points);
   };
-  this->Near = send(this->Own, to);
+  this->Near = send(particles, to);
   if (this->Places)
   {
     this->Points = send(this->Places, this->Space.ListOwners(this->Places));

@@ -55,8 +55,11 @@ public:
   void AddShares() override;
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
-  /** Does what Share() does, but divides the space among the first `parts` ranks only. */
-  vtkSPHParticles* Send(vtkSPHParticles& mine, int parts);
+  /**
+   * Does what Share() does, but sends these particles with all their arrays, and divides the space
+   * among the first `parts` ranks only. `mine` describes the particles.
+   */
+  vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
   /** Makes the input stand for all ranks' particles in warnings: sets their number, and takes away
    * what warnings do not read. */
   void OfAll(mcor_input& core, mcor_options& options) const;

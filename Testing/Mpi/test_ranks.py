@@ -17,7 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vt
 from vtkmodules.vtkParallelMPI import vtkMPIController
 from vtkmodules.vtkParallelMPI4Py import vtkMPI4PyCommunicator
 
-from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHProbe
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "Python"))
 from vtk_test import add, particles_of, take_step  # noqa: E402
@@ -397,8 +397,22 @@ def check_sent():
     return [] if 0 < sent[1] < 1.1 * sent[0] else [f"{sent} bytes"]
 
 
+def check_pieces():
+    """Pieces of a surface around fluid and walls count the fluid, which is found over ranks as by one process."""
+    counts = []
+    for own, controller in (make_particles(DAM), None), (take_part(make_particles(DAM), "scattered at random"), CONTROLLER):
+        pieces = vtkSPHComponents()
+        pieces.SetController(controller)
+        pieces.SetDetectFluid(1)
+        pieces.SetInputData(0, extract(FREE, own, controller)[0])
+        pieces.SetInputData(1, own)
+        pieces.Update()
+        counts.append(np.nansum(vtk_to_numpy(pieces.GetTable().GetColumnByName("particles"))))
+    return [] if RANK > 0 or 0 < counts[0] == counts[1] else [f"pieces of {counts} particles"]
+
+
 def main():
-    cases, check, problems = ((SURFACES, check_surface, check_named() + check_few()) if sys.argv[2] == "surfaces" else
+    cases, check, problems = ((SURFACES, check_surface, check_named() + check_few() + check_pieces()) if sys.argv[2] == "surfaces" else
                               (SAMPLES, check_sample, check_without_points() + check_sent()))
     for number, (name, case) in enumerate(cases.items()):
         problems += check(number, name, *case) if SOME or WANTED in name else []

@@ -139,12 +139,20 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkNew<vtkPolyData> fluid;
   fluid->SetPoints(own->GetPoints());
   for (vtkDataArray* array :
-    { find(this->MassArrayName, MCOR_MASS, 1), find(this->VelocityArrayName, MCOR_VELOCITY, 3),
-      data->GetArray(this->FluidArrayName.c_str()) })
+    { find(this->MassArrayName, MCOR_MASS, 1), find(this->VelocityArrayName, MCOR_VELOCITY, 3) })
   {
     if (array)
     {
       fluid->GetPointData()->AddArray(array);
+    }
+  }
+  // The fluid is found among all particles, so each array that may tell it is needed.
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    const char* name = data->GetArrayName(i);
+    if (this->FluidArrayName == name || mcor_name_priority(MCOR_PARTICLE_TYPE, name) >= 0)
+    {
+      fluid->GetPointData()->AddArray(data->GetAbstractArray(i));
     }
   }
   return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();

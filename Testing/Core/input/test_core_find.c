@@ -158,7 +158,8 @@ static void test_elements(void** state)
 static void test_fluid(void** state)
 {
   const uint8_t codes[COUNT] = { 0, 1, 3, 3 }, wall[COUNT] = { 1, 0, 0, 0 };
-  const double other[COUNT] = { 5, 6, 6, 6 }, halves[COUNT] = { 0, 0.5, 1, 1 };
+  const double other[COUNT] = { 5, 6, 6, 6 }, halves[COUNT] = { 0, 0.5, 1, 1 },
+               unknown[COUNT] = { -NAN, 0, NAN, 0 };
   const mcor_named arrays[] = { of("Type", MCOR_ELEMENT_UINT8, 1, codes),
     of("IsWall", MCOR_ELEMENT_UINT8, 1, wall), real("ptype", other),
     of(MCOR_WALL_BLOCK, MCOR_ELEMENT_UINT8, 1, wall) };
@@ -176,6 +177,9 @@ static void test_fluid(void** state)
   find(&request, &half, 1, &found);
   assert_int_equal(found.which[MCOR_ROLE_FLUID], -1);
   assert_true(core_tells(&found.unused_type, "TYPE_UNUSED| 1 x 0, 1 x 0.5, 2 x 1.|{fluid Type}"));
+  const mcor_named nan = real("Type", unknown);
+  find(&request, &nan, 1, &found);
+  assert_true(core_tells(&found.unused_type, "TYPE_UNUSED| 2 x 0, 2 x nan.|"));
   request.find_fluid = 0;
   find(&request, arrays, 4, &found);
   assert_true(found.which[MCOR_ROLE_FLUID] == -1 && !found.input.solid && found.fluid_count == 4);

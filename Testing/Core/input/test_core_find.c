@@ -153,6 +153,19 @@ static void test_elements(void** state)
   }
 }
 
+/* An array that is copied is copied once: mcor_project knows masses that are the weight by their data. */
+static void test_one_view(void** state)
+{
+  const int32_t whole[COUNT] = { 1, 2, 3, 4 };
+  const mcor_named arrays[] = { real("h", h), of("Mass", MCOR_ELEMENT_INT32, 1, whole),
+    real("Density", density) };
+  mcor_request request = request_of(MCOR_WANT_SIZES | MCOR_WANT_COLUMN);
+  request.names[MCOR_ROLE_WEIGHT] = "Mass";
+  CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+  find(&request, arrays, 3, &found);
+  assert_ptr_equal(found.views[MCOR_ROLE_WEIGHT].data, found.input.mass.data);
+}
+
 /* Checks that the fluid is found by the codes of DualSPHysics, by 0 and 1, and by a value given by hand. Then particles
  * outside a range of an array are left out. */
 static void test_fluid(void** state)
@@ -376,5 +389,5 @@ static void test_walls(void** state)
     mcor_tells_of_walls(NULL) || mcor_tells_of_walls("wal"));
 }
 
-CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_fluid, test_scalar_and_attributes,
-  test_errors, test_unused_beside_the_sum, test_walls)
+CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_one_view, test_fluid,
+  test_scalar_and_attributes, test_errors, test_unused_beside_the_sum, test_walls)

@@ -76,7 +76,7 @@ static void mcor_put_element(void* array, mcor_element type, int64_t i, double v
 
 /* Returns an array as the core reads it: the array itself if it has floats or doubles without gaps,
  * else a copy. */
-static mcor_array mcor_view_of(mcor_finder* f, const mcor_named* named)
+static mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
 {
   static const double none[3];
   const bool is_float = named->type == MCOR_ELEMENT_FLOAT32;
@@ -97,6 +97,18 @@ static mcor_array mcor_view_of(mcor_finder* f, const mcor_named* named)
     .components = named->components,
     .data = data,
     .name = mcor_keep_name(f, named->name) };
+}
+
+/* Returns the view of an array by its index. An array has one view, whatever it serves for:
+ * mcor_project compares the data of weights and masses. */
+static mcor_array mcor_view_of(mcor_finder* f, int index)
+{
+  mcor_array* view = f->views + index;
+  if (!view->data)
+  {
+    *view = mcor_view_named(f, mcor_named_of(f, index));
+  }
+  return *view;
 }
 
 double mcor_element_at(const mcor_named* a, int64_t tuple, int component)
@@ -262,7 +274,7 @@ static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, in
   *which = name ? mcor_find_given(f, words, name, components) : *which;
   if (*which >= 0)
   {
-    f->found->views[role] = mcor_view_of(f, mcor_named_of(f, *which));
+    f->found->views[role] = mcor_view_of(f, *which);
   }
   return *which >= 0;
 }
@@ -281,7 +293,7 @@ static mcor_message mcor_no_length(mcor_finder* f)
   }
   if (spacing >= 0)
   {
-    const mcor_array distances = mcor_view_of(f, f->arrays + spacing);
+    const mcor_array distances = mcor_view_of(f, spacing);
     mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0, range);
   }
   char* usual = range[0] > 0 && range[0] == range[1]
@@ -502,11 +514,11 @@ static void mcor_find_scalar(mcor_finder* f, bool contours)
   *which = name ? mcor_find_given(f, words, name, 0) : mcor_check_named(f, words, "", *which);
   if (*which >= 0 && (contours || is_column))
   {
-    mcor_keep_scalar(f, mcor_view_of(f, mcor_named_of(f, *which)), is_column, dot != NULL);
+    mcor_keep_scalar(f, mcor_view_of(f, *which), is_column, dot != NULL);
   }
   else if (*which >= 0)
   {
-    mcor_add_attribute(f, *which, mcor_view_of(f, mcor_named_of(f, *which)));
+    mcor_add_attribute(f, *which, mcor_view_of(f, *which));
   }
 }
 
@@ -564,7 +576,7 @@ static void mcor_find_flow(mcor_finder* f)
     }
     f->uses |= MCOR_THE_MASS;
     found->made[1] = (mcor_named){ "Density", MCOR_ELEMENT_FLOAT64, 1, count, divided, { 0, 0 } };
-    mcor_add_attribute(f, f->count + 1, mcor_view_of(f, &found->made[1]));
+    mcor_add_attribute(f, f->count + 1, mcor_view_of(f, f->count + 1));
   }
 }
 
@@ -623,7 +635,7 @@ static void mcor_find_attributes(mcor_finder* f)
     const mcor_named* a = mcor_named_of(f, i);
     if (mcor_is_carried(f, a) && a->type <= MCOR_ELEMENT_FLOAT64)
     {
-      mcor_add_attribute(f, i, mcor_view_of(f, a));
+      mcor_add_attribute(f, i, mcor_view_of(f, i));
     }
     else if (mcor_is_carried(f, a))
     {
@@ -645,6 +657,7 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   *found = (mcor_found){ .input.count = positions->tuples, .fluid_count = positions->tuples };
   memset(found->which, -1, sizeof found->which);
   const size_t most = (size_t)count + 2;
+  f.views = mcor_find_memory(&f, most * sizeof *f.views);
   mcor_array* attributes = mcor_find_memory(&f, most * sizeof *attributes);
   found->attributes = mcor_find_memory(&f, most * sizeof(int));
   found->nearest = mcor_find_memory(&f, most * sizeof(int));
@@ -652,8 +665,9 @@ mcor_status mcor_find_input(const mcor_request* request, const mcor_named* posit
   {
     return MCOR_OUT_OF_CAPACITY;
   }
+  memset(f.views, 0, most * sizeof *f.views);
   found->input.attributes = attributes;
-  found->input.positions = mcor_view_of(&f, positions);
+  found->input.positions = mcor_view_named(&f, positions);
   found->input.positions.name = NULL;
   mcor_find_fluid(&f);
   const bool contours = (wants & MCOR_WANT_SCALAR) && !request->free_surface;

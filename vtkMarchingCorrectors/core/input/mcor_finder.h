@@ -30,7 +30,8 @@ typedef struct mcor_finder
   int count; /* number of the given arrays; indices from this number on mean found->made */
   const mcor_ranks* ranks;
   mcor_found* found;
-  unsigned uses; /* bits 1 << role: the quantities that the input has */
+  mcor_array* views; /* [count + 2]: the arrays that were viewed already */
+  unsigned uses;     /* bits 1 << role: the quantities that the input has */
   bool lacks_memory;
 } mcor_finder;
 

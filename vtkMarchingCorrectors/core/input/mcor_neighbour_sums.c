@@ -264,7 +264,8 @@ static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const dou
 static void mcor_list_neighbours(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
-  int most[3], images = 1;
+  int most[3];
+  int64_t images = 1;
   list->near.count = 0;
   list->h = h;
   for (int a = 0; a < 3; ++a)
@@ -272,14 +273,14 @@ static void mcor_list_neighbours(
     most[a] = job->period[a] > 0 ? (int)(job->support * h / job->period[a]) + 1 : 0;
     images *= 2 * most[a] + 1;
   }
-  for (int image = 0; image < images; ++image)
+  for (int64_t image = 0; image < images; ++image)
   {
     double at[3];
-    int rest = image;
+    int64_t rest = image;
     for (int a = 2; a >= 0; --a)
     {
       const int along = 2 * most[a] + 1;
-      at[a] = x[a] + (rest % along - most[a]) * job->period[a];
+      at[a] = x[a] + (double)(rest % along - most[a]) * job->period[a];
       rest /= along;
     }
     mcor_list_around(job, 1, at, job->support * h, list);

@@ -151,6 +151,11 @@ class Film(CommandLineTest):
                 self.assertRegex(result.stderr, sentence)
                 self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.run_good(self.input, "o.vti", "--slice", "z=0", *picture, "--color-by", "WeightSum", display=True)
+        points = files.drop_at(0.0)[0]
+        atoms = "".join("O {} {} {}\n".format(*point) for point in points)
+        (self.directory / "atoms.xyz").write_text(f"{len(points)}\nProperties=species:S:1:pos:R:3\n{atoms}")
+        result = self.run_program("atoms.xyz", "o.vtp", "--free-surface", "--smoothing-length", "estimate", *picture, "--color-by", "species", display=True)
+        self.one_sentence(result, 1, "species.*texts")
 
     def test_period_between_steps(self):
         """If particles cross a side of the period between two steps, their path is interpolated beyond the side, not

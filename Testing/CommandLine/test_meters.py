@@ -270,6 +270,8 @@ class Flux(Meter):
             self.assertAlmostEqual(row["mass"], 1000 * row["volume"], delta=1e-3)
         times = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--times", "0,0.1,0.4", source="steps.pvd")
         self.assertEqual([row["time"] for row in times], [0, 0.1, 0.4])
+        later = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--times", "0.1,0.4", source="steps.pvd")
+        self.assertEqual((later[0]["time"], later[0]["volume"], later[0]["mass"]), (0.1, 0, 0))
 
     def test_wrong_usage(self):
         (self.directory / "vertices.vtk").write_text(

@@ -176,11 +176,12 @@ bool MakeMeterTable(Sharing& sharing)
     sharing.OnAll(
       [&]
       { table = MeasureWith(meter, sharing, moment.Particles, moment.Time, moment.Progress); });
+    const double passed = rates.empty() ? 0.0 : moment.Time - last; // nothing has passed at the first time
     for (const std::string name : { "volume", "mass" })
     {
       if (isFlux)
       {
-        AddIntegrals(table, name, moment.Time - last, rates[name], sums[name]);
+        AddIntegrals(table, name, passed, rates[name], sums[name]);
       }
     }
     last = moment.Time;

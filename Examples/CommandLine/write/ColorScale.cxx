@@ -76,6 +76,7 @@ void ColorScale::Include(vtkDataSet* data)
   {
     CheckColorName(this->Name, NamesOf(data->GetPointData()));
   }
+  Require(array != nullptr, "the array '" + this->Name + "' to colour by holds texts; choose one of numbers");
   if (this->Name == "BandValue" && data->GetFieldData()->HasArray("IsoValues"))
   {
     array = data->GetFieldData()->GetArray("IsoValues"); // missing bands have their colours, too

@@ -106,7 +106,7 @@ class CommandLineTest(unittest.TestCase):
         self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
 
     def refuse_all(self, status, cases, *common, source=None):
-        """Checks that each of `cases`, pairs of a list of options and a sentence, is refused with this status."""
+        """Tests that each of `cases`, pairs of a list of options and a sentence, is refused with this status."""
         for options, sentence in cases:
             with self.subTest(options):
                 self.refuse(self.extract(*common, *options, source=source), status, sentence)

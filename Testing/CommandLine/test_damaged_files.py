@@ -41,7 +41,7 @@ def mutated(data, rng):
 
 
 class DamagedFiles(CommandLineTest):
-    """Checks that a damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
+    """Tests that a damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
 
     def setUp(self):
         super().setUp()

@@ -34,7 +34,7 @@ class Formats(CommandLineTest):
         self.assertGreater(points, 0)
 
     def read_ply(self, *options):
-        """Makes a .ply file and checks its triangles. Returns its points, each a dictionary from property to value."""
+        """Makes a .ply file and tests its triangles. Returns its points, each a dictionary from property to value."""
         head, body = self.extract_as(".ply", *options).split(b"end_header\n", 1)
         points, triangles = map(int, re.findall(rb"element \w+ (\d+)", head))
         properties = [line.split()[1:] for line in head.decode().split("element face")[0].splitlines() if line[:8] == "property"]

@@ -47,7 +47,7 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """The time in a single file is used. If files hold no time, one line says what this means for velocities."""
+        """The time in a single file is used. If files hold no time, one line tells what this means for velocities."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))
@@ -304,7 +304,7 @@ class Volumes(CommandLineTest):
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):
-        """The level is the same whichever arrays or options give the volumes, and the program says which."""
+        """The level is the same whichever arrays or options give the volumes, and the program tells which."""
         for options, arrays, told in (
                 (("--smoothing-length", "0.13"), (), "computed from the positions"),
                 (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),
@@ -318,7 +318,7 @@ class Volumes(CommandLineTest):
                 self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
 
     def test_spray(self):
-        """A single particle has a surface only if its volume is computed, or large. A run says how many particles have no surface."""
+        """A single particle has a surface only if its volume is computed, or large. A run tells how many particles have no surface."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
         files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})
         given = ("--smoothing-length", "0.13")

@@ -27,7 +27,7 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Checks that the run is refused with this status and sentence. The surface of an earlier run may be there."""
+        """Tests that the run is refused with this status and sentence. The surface of an earlier run may be there."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):

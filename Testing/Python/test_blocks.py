@@ -59,7 +59,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, cube())[0]) == self.alone)
 
     def told_once(self, words, extract, **settings):
-        """Checks that a run gives one message, which matches `words`, or none if there are no words."""
+        """Tests that a run gives one message, which matches `words`, or none if there are no words."""
         told = run(extract, **settings)[1]
         self.assertEqual(len(told), 1 if words else 0, told)
         self.assertRegex("".join(told), words or "^$")

@@ -106,7 +106,7 @@ def value_of(proxy, name):
 
 
 def check_in_use(reader):
-    """Checks what the panel shows after Apply: with walls left out, for a component, and for a dot product."""
+    """Tests what the panel shows after Apply: with walls left out, for a component, and for a dot product."""
     extract = MarchingCorrectors(Input=reader)  # noqa: F821
     extract.FluidArray = "ParticleType"
     extract.ContourBy = ["POINTS", "Velocity"]

@@ -60,7 +60,7 @@ def run_blocks(page):
 
 
 def go_through_calls():
-    """Checks that names of files, callbacks and exceptions pass between Python and the library."""
+    """Tests that names of files, callbacks and exceptions pass between Python and the library."""
     x, r = ball()
     surface = mc.isosurface(x, r, 0.3, **H)
     surface.save("ball.npz")

@@ -516,7 +516,7 @@ class Others(Case):
 
 @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
 class AsTheProgram(Case):
-    """Checks that the program and Python read the same from a file, or both refuse it."""
+    """Tests that the program and Python read the same from a file, or both refuse it."""
 
     def list_arrays(self, path):
         return subprocess.run([os.environ["MCOR_TEST_PROGRAM"], "--list-arrays", str(path)], stdout=subprocess.PIPE,

@@ -350,6 +350,7 @@ CASES = {
     "bare tabs": ("a.tsv", "1\t2\t3\n4\t5\t6\n", None), "bare commas": ("a.txt", "1, 2, 3\n4, 5, 6\n", None), "two bare columns": ("a.txt", "1 2\n3 4\n", None),
     "a header above": ("a.txt", "# a header\n# x y z rho id\n 1.5E+00  2e1\t+3.5 1.0D3 7\n1 2 3 4 8\n# the end\n", None),
     "numbered names": ("a.dat", "# [01  x] [02  y] [03  z] [04 rho] [05 id]\n1 2 3 4 5\n", None),
+    "units in numbers": ("a.dat", "# [ 1 x [m]] [ 2 y [m]] [ 3 z [m]] [ 4 rho [kg]] [ 5 id]\n1 2 3 4 5\n", None),
     "quoted text": ("a.csv", 'x,y,z,who\n1,2,3,"a, b"\n', None),
     "decimal commas": ("a.csv", "x;y;z;a\n1,5;2,25;3;1,234\n", None),
     "a byte order mark": ("a.csv", "\ufeffPos.x [m];Pos.y [m];Pos.z [m]\n,5;2,25;3\n", None),

@@ -185,9 +185,9 @@ def read_table(path):
     if any(to_number(cell) is None for cell in first):
         names, rows = name_columns(path.name, first), rows[1:]
     else:
-        numbered = [part.partition("]")[0].split(None, 1)[-1:] for part in comment.split("[")[1:]]  # [01 x] [02 y]
-        words = [word.strip() for part in numbered for word in part] if len(numbered) == len(first) else \
-            split(comment, "," if "," in comment else None)
+        numbered = [part.partition("]")[0].split(None, 1) for part in comment.split("[")[1:]]  # [01 x] [02 y [m]]
+        words = [part[1].strip() for part in numbered if len(part) == 2 and to_number(part[0]) is not None] or split(
+            comment, "," if "," in comment else None)
         told = len(words) == len(first) and any(to_number(word) is None for word in words)
         names = name_columns(path.name, words) if told else number_columns(len(first))
     if not rows:

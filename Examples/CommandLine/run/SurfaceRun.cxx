@@ -387,10 +387,13 @@ bool MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
   const bool isInPieces = EndsWith(job.Output, ".pvtp");
-  std::vector<std::string> outputs;
+  std::vector<std::string> outputs; // this process's files; on the first process, all files
   for (int rank = 0; isInPieces && rank < sharing.GetCount(); ++rank)
   {
-    outputs.push_back(PieceName(job.Output, rank));
+    if (sharing.IsFirst() || rank == sharing.GetRank())
+    {
+      outputs.push_back(PieceName(job.Output, rank));
+    }
   }
   if (sharing.IsFirst())
   {

@@ -920,11 +920,9 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles with
-   * sides of at most 3/4 of the smallest (scaled) smoothing length. The triangles are cut where the
-   * weight sum is the level, and halved until two ways to integrate over them agree to 2.5e-6 of
-   * their area times their greatest speed and density. Options, globals and ranks are as for
-   * mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. Sections are integrated
+   * to 2.5e-6 of their area times their greatest speed and density. Options, globals and ranks are
+   * as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -987,18 +985,15 @@ extern "C"
   } mcor_widening;
 
   /* Makes a smoother surface possible: flat surfaces become flat, and drops, threads and sheets
-   * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps
-   * of 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
-   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1, or minus 0.08
-   * for particles with many neighbours, all on one side. The factor is then reduced to 1 where
-   * neighbours are few (drops, threads), and to at most the Shepard mean of the factors around the
-   * particle; in a corner of deep water it rises towards that mean (mcor_widen.c has the whole
-   * rule). The surface of an input with these factors and volumes has the cubes of the original
-   * lengths; with uniform cubes, it has the same bits as the surface for smoothing lengths that are
-   * multiplied by the factors, in cubes of the same size. Reads the options of mcor_extract; reads
-   * a box only with globals, of mcor_measure_globals with level_limit 0. Results are then valid for
-   * particles in the box; the input must have all particles up to 1 + widen support radii away from
-   * the box, or (1 + widen) (1 + 1 / h_scale) if volumes are computed. *widening is overwritten. */
+   * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which
+   * the weight sum V_k W(x_j - x_k, s h_j) stays above the free surface's iso value (0.5 for
+   * scalars); mcor_widen.c has the whole rule. The surface of an input with these factors and
+   * volumes has the cubes of the original lengths; with uniform cubes, it has the same bits as the
+   * surface for smoothing lengths that are multiplied by the factors, in cubes of the same size.
+   * Reads the options of mcor_extract; reads a box only with globals, of mcor_measure_globals with
+   * level_limit 0. Results are then valid for particles in the box; the input must have all
+   * particles up to 1 + widen support radii away from the box, or (1 + widen) (1 + 1 / h_scale) if
+   * volumes are computed. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);

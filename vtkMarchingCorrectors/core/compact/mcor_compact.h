@@ -76,7 +76,6 @@ typedef struct mcor_bunches
   /* The mesh before merging. */
   int march_count, vertex_count, triangle_count;
   cl_int* triangles;      /* [triangle_count][3] */
-  cl_ulong *cells, *cuts; /* [triangle_count], if mcor_follows_cells; [cut_count] */
   mcor_bunch_vertex* of;  /* [vertex_count] */
   int32_t*
     before; /* [triangle_count][3]: from a corner to a corner of the triangle that comes before

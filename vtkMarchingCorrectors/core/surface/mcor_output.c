@@ -233,7 +233,7 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   MCOR_STORE(s->gauss_curvature, mcor_get_real(context, d->curvature, 2 * v + 1) / cube / cube)
   MCOR_STORE(s->correction_length, (float)mcor_correction_of(d, v))
   MCOR_STORE(s->residual, (float)mcor_get_real(context, d->value, v))
-  MCOR_STORE(s->boundary_flag, (uint8_t)(flag & MCOR_CAP_FLAG ? MCOR_CAP_FLAG : flag))
+  MCOR_STORE(s->boundary_flag, (uint8_t)flag)
   MCOR_STORE(s->iso_value, context->run.iso.value)
   if (s->point_keys)
   {
@@ -255,11 +255,7 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
       mcor_store_point(d, v, to);
       tally.normals_lacking += normals && mcor_lacks_normal(normals + 3 * to);
       const bool counts = !d->owned || d->owned[v] == MCOR_OWN;
-      if (counts && mcor_is_cap(d->context, v))
-      {
-        tally.linear += mcor_flag_of(d, v) == (MCOR_CAP_FLAG | 2);
-      }
-      else if (counts)
+      if (counts && !mcor_is_cap(d->context, v))
       {
         mcor_count_correction(d, v, &tally);
       }

@@ -414,10 +414,9 @@ bool ParticleTimes::ForEach(const std::vector<std::string>& outputs,
     for (const std::string& warning : moment.Warnings)
     {
       // Warnings of dry places count as one warning, even if they name other numbers of places.
-      const mcor_says code = vtkSPHCodeOf(warning);
-      const bool areDry = code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
       if (this->Shared.IsFirst() &&
-        ++counts[kind + (areDry ? "places are outside of all fluid" : warning)] == 1)
+        ++counts[kind +
+            (TellsOfDryPlaces(warning) ? "places are outside of all fluid" : warning)] == 1)
       {
         const bool isNamed =
           warning.compare(0, moment.Label.size() + 1, moment.Label + " ") == 0;
@@ -433,6 +432,12 @@ bool ParticleTimes::ForEach(const std::vector<std::string>& outputs,
     }
   }
   return isGood;
+}
+
+bool TellsOfDryPlaces(const std::string& warning)
+{
+  const mcor_says code = vtkSPHCodeOf(warning);
+  return code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
 }
 
 bool MakeTable(Sharing& sharing, const std::string& what,

@@ -82,6 +82,9 @@ private:
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 
+/// Whether a warning tells of gauges or sections outside of all fluid.
+bool TellsOfDryPlaces(const std::string& warning);
+
 /// Makes a table, some rows for each time, which is written as it grows. Returns false if a step
 /// failed. what: what was measured, for the message at the end. addRows() adds a moment's rows to
 /// the text, which only the first process needs to have. finish() returns more text for the message.

@@ -187,7 +187,7 @@ bool MakeMeterTable(Sharing& sharing)
     last = moment.Time;
     std::vector<std::string>& told = Messages().Warnings;
     const auto isDry = [isImage](const std::string& warning) // an image has many dry places
-    { return isImage && warning.find("outside of all fluid") != std::string::npos; };
+    { return isImage && TellsOfDryPlaces(warning); };
     told.erase(std::remove_if(told.begin(), told.end(), isDry), told.end());
     AppendTable(text, table);
   };

@@ -10,6 +10,7 @@
 #include "mcor_system.h"
 
 #include <math.h>
+#include <string.h>
 
 #define MCOR_TRY(call)                                                                             \
   do                                                                                               \
@@ -390,7 +391,16 @@ mcor_status mcor_grow(
 mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
 /* Moves a triangle and its keys to another place. */
-void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
+static inline void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to)
+{
+  memmove(surface->triangles + 3 * to, surface->triangles + 3 * from, 3 * sizeof(int32_t));
+  if (surface->triangle_keys)
+  {
+    memmove(surface->triangle_keys + MCOR_TRIANGLE_KEY * to,
+      surface->triangle_keys + MCOR_TRIANGLE_KEY * from, MCOR_TRIANGLE_KEY * sizeof(uint64_t));
+  }
+}
+
 /* Return the key of a brick (rung: of the brick's level) and of a node (its level is in node[3]).
  * Keys have the order of slots and vertices: by level, block, brick and node, each by z, y, x. A
  * cell has the key of its lowest node. */

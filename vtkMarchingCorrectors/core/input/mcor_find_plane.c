@@ -205,6 +205,6 @@ int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int di
     mcor_find_plane(context, input, &options, &flat); /* if it fails, there is no plane */
     axes = context->space.axes;
   }
-  mcor_free_context(context);
+  mcor_free_bare_context(context);
   return axes;
 }

@@ -144,6 +144,15 @@ mcor_context* mcor_make_bare_context(const mcor_options* options)
   return context;
 }
 
+void mcor_free_bare_context(mcor_context* context)
+{
+  if (context)
+  {
+    mcor_end_pool(&context->pool);
+    free(context);
+  }
+}
+
 mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found)
 {
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found->sums, MCOR_SUMS));

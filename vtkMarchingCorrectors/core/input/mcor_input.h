@@ -128,8 +128,9 @@ static inline void mcor_add_range(mcor_findings* found, int k, double low, doubl
 }
 mcor_findings mcor_merge_findings(const mcor_findings* slices, int count);
 /* Makes a context without a device, for functions of mcor.h that have none: it has threads and ranks,
- * and keeps an error. NULL: memory ran out. Free it with mcor_free_context. */
+ * and keeps an error. NULL: memory ran out. */
 mcor_context* mcor_make_bare_context(const mcor_options* options);
+void mcor_free_bare_context(mcor_context* context);
 /* Merges ranges and sums of all ranks, but not `first`. */
 mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 

@@ -499,7 +499,7 @@ static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor
     status = mcor_allocated(context, !job->failed[s]);
   }
   *why = mcor_last_message(context);
-  mcor_free_context(context);
+  mcor_free_bare_context(context);
   return status;
 }
 

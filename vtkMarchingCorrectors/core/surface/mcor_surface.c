@@ -71,16 +71,6 @@ mcor_status mcor_grow_surface(
   return MCOR_OK;
 }
 
-void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to)
-{
-  memmove(surface->triangles + 3 * to, surface->triangles + 3 * from, 3 * sizeof(int32_t));
-  if (surface->triangle_keys)
-  {
-    memmove(surface->triangle_keys + MCOR_TRIANGLE_KEY * to,
-      surface->triangle_keys + MCOR_TRIANGLE_KEY * from, MCOR_TRIANGLE_KEY * sizeof(uint64_t));
-  }
-}
-
 void mcor_free_surface(mcor_surface* surface)
 {
   if (!surface)

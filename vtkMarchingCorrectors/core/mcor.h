@@ -773,18 +773,18 @@ extern "C"
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* Returns the warning with its numbers; no message if there is nothing to warn of, if another
-   * warning already tells the cause, or with globals, whose input has only some of the particles.
-   * Pass the input, options and surface of mcor_extract. The last three warnings hold for any call;
-   * they read nothing of the surface but its statistics. */
+  /* Returns the warning with its numbers. Returns no message if there is nothing to warn of, if
+   * another warning already tells the cause, or with options.globals, because the input then has
+   * only some of the particles. Pass the input, options and surface of mcor_extract. The last three
+   * warnings hold for any call, and read only the statistics of the surface. */
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
   /* Returns a warning if single precision is too coarse for the points of a surface whose largest
    * coordinate, in magnitude, is `largest`; else no message. Both lengths have one unit. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
-/* The name of an array that marks wall particles: if blocks are joined to one set, the particles of
- * blocks whose names tell of walls. */
+/* If blocks are joined to one set of particles, the array of this name marks the wall particles:
+ * those of blocks whose names tell of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
   /* The field at given points; free it with mcor_free_samples. */
@@ -880,8 +880,8 @@ extern "C"
      * triangles form a closed surface */
     MCOR_SECTION_TRIANGLES = 3,
     /* Two points each, in two dimensions only. The normal points to the right of the way from the
-     * first to the second one, seen with the plane's first axis (x; y where x is constant) to the
-     * right and its second one upwards. */
+     * first point to the second. The plane is seen with its first axis (x; y where x is constant)
+     * to the right, and its second axis upwards. */
     MCOR_SECTION_LINES = 4,
     MCOR_SECTION_SHAPE_COUNT
   } mcor_section_shape;
@@ -899,8 +899,8 @@ extern "C"
     const char* name; /* for messages; may be NULL */
   } mcor_section;
 
-  /* Flow through the part of a section that is in fluid. A: the area of that part, v and rho:
-   * the Shepard means of velocity and density there, n: the normal. */
+  /* Flow through the part of a section that is in fluid. A is the area of this part, n its normal.
+   * v and rho are the Shepard means of velocity and density at its points. */
   typedef struct mcor_flux_reading
   {
     int outside;        /* 1: no particle's support reaches the section */
@@ -920,9 +920,9 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. Sections are integrated
-   * to 2.5e-6 of their area times their greatest speed and density. Options, globals and ranks are
-   * as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. The tolerance of a section's integrals is
+   * 2.5e-6 times the section's area, greatest speed and greatest density. Options, globals and
+   * ranks are as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -986,19 +986,19 @@ extern "C"
 
   /* Makes a smoother surface possible: flat surfaces become flat, and drops, threads and sheets
    * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which
-   * the weight sum V_k W(x_j - x_k, s h_j) stays above the free surface's iso value (0.5 for
-   * scalars); mcor_widen.c has the whole rule. The surface of an input with these factors and
-   * volumes has the cubes of the original lengths; with uniform cubes, it has the same bits as the
-   * surface for smoothing lengths that are multiplied by the factors, in cubes of the same size.
-   * Reads the options of mcor_extract; reads a box only with globals, of mcor_measure_globals with
-   * level_limit 0. Results are then valid for particles in the box; the input must have all
-   * particles up to 1 + widen support radii away from the box, or (1 + widen) (1 + 1 / h_scale) if
-   * volumes are computed. *widening is overwritten. */
+   * the weight sum at the particle, sum_k V_k W(x_j - x_k, s h_j), stays above the iso value of the
+   * free surface (above 0.5 if a scalar is contoured); mcor_widen.c has the whole rule. The surface
+   * of an input with these factors and volumes has the cubes of the original lengths; with uniform
+   * cubes, it has the same bits as the surface for smoothing lengths that are multiplied by the
+   * factors, in cubes of the same size. Reads the options of mcor_extract; reads a box only with
+   * globals, of mcor_measure_globals with level_limit 0. Results are then valid for particles in
+   * the box; the input must have all particles up to 1 + widen support radii away from the box, or
+   * (1 + widen) (1 + 1 / h_scale) if volumes are computed. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);
-  /* Adds the seconds of mcor_widen to the statistics of a surface, and sets widening_outside
-   * there. */
+  /* Adds the seconds that mcor_widen took to the statistics of a surface, and copies
+   * widening_outside to these statistics. */
   void mcor_add_widening(mcor_statistics* surface, const mcor_statistics* widening);
 
   typedef enum mcor_gradient
@@ -1029,7 +1029,7 @@ extern "C"
   void mcor_free_derivatives(mcor_derivatives* derivatives);
 
   /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O
-   * antisymmetric), in the unit of J or its square; NULL: not computed. */
+   * antisymmetric), in the unit of J or of J^2; NULL: not computed. */
   typedef struct mcor_flow
   {
     double* divergence;  /* [count], tr J */

@@ -159,7 +159,7 @@ mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
-/* Makes one attempt; after a failure nothing is kept as valid. */
+/* Tries once to run a call. After a failure, nothing that the context keeps counts as valid. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)

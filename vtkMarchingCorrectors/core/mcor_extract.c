@@ -11,7 +11,7 @@
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
-/* Whether cubes may have several sizes, judged by about a thousand particles. */
+/* Returns whether cubes may have several sizes. Looks at about a thousand particles. */
 static bool mcor_may_be_adaptive(const mcor_input* input, const mcor_options* options)
 {
   double low = INFINITY, high = 0;
@@ -71,7 +71,7 @@ int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   return programs;
 }
 
-/* Begins to build the programs that the surface needs, unless the built-in device has them. */
+/* Begins to build the programs that the surface needs. The built-in device has them already. */
 static mcor_status mcor_begin_building(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

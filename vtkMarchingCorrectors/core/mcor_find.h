@@ -163,8 +163,9 @@ extern "C"
   void mcor_free_found(mcor_found* found);
 
   /* Put the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities into an input
-   * that needs them; borrowed until mcor_free_found. Densities become the scalar. If there are
-   * masses, but no other densities and no volumes, the densities also give the volumes. */
+   * that needs them. The arrays are borrowed until mcor_free_found. Densities become the scalar. If
+   * there are masses, but no other densities and no volumes, the densities also give the
+   * volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 

@@ -83,8 +83,8 @@ size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, s
 /* The room for a slot's word, with the final 0; a longer word is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
-/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. Of each two numbers, the first is for
- * three dimensions, the second for two. */
+/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. In arrays of two, the first element is
+ * for three dimensions, the second for two. */
 typedef struct mcor_kernel_row
 {
   const char *name, *norm_text, *support_text, *neighbours[2];
@@ -94,7 +94,7 @@ typedef struct mcor_kernel_row
 } mcor_kernel_row;
 const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
-/* Fails for lack of host memory unless all was allocated. */
+/* complete: all allocations on the host succeeded. If not, fails for lack of host memory. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
 /* Makes room for one more element behind the first `count` of an array, which has room for
  * `room` elements of `width` bytes. */
@@ -189,13 +189,13 @@ static inline double mcor_wall_share(const mcor_context* context)
   return share < 0 ? context->measure.wall_share : share;
 }
 
-/* Whether the surface ends at solids, too. */
+/* Whether the surface also ends where the solids' share of the weight becomes too large. */
 static inline bool mcor_ends_at_solids(const mcor_context* context)
 {
   return context->grid.has_solids && mcor_wall_share(context) > 0;
 }
 
-/* Returns the share of the weight that must be fluid; 0: none. */
+/* Returns the least share that fluid must have in the weight sum; 0: no share is needed. */
 static inline double mcor_fluid_share(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
@@ -207,8 +207,8 @@ static inline mcor_build mcor_build_of(const mcor_options* options, bool solids)
   return (mcor_build){ options->sph_kernel, options->field, options->precision, solids };
 }
 
-/* Whether seeds are the paper's pairs. At a free surface, particles have no values that could
- * straddle the iso value. */
+/* Whether seeds are the paper's pairs: neighbours whose values are on both sides of the iso value.
+ * A free surface has no such pairs, because no scalar is contoured. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
   return options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
@@ -223,12 +223,13 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 typedef mcor_status (*mcor_body)(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
 
-/* Runs the body. Without ranks, runs it again if memory ran out and some could be freed. Fails if
- * mcor_create_context failed. */
+/* Runs the body. If memory ran out, frees what the context keeps and, unless there are ranks, runs
+ * the body once more. Fails if mcor_create_context failed. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
-/* Fails if options.smooth is set, but not what it stands for, see mcor_spell_out. */
+/* Fails if options.smooth is set, but the options that it stands for are not; see
+ * mcor_spell_out. */
 mcor_status mcor_check_spelled_out(mcor_context* context, const mcor_options* options);
 /* Frees everything on the device, including tables that outlive calls. */
 void mcor_release_all_data(mcor_context* context);
@@ -261,14 +262,14 @@ mcor_status mcor_reduce_counts(
 mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count,
   size_t width, const void** all, int64_t* all_count);
 
-/* mcor_statistics.c. Reports progress: `doing` takes the call from one fraction to another. The
- * observer of progress may cancel the call. */
+/* mcor_statistics.c. Reports progress. doing: names the work that begins at `fraction` of the call
+ * and goes on until `end`. The observer of progress may cancel the call. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* Called between two launches, or steps of a loop of the host: if the last report is old enough,
- * reports progress that is a bit nearer to the end. */
+/* Call it between two launches, or between two steps of a loop of the host. If the last report is
+ * old enough, reports progress that is a bit nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
-/* What the OpenCL layer calls between launches, and while programs are built, if the caller wants
- * progress. */
+/* If the caller wants progress, the OpenCL layer calls this between launches (compiles: false), and
+ * while programs are built (true). */
 mcor_status mcor_observe_call(mcor_context* context, bool compiles);
 /* Ends the current phase, begins the next one, and reports progress, which may cancel the call. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
@@ -349,14 +350,15 @@ mcor_status mcor_correct(mcor_context* context);
 /* Evaluates the boundary eigenvalue at vertices: at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
-/* Return whether the mesh is trimmed; whether by the boundary eigenvalue; the quantity that
- * trimming compares, at the vertices on lattice edges; and the threshold of this quantity. */
+/* Return, in this order: whether the mesh is trimmed; whether the boundary eigenvalue decides
+ * where; the quantity that trimming compares, at the vertices on lattice edges; and the threshold
+ * of this quantity. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
-/* Finds the edge between vertices p and q in `cuts`, the host's copy of mesh.cut_edges; -1: the
- * edge is not cut. */
+/* Returns the index of the edge between vertices p and q in `cuts`, the host's copy of
+ * mesh.cut_edges; -1: the edge is not cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* the least weight of the fluid itself at a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
@@ -401,9 +403,9 @@ static inline void mcor_move_triangle(mcor_surface* surface, int64_t from, int64
   }
 }
 
-/* Return the key of a brick (rung: of the brick's level) and of a node (its level is in node[3]).
- * Keys have the order of slots and vertices: by level, block, brick and node, each by z, y, x. A
- * cell has the key of its lowest node. */
+/* Return the key of a brick (rung: where the keys of the brick's level begin) and of a node (its
+ * level is in node[3]). Keys have the order of slots and vertices: by level, block, brick and node,
+ * each by z, y, x. A cell has the key of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 {
   uint64_t block = 0, number = 0;
@@ -436,9 +438,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 #define MCOR_CASE_ROWS 1200
 typedef struct mcor_case_table
 {
-  /* Of each case: first row << 6 | ambiguous faces, bit axis * 2 + side. The rows of a case count
-   * from 0. If bit i of a row's number is set, the corners above the iso value are joined on the
-   * i-th ambiguous face. Rows with tunnels come last. */
+  /* For each case: its first row << 6 | its ambiguous faces, face axis * 2 + side as bit 1 << face.
+   * The rows of a case are numbered from 0. If bit i of a row's number is set, the corners above
+   * the iso value are joined on the i-th ambiguous face. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_CASE_ROWS];

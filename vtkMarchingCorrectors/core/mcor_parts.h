@@ -115,9 +115,9 @@ extern "C"
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
-  /* Moves each period that does not hold the box (with ranks, whole_box), so that the box lies in
-   * the middle. A period shorter than the box stays. mcor_extract does this by itself unless
-   * globals are given; globals must be measured with the moved period. */
+  /* Moves the bounds of each period that does not hold the box (with ranks, whole_box), so that the
+   * box lies in the middle. A period shorter than the box stays. mcor_extract does this by itself
+   * unless globals are given; globals must be measured with the moved period. */
   void mcor_move_period(mcor_options* options);
 
   /* Measures an input for options.globals of later calls, in this or another context, with

@@ -60,8 +60,8 @@ static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
   same = same && ((scope) == KEEPS || a->member == b->member);
 #define BOUNDS(member, scope, property) same = same && mcor_same_bounds(a->member, b->member);
 #include "mcor_options.def"
-  /* With a box or a period, seeds and nearest particles decide which particles and images around it
-   * are needed. */
+  /* With a box or a period, the choice of seeds, and the output of nearest particles, decide which
+   * particles and images around the box are needed. */
   const bool part = mcor_has_box(a) || mcor_has_sides(a->periodic);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));

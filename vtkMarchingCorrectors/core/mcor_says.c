@@ -20,8 +20,8 @@ static const struct
 #include "mcor_says.def"
 };
 
-/* For each slot, its words. label: the words in panels; "": they are made from `property`, the
- * option's name in VTK's filters. */
+/* The words for each slot of a sentence. label: the words in panels; if it is "", they are made
+ * from `property`, the option's name in VTK's filters. */
 static const struct
 {
   const char *slot, *label, *property;
@@ -45,7 +45,7 @@ const char* mcor_says_text(mcor_says code)
   return (unsigned)code < MCOR_SAYS_COUNT ? mcor_sentences[code].text : NULL;
 }
 
-/* Returns the number of the slot's row; -1 if there is none. */
+/* Returns the index of the slot in mcor_slots; -1: there is no such slot. */
 static int mcor_find_slot(const char* slot)
 {
   for (int i = 0; i < MCOR_SLOT_COUNT; ++i)
@@ -87,8 +87,9 @@ int mcor_label_word(void* user, const char* name, const char* value, char* word,
   return *words != 0;
 }
 
-/* Divides the slot from the brace at text[0] to the one at *end into a name and a value. Returns
- * false if the text does not begin with a slot. */
+/* Reads the slot {name} or {name value} at the beginning of the text. Writes its name and, behind
+ * it, its value (*value); *end: its closing brace. Returns false if the text does not begin with a
+ * slot. */
 static bool mcor_read_slot(const char* text, const char** end, char* name, const char** value)
 {
   size_t length = strspn(text + 1, "abcdefghijklmnopqrstuvwxyz_");
@@ -148,8 +149,8 @@ char* mcor_fill_slots(const char* text, mcor_word word, void* user)
   return out;
 }
 
-/* Returns how many characters of the text lie outside of formats and slots, if the sentence has all
- * of them in the same order; else 0. */
+/* Returns how many characters of the text lie outside of formats and slots. Returns 0 unless the
+ * sentence has all pieces of the text between formats and slots, in the same order. */
 static size_t mcor_match(const char* text, const char* sentence)
 {
   size_t all = 0;

@@ -18,8 +18,8 @@
 typedef struct mcor_level
 {
   MCOR_TYPE(ulong) base; /* key of the level's cell (0, 0, 0) */
-  /* In fixed-point units: the period's length (0: none), and where the first period above 0
-   * begins. */
+  /* In fixed-point units. period: the period's length; 0: none. side: the place at which the first
+   * period above 0 begins. */
   MCOR_TYPE(long) period[3], side[3];
   MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
   MCOR_TYPE(int) period_cells[3]; /* cells of a period */
@@ -41,7 +41,8 @@ typedef struct mcor_level
 #define MCOR_BLOCK_WORDS 16 /* a word has a bit per brick: x 0..7, y 0..3 or 4..7, one z */
 #define MCOR_BLOCK_CUBES 32 /* along an edge */
 
-/* Bit beside the key of a triangle's cell: the cell is in the ring around the box. */
+/* Bit that is added to the key of a triangle's cell if the cell is outside the box, in the ring of
+ * cells around the box. */
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
 /* Set together with MCOR_RING_CELL if another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((MCOR_TYPE(ulong))1 << 62)
@@ -79,20 +80,21 @@ typedef struct mcor_level
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* maybe both sides: evaluate */
 #define MCOR_UNTRIED 7 /* maybe both sides; no proof was tried */
-/* Bit beside the state of a leaf: the state does not cover the nodes on the leaf's sides that
- * belong to cells of other levels. */
+/* Bit that is added to the state of a leaf if the state leaves out nodes on the leaf's faces that
+ * also belong to cells of other levels. */
 #define MCOR_OPEN_SIDES 4
 
-/* Numbers of a brick's masks. EDGE: its lattice edges with a vertex, see mcor_march_count.
- * DECISION: masks 0 to 2, by axis of the normal: the ambiguous faces whose lowest node is in the
- * brick and whose nodes above the iso value are joined; masks 3 and 4: the cells whose samples are
- * all below, all above. */
+/* How many masks a brick has. The EDGE masks mark the brick's lattice edges with a vertex, see
+ * mcor_march_count. DECISION masks 0 to 2, by axis of the normal, mark ambiguous faces whose lowest
+ * node is in the brick and whose nodes above the iso value are joined. DECISION masks 3 and 4 mark
+ * cells: those whose samples are all below the iso value, and those whose samples are all above. */
 #define MCOR_EDGE_MASKS 9
 #define MCOR_DECISION_MASKS 5
 
 /* A way to triangulate a cell. An edge is axis << 3 | its lower corner; a corner has the bits 1 x,
- * 2 y, 4 z. tunnel[0], tunnel[1]: the row in which a tunnel joins two regions below, above the iso
- * value; counted from the first row of the case; 0: none. */
+ * 2 y, 4 z. tunnel[0]: the row that differs from this one by a tunnel between two regions below the
+ * iso value. tunnel[1]: the same for two regions above. Rows are counted from the first row of the
+ * case; 0: no such row. */
 typedef struct mcor_cell_row
 {
   MCOR_TYPE(uchar) edges[36]; /* 3 per triangle */
@@ -101,9 +103,9 @@ typedef struct mcor_cell_row
   MCOR_TYPE(uchar) unused;
 } mcor_cell_row;
 
-/* Keys of one level's blocks: where they begin, and how many blocks there are along x, y, z. The
- * rung after the highest begins behind all keys. A brick's key is its block's key x
- * MCOR_BLOCK_BRICKS + its number in the block. */
+/* The keys of one level's blocks. base: the first key. n: how many blocks there are along x, y, z.
+ * One more rung, after the highest level, begins behind all keys. The key of a brick is the key of
+ * its block times MCOR_BLOCK_BRICKS, plus the brick's number in the block. */
 typedef struct mcor_rung
 {
   MCOR_TYPE(ulong) base;
@@ -118,7 +120,8 @@ typedef struct mcor_rung
 /* Slots that hold the nodes of a leaf: 2^3 of its level, 3^3 of the next finer level. */
 #define MCOR_LEAF_SLOTS (8 + 27)
 
-/* Used cells around the edges of a brick: [axis][quadrant] masks, as pairs of uints. */
+/* How many uints hold the used cells around the edges of a brick: one mask, of two uints, for each
+ * axis and quadrant. */
 #define MCOR_QUADRANT_WORDS 24
 
 /* Points that one work-item cuts into groups. */
@@ -128,9 +131,9 @@ typedef struct mcor_rung
 #define MCOR_GROUP_EDGE 7
 
 /* The positions of a group's points, and of particles, are measured from one node. The points are
- * at most this far from that node: half a group, an offset, and 1. A particle's position is rounded
- * more coarsely the larger its support (mcor_stage.c), so that it is an exact real up to this
- * distance beyond the support. */
+ * at most this far from that node: half a group, an offset, and 1. The larger a particle's support,
+ * the more coarsely its position is rounded (mcor_stage.c): from any node up to this distance
+ * outside of the support, the position is an exact real. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
 /* Groups of points close to each other that one work-item evaluates together. */

@@ -37,7 +37,7 @@ typedef struct mcor_lattice
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
-/* What differs between a call in space and one in a plane. mcor_find_plane fills it in. */
+/* Values that depend on whether the call is in space or in a plane. mcor_find_plane sets them. */
 typedef struct mcor_space
 {
   int axes;             /* 3, or 2 */
@@ -206,7 +206,8 @@ typedef struct mcor_field_points
   mcor_buffer node, offset, value, gradient, weight;
 } mcor_field_points;
 
-/* Decisions of MCOR_TOPOLOGY_FIELD. */
+/* MCOR_TOPOLOGY_FIELD: samples of the field decide how ambiguous faces and cells are
+ * triangulated. */
 typedef struct mcor_topology_data
 {
   mcor_buffer decisions; /* see MCOR_DECISION_MASKS */

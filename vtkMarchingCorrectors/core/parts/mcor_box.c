@@ -11,7 +11,7 @@
  * surface at the very end, see mcor_triangle_cell.c.
  *
  * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds of cubes that extend beyond
- * the ring are too low, but true for the nodes within it. Cubes and bricks beyond the ring are made
+ * the ring are too low, but true for the ring's nodes. Cubes and bricks beyond the ring are made
  * void, so that they are not examined.
  *
  * A probe whose search grid is not kept owns the cells around its points. */
@@ -62,10 +62,10 @@ void mcor_move_period(mcor_options* options)
 /* A particle whose support misses a box by more than this, in cubes, is not needed there. */
 #define MCOR_GLOBALS_MARGIN(ring) ((ring) + 2)
 
-/* The margin with adaptive cubes, in cells of the particle's level; a particle reaches no larger
- * cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away
- * from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as large. For
- * a wider ring see mcor_level_ring. */
+/* The same margin with adaptive cubes, in cells of the particle's level; a particle reaches no
+ * larger cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells
+ * away from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as large.
+ * For a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* The margin of a probe's points, in cubes: rounding moves particles by less. */
@@ -147,8 +147,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     mcor_place_sides(lattice, a, whole, all);
     if (box->of_points)
     {
-      /* Takes the cells around a probe's points; the whole period if points lie beyond the period,
-       * because they are moved into it. */
+      /* Takes the cells around a probe's points. If points lie beyond the period, takes the whole
+       * period, because such points are moved into the period. */
       const double *points = box->points + 2 * a, edge = lattice->edge[a];
       const double origin = (double)lattice->origin[a], rounding = 0.25 / (double)lattice->step[a];
       const double low = points[0] / edge - origin, high = points[1] / edge - origin;
@@ -240,7 +240,7 @@ int mcor_list_images(
   {
     const double low = box->low[a] - reach - at[a], high = box->high[a] + reach - at[a];
     const double period = box->period[a];
-    /* Values are finite here, unless another thread changes the arrays. */
+    /* The bounds are finite here, unless another thread changes the particles' arrays. */
     const bool wraps = period > 0 && isfinite(low) && isfinite(high);
     const bool is_near = wraps || (period <= 0 && low <= 0 && high >= 0);
     images->first[a] = wraps ? (int)ceil(low / period) : 0; /* else 0 is the only image */

@@ -18,8 +18,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 /* Finds the cells that the call owns. The lattice must be known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* The box near which particles, or their images whole periods away, are needed. In cubes from the
- * lattice's origin. */
+/* The box near which particles, or their images whole periods away, are needed. Lengths are in
+ * cubes, positions from the lattice's origin. */
 typedef struct mcor_reach_box
 {
   double low[3], high[3];     /* where the field is evaluated */
@@ -43,8 +43,9 @@ typedef struct mcor_images
  * its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
 /* Finds the cells [first, last) whose particles need sums, for mcor_derive and mcor_widen. Returns
- * false if all particles need sums. Only one image of a particle counts: the image in the period,
- * or on the period's upper side if the lower side is not in the box. */
+ * false if all particles need sums. Only one image of each particle counts: the image in the
+ * period; on the period's sides, the image on the lower side or, if the box begins above the lower
+ * side, the image on the upper side. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
@@ -73,8 +74,8 @@ int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
 /* Returns a distance in cells of a particle's level: the particle is needed if its support ends at
  * most this far from the box. */
 double mcor_box_slack(const mcor_options* options);
-/* Returns the ring with adaptive cubes, in cells of each level. A wide ring counts double, because
- * larger cells may lie between it and the box. */
+/* Returns the width of the ring with adaptive cubes, in cells of each level. A wide ring counts
+ * double, because larger cells may lie between the ring and the box. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;

@@ -22,7 +22,8 @@
 /* Greatest relative error of a period that counts as a whole number of cubes. */
 #define MCOR_PERIOD_ERROR 1e-9
 
-/* The most lengths of the longest edge, in fixed-point units, that mcor_fit_steps tries. */
+/* mcor_fit_steps tries at most this number of lengths (in fixed-point units) of the longest
+ * edge. */
 #define MCOR_STEP_TRIES (1 << 17)
 
 /* Adaptive cubes may shrink by this factor to keep all their levels. */
@@ -175,9 +176,9 @@ static mcor_status mcor_fit_period(
 #define MCOR_STEP_RANGE 16
 
 /* Chooses the edges in fixed-point units. Positions count in units along each axis, so distances
- * are right if the edges have the same ratios as their numbers of units. Tries the greatest 1 /
- * MCOR_STEP_RANGE of the possible numbers for the longest edge, and takes the best, whose ratios
- * are right to about 1e-8. */
+ * are right if the edges have the same ratios as their numbers of units. For the longest edge,
+ * tries the greatest 1 / MCOR_STEP_RANGE of all possible numbers. Takes the number with the best
+ * ratios, which are right to about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;
@@ -221,8 +222,7 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
 
 /* ---- The lattice ---- */
 
-/* Whether keys have enough bits for all nodes and cells of the lattice, up to where surfaces may
- * be. */
+/* Whether keys have enough bits for all nodes and cells of the lattice that a surface may reach. */
 static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, int top)
 {
   const double unit = top > 0 ? ldexp(MCOR_BRICK, top + 1) : MCOR_BLOCK_CUBES;
@@ -256,8 +256,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     --top;
   }
   lattice->levels = top + 1;
-  /* The lattice consists of whole bricks of all levels, with space around for finer bricks beside
-   * them. */
+  /* The lattice consists of whole bricks of all levels. Around them, space is left for finer
+   * bricks. */
   const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)

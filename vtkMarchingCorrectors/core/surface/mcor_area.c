@@ -14,8 +14,8 @@
 #include <stdlib.h>
 
 /* Returns a hash of an edge. In a closed surface, triangles use each edge once in each direction,
- * so the sum of the signed hashes is 0. With a hole it is 0 only by chance, once in 2^64. Multiples
- * of the golden ratio distinguish pairs of numbers. */
+ * so the sum of the signed hashes is 0. With a hole, the sum is 0 only by chance, once in 2^64.
+ * Multiples of the golden ratio distinguish pairs of numbers. */
 static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
 {
   uint64_t x = (uint64_t)low * 0x9E3779B97F4A7C15u + (uint64_t)high;
@@ -38,8 +38,8 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Sums over slices of the triangles; they are exact, like the sums over parts. If `sums` is false,
- * only the largest terms are wanted; these decide the units of the sums. */
+/* Measures slices of the triangles. sums: adds the areas and volumes of each slice, exactly; else
+ * only finds the largest terms, which decide the units of the sums. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;

@@ -145,8 +145,8 @@ static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at,
   return (int64_t)brick * MCOR_SIDE_NODES + (u & 3) + MCOR_BRICK * (v & 3);
 }
 
-/* mcor_cap_points.c. Returns the coordinate, in nodes, of an axis' lower or upper side (with ranks:
- * the whole box's) if a cap closes it, else -1. */
+/* mcor_cap_points.c. Returns the coordinate, in nodes, of the lower or upper side of the box (with
+ * ranks: of the whole box) along an axis if a cap closes this side, else -1. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether a cap closes this side of this call's box. */
@@ -155,7 +155,7 @@ bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
 /* Finds the bricks of `nodes`, whose axes and ranges are set; fails if they are too many.
  * iso_value: in the caller's unit. */
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
-/* Copies the masks of the marched bricks. */
+/* Copies the masks of the marched bricks to the bricks of `nodes`. */
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
 /* Evaluates the field at the nodes that need it: at nodes on the side, or, if is_inner is set, one
  * node further in. */
@@ -181,7 +181,8 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* The line on which a cut moves, from one end (0) to the other (1). */
+/* The line on which a cut vertex, which trimming makes, is moved. Places on the line go from 0 at
+ * one end to 1 at the other end. */
 typedef struct mcor_cap_line
 {
   int32_t vertex; /* index among the caps' vertices */
@@ -205,8 +206,8 @@ typedef struct mcor_cap_triangle
 typedef struct mcor_cap_job
 {
   mcor_context* context;
-  /* The surface's vertices by their lattice edge (lower node and axis); for a pinched edge, its
-   * first vertex. */
+  /* The surface's vertices by their lattice edge (lower node and axis); for a pinched edge, which
+   * has two vertices, the first one. */
   mcor_table edges[3];
   mcor_table nodes, cuts; /* indices of vertices */
   MCOR_LIST(mcor_cap_vertex) vertices;
@@ -221,7 +222,7 @@ typedef struct mcor_cap_job
   cl_int lowest[3];
   cl_ulong number;
   uint64_t lookups;
-  /* Views of the surface's vertices, and of the edges of its cuts, ascending. */
+  /* Views of the surface's vertices, and of the keys of its cut edges, which ascend. */
   void *node, *offset, *quantity, *cut_edges;
   double threshold;
 } mcor_cap_job;
@@ -232,15 +233,15 @@ typedef mcor_status (*mcor_clip_side)(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
 typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corners, int count);
 /* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
- * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. A polygon
- * has the most corners if it has a square's nodes and the vertices of the two lines beside a
- * band. */
+ * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The
+ * polygon with the most corners is a band between two iso lines that has all nodes of a square and
+ * all vertices of both lines. */
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);
-/* Finds the cut vertex with this key. If there is none, makes it where a linear trim margin would
- * be 0 between two corners; in a plane, mcor_place_cap_cuts then moves it. cut->vertex: its
- * index. */
+/* Finds the cut vertex with this key. If there is none, makes the vertex where a linear trim margin
+ * would be 0 between two corners; in a plane, mcor_place_cap_cuts moves the vertex later.
+ * cut->vertex: the vertex's index. */
 mcor_status mcor_find_cap_cut(mcor_cap_job* job, uint64_t key, const mcor_cap_corner* low,
   const mcor_cap_corner* high, mcor_cap_vertex vertex, mcor_cap_corner* cut);
 /* Moves the cuts in a plane to where the trim margin is 0. */

@@ -112,8 +112,8 @@ static mcor_status mcor_cap_node_corner(
   return MCOR_OK;
 }
 
-/* Makes a corner at the surface's vertex on side k. If the edge is pinched (see mcor_cell_emit),
- * takes the vertex on the side of this square's cell. */
+/* Makes a corner at the surface's vertex on side k. If the edge has two vertices (it is pinched,
+ * see mcor_cell_emit), takes the vertex of this square's cell. */
 static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, int k, mcor_cap_corner* corner)
 {
   mcor_context* context = job->context;
@@ -138,8 +138,8 @@ static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, int k, mcor_cap_corne
   return MCOR_OK;
 }
 
-/* Finds the vertex where trimming cuts the line between two corners: the surface's cut, else a cut
- * of the cap. */
+/* Finds the vertex where trimming cuts the line between two corners: the surface's cut vertex if
+ * there is one, else a cut vertex of the cap. */
 static mcor_status mcor_cap_cut(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
 {
@@ -239,8 +239,9 @@ mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count,
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a square to the cap. above, margin: of the square's nodes. apart:
- * the two nodes above, at opposite corners, are in two polygons. */
+/* Adds what trimming leaves of a square to the cap. above: which nodes of the square are above the
+ * iso value; margin: the nodes' trim margins. apart: the two nodes above, at opposite corners, are
+ * in two polygons. */
 static mcor_status mcor_add_cap_square(
   mcor_cap_job* job, const bool above[4], const double margin[4], bool apart)
 {
@@ -325,7 +326,8 @@ static mcor_status mcor_visit_cap_square(
 /* The most steps in which a cut moves. They suffice, because every fourth step halves the
  * bracket. */
 #define MCOR_PLACE_STEPS 100
-/* With a margin below this, a few units of rounding in single precision, a cut stays. */
+/* A cut stays where it is if its margin is below this: a few units of rounding in single
+ * precision. */
 #define MCOR_PLACE_ROOT 1e-6
 
 /* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket

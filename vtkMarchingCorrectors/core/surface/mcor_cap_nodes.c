@@ -67,8 +67,9 @@ static void mcor_set_cap_extent(
 
 /* ---- Bricks ---- */
 
-/* Fails if particles reach too many clusters of a side. With 16^2 nodes each, the limit is 4 to 64
- * million nodes. If few particles reach more, a smoothing length or the cube size is wrong. */
+/* Fails if particles reach too many clusters (4^3 bricks) at a side. A cluster has 16^2 nodes on
+ * the side, so the limit is 4 to 64 million nodes. If few particles reach more nodes, a smoothing
+ * length or the cube size is wrong. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)
 {
@@ -291,9 +292,9 @@ static void mcor_take_cap_node(
 }
 
 /* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
- * above, whose margins are needed, and for nodes of unknown bricks. One node further in, asks for
- * unknown nodes beside valid nodes above: for a square without vertices, it must be known whether
- * they are valid. */
+ * above the iso value, whose margins are needed, and for nodes of unknown bricks. One node further
+ * in, asks for unknown nodes beside valid nodes above the iso value: whether a square without
+ * vertices is capped depends on whether these unknown nodes are valid. */
 mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner)
 {
   mcor_cap_points points = { .take = mcor_take_cap_node, .data = nodes };

@@ -73,8 +73,8 @@ static int mcor_flag_of(const mcor_download* d, int64_t v)
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Converts a length at vertex v from cells of its level, see mcor_adaptive.h: multiplies it by
- * 2^level. */
+/* Returns a length at vertex v. The argument counts cells of the vertex's level as if they were the
+ * smallest cells, so it is multiplied by 2^level, see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
@@ -141,7 +141,7 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
 
 /* Computes the normal, opposite to the gradient; at a vertex that only caps have, the normal of the
  * sides that it is on. The normal is zero if the gradient vanishes. Scales first, because the
- * square of a small gradient may underflow, and of a large one overflow. */
+ * square of a small gradient may underflow, and the square of a large one may overflow. */
 static void mcor_store_normal(
   const mcor_download* d, int64_t v, const double gradient[3], float normal[3])
 {

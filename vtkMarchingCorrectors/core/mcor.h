@@ -183,13 +183,13 @@ extern "C"
     const char* name; /* for messages; may be NULL */
 
     /* For programs with an OpenCL context of their own: a cl_mem of any context, which holds the
-     * values if data is NULL. The values of the first particle begin at byte `offset`, of each next
-     * particle `stride` bytes later; stride 0: values are packed. Calls on a mcor_context map such
-     * arrays of mcor_input for reading. On a CPU nothing is copied if values are packed and
-     * `offset` is a multiple of a number's size; from a GPU the values pass through the host, which
-     * checks and measures all particles. Commands that write to the memory must have finished.
-     * `memory` is read only in arrays of mcor_input, and only by functions with a context.
-     * mcor_store writes results to such memory. */
+     * values if data is NULL. The values of the first particle begin at byte `offset`, the values
+     * of each next particle `stride` bytes later; stride 0: values are packed. Calls on a
+     * mcor_context map such arrays of mcor_input for reading. On a CPU nothing is copied if values
+     * are packed and `offset` is a multiple of a number's size; from a GPU the values pass through
+     * the host, which checks and measures all particles. Commands that write to the memory must
+     * have finished. `memory` is read only in arrays of mcor_input, and only by functions with a
+     * context. mcor_store writes results to such memory. */
     void* memory;
     size_t offset, stride;
   } mcor_array;
@@ -453,8 +453,9 @@ extern "C"
      * as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
-    /* Fluid particles that are inside by mcor_widen's weight sum with s = 1, but outside by the sum
-     * with their factors s. In a box, mcor_widen also counts particles next to the box. */
+    /* Fluid particles that are inside by mcor_widen's weight sum with their own smoothing lengths,
+     * but outside by the sum with their factors. In a box, mcor_widen also counts particles next to
+     * the box. */
     int64_t widening_outside;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
@@ -476,8 +477,8 @@ extern "C"
      * seed_cells_not_intersected: how many of these cells the surface does not use. These counts
      * and most of the following ones are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
-    /* Not summed over iso values: bricks that exist after the last one, and nodes that have values
-     * then, also from earlier calls. */
+    /* Not summed over iso values: bricks that exist after the last iso value, and nodes that then
+     * have values, some of them from earlier calls. */
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
@@ -557,10 +558,10 @@ extern "C"
     float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
-    /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or eigenvalue) is the
-     * vertex threshold or the solids' share the wall share; 2: the same, but left at the linear
-     * cut; 4: on a lattice edge next to a cell that the node threshold discarded; 8: belongs to a
-     * cap alone, see capping, or is a node inside the filled region. */
+    /* [point_count]; 0: inside; 1: on the trim boundary: there the weight (or eigenvalue) equals
+     * the vertex threshold, or the solids' share of the weight equals the wall share; 2: as 1, but
+     * left at the linear cut; 4: on a lattice edge next to a cell that the node threshold
+     * discarded; 8: belongs to a cap alone, see capping, or is a node inside the filled region. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
@@ -587,9 +588,9 @@ extern "C"
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
-  /* Lists the devices, each in a line "number: device (platform)\n"; the built-in device, which
-   * comes first, has no platform there. *text is empty if there is no device, and NULL if memory
-   * ran out. Free it with free(). */
+  /* Lists the devices, each in a line "number: device (platform)\n". The built-in device comes
+   * first; its line names no platform. *text is empty if there is no device, and NULL if memory ran
+   * out. Free it with free(). */
   mcor_status mcor_list_devices(char** text);
 
   /* Says in one sentence, with C's words in its slots, why the last failed call on this context
@@ -738,11 +739,11 @@ extern "C"
    * estimate_smoothing_length, infinite without fluid. */
   double mcor_least_smoothing_length(const mcor_input* input);
 
-  /* Returns about how many cubes (squares in a plane) of the virtual grid the fluid fills, in
-   * the box if there is one: a particle takes (h / 1.3)^3. 0 without fluid, and if the
-   * smoothing length is to be estimated but options.cube_size is given, so that their ratio is not
-   * known. least: mcor_least_smoothing_length, over all ranks that share the particles; the results
-   * of ranks add up. */
+  /* Returns about how many cubes (squares in a plane) of the virtual grid the fluid fills, in the
+   * box if there is one: a particle fills (h / 1.3)^3. 0 without fluid, and if the smoothing length
+   * is to be estimated but options.cube_size is given, so that the ratio of the two is not known.
+   * least: mcor_least_smoothing_length, over all ranks that share the particles; the results of
+   * ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */

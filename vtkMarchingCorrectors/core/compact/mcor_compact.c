@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours. Where the surface passes close to a node, Marching Cubes makes slivers.
- * Therefore the vertices of one node that are joined by edges are merged into one vertex at their
- * mean [Moore and Warren], which then moves along the gradient onto the surface. Triangles with two
- * equal corners vanish.
+/* Compact contours. Where the surface passes close to a node, Marching Cubes makes slivers. Each
+ * vertex belongs to the nearer end of its lattice edge, which is a node. Vertices of one node that
+ * are joined by edges of triangles are merged into one vertex at their mean [Moore and Warren]. The
+ * merged vertex then moves along the gradient onto the surface. Triangles with two equal corners
+ * vanish.
  *
  * The vertices that become one merged vertex are a bunch. If the merged vertex does not reach the
  * surface, or turns a triangle over, its bunch is taken apart again, which is always possible. This
@@ -61,7 +62,7 @@ static void mcor_read_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Reads the vertices that the mesh has got since the last call. */
+/* Reads from the device the vertices that were added to the mesh since the last call. */
 static mcor_status mcor_read_points(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;

@@ -13,9 +13,9 @@
  * and caps, and leaves the borders of both as they are. */
 mcor_status mcor_compact(mcor_context* context);
 
-/* Vertices in a box depend on this number of cells around the box: four decide whether a vertex is
- * merged, two more for each round of taking bunches apart, four whether a vertex moves, and one
- * decides the normals of triangles. */
+/* MCOR_COMPACT_RING: the vertices in a box depend on so many cells around the box. Four of these
+ * cells decide whether a vertex is merged, two more for each round of taking bunches apart, four
+ * whether a vertex moves, and one decides the normals of triangles. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 
@@ -48,8 +48,9 @@ typedef struct mcor_bunch_vertex
   bool leans;       /* of a bunch: it is merged only as long as all sure bunches beside it are */
 } mcor_bunch_vertex;
 
-/* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX lattice edges, so sums
- * of positions do not depend on the order, and differences are the same a period apart. */
+/* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX lattice edges. So sums
+ * of positions do not depend on the order of the terms, and differences of positions stay the same
+ * if both points move by a period. */
 #define MCOR_POINT_FIX 30
 typedef struct mcor_point
 {
@@ -122,8 +123,8 @@ static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_
   return mcor_is_left(place, bunches->corners);
 }
 
-/* Sets the place in the mesh of vertex v; if v is the first vertex of a merged bunch, of all the
- * bunch's vertices. */
+/* Sets the place in the mesh of vertex v. If v is the first vertex of a merged bunch, sets the
+ * place of all vertices of the bunch. */
 static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_t place)
 {
   for (int32_t w = v; w >= 0; w = mcor_is_merged(bunches, v) ? bunches->of[w].next : -1)
@@ -135,9 +136,9 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
 /* mcor_compact.c. Appends to the mesh the vertices that begin at `starts`, and corrects them. */
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
-/* mcor_compact_bunch.c. Finds the bunches. Merges each bunch that can be merged whatever happens to
- * the others, and bunches that can be merged beside these (`leans`). Fills `starts` with the merged
- * bunches. */
+/* mcor_compact_bunch.c. Finds the bunches. First merges each bunch that can be merged whether or
+ * not others are merged, then bunches that can be merged only as long as those stay merged
+ * (`leans`). Fills `starts` with the merged bunches. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
 /* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over.

@@ -3,14 +3,14 @@
 
 /* Bunches of a marched mesh, and which of them are merged.
  *
- * Merging must leave a manifold with the same pieces. It does if each merged bunch can be
- * contracted to a point, and if any two vertices of the result are joined by one edge at most. This
- * edge replaces edges beside each other and the triangles between them. The second condition is
- * tested for pairs of two bunches, or of a bunch and a vertex: a bunch is merged if its triangles
- * are one closed fan of three or more different vertices, both if all other bunches are merged and
- * if none is. A bunch therefore depends only on the cells near it, whatever part of the surface a
- * call makes, and may be taken apart at any time. A closed piece that would keep fewer than 8
- * triangles stays as it is.
+ * Merging must leave a manifold with the same pieces. For this, two conditions suffice: each merged
+ * bunch can be contracted to a point, and any two vertices of the result are joined by one edge at
+ * most. (If triangles between two edges vanish, one edge takes the place of both.) The second
+ * condition is tested around each bunch: the outer edges of the triangles around the bunch must
+ * form one closed ring of three or more different vertices, both if all other bunches are merged
+ * and if no other bunch is. So whether a bunch is merged depends only on the cells near it,
+ * whatever part of the surface a call makes; and it may be taken apart at any time. A closed piece
+ * that would keep fewer than 8 triangles stays as it is.
  *
  * A bunch that fails this test may still be merged beside the bunches that pass it. It leans on
  * them: if one of them is taken apart, it is taken apart, too. */
@@ -19,7 +19,7 @@
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
 
-/* Most edges of a fan (the triangles around a bunch); a bunch with more edges stays apart. */
+/* Most edges of a fan: one for each triangle around a bunch. A bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
 
 /* Least number of vertices that a closed piece keeps: 6 of a surface, with 8 triangles; 4 of a
@@ -28,8 +28,8 @@
 
 /* ---- Nodes ---- */
 
-/* What mcor_key_slice needs. side: node coordinates of the sides of caps and periods, where
- * vertices stay; -1: none. */
+/* What mcor_key_slice needs. side: along each axis, the node coordinates of the sides that caps
+ * close, then of the sides of the period; vertices on these sides stay. -1: no such side. */
 typedef struct mcor_keying
 {
   const mcor_bunches* bunches;
@@ -38,9 +38,10 @@ typedef struct mcor_keying
 } mcor_keying;
 
 /* Gives each vertex the key of its node: the end of its edge that is nearer by linear
- * interpolation; if both are equally near, the lower end. Neighbouring levels differ by one, so the
- * level's last bit distinguishes them. Vertices stay (MCOR_FROZEN) if they lie on a side, lie on
- * the border that the node threshold leaves, or belong to cuts or caps. */
+ * interpolation; if both are equally near, the lower end. The key contains the last bit of the
+ * level: levels side by side differ by one, so nodes of different levels have different keys.
+ * Vertices stay (MCOR_FROZEN) if they lie on a side, lie on the border that the node threshold
+ * leaves, or belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_keying* keying = data;
@@ -93,8 +94,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   MCOR_THEN(status,
     mcor_parallel_run(
       context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL));
-  /* Freezes the corners of caps. Holds the vertices at the ends of cut edges, because keys of cuts
-   * refer to them. */
+  /* Freezes the corners of caps. Marks the vertices at the ends of cut edges as held: keys of cuts
+   * refer to them, so they may be merged, but do not move alone. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
@@ -171,7 +172,7 @@ static void mcor_list_triangles(mcor_bunches* bunches)
   }
 }
 
-/* ---- Whether they can be merged ---- */
+/* ---- Whether bunches can be merged ---- */
 
 /* The edges opposite to a bunch in the triangles around it. For lines: one edge, from the vertex
  * before the bunch to the vertex behind it. */
@@ -253,8 +254,9 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return seen == fan->count;
 }
 
-/* Whether a closed piece would keep enough vertices: counts a bunch, the vertices of its ring, and
- * the bunches, as if all were merged, in triangles around the ring's bunches. */
+/* Whether a closed piece would keep enough vertices. Counts, as if all bunches were merged: this
+ * bunch, the vertices of its ring, and the vertices of all triangles around the ring. Stops when
+ * there are enough. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);

@@ -50,8 +50,8 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks merged bunches of a triangle as bad: if some of them did not reach the surface, these;
- * else, if the triangle is turned over, all of them. Marks the widest corner of a sliver. */
+/* Marks merged bunches of a triangle as bad: the bunches that did not reach the surface or, if all
+ * of them did and the triangle is turned over, all of them. Marks the widest corner of a sliver. */
 static void mcor_judge_triangle(const mcor_bunches* bunches, int64_t t)
 {
   const cl_int* corner = bunches->triangles + 3 * t;
@@ -146,8 +146,8 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 
 /* ---- Slivers ---- */
 
-/* The farthest start of a line from its vertex's node along each axis, in edges. A line from there
- * ends within MCOR_POINT_EXTENT of the node. */
+/* A line on which a vertex is corrected begins at most this far from the vertex's node along each
+ * axis, in lattice edges. So it ends within MCOR_POINT_EXTENT of the node. */
 #define MCOR_FARTHEST_START 2.5
 
 /* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles

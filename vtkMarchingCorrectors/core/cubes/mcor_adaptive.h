@@ -28,11 +28,12 @@ enum
   MCOR_ON_BOUNDARY = 2,
   MCOR_ALL_VERTICES = 3
 };
-/* Launch a heavy kernel level by level, with the search grid in cells of each level. The kernel
- * takes MCOR_GRID_PARAMS, then two or three arguments that these functions add, then up to
- * MCOR_MORE_ARGS `more`. mcor_launch_at_vertices adds the number of groups of vertices, the groups,
- * and the vertices' nodes. mcor_launch_by_level adds the first and the count of the elements
- * [first[l], end[l]); each element has `items` work-items. */
+/* Launch a heavy kernel once for each level; the kernel then measures lengths in cells of this
+ * level. It takes MCOR_GRID_PARAMS, then the arguments that these functions add, then up to
+ * MCOR_MORE_ARGS `more`. mcor_launch_at_vertices adds three: the number of groups of vertices, the
+ * array of groups, and the vertices' nodes. mcor_launch_by_level adds two for the elements
+ * [first[l], end[l]) of level l: the first element, and their number; each element has `items`
+ * work-items. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \
@@ -45,8 +46,8 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
-/* mcor_correct.c. Launches the correction of vertices, level by level: along their lattice edges,
- * or, with `lines`, along the gradient from where their offsets are. */
+/* mcor_correct.c. Launches the correction of vertices, level by level. Vertices move along their
+ * lattice edges or, with `lines`, along the gradient from the places that their offsets give. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines);
 
 /* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless this is done

@@ -12,8 +12,8 @@
 
 /* Finds the states of the cubes in block_keys, and which cubes are inactive. Evaluates the `parts`
  * cubes that were made by dividing; `index` has their places, or is empty if the places are 0, 1,
- * 2, .... The other cubes are kept blocks in larger cubes that are now inactive; these blocks
- * become void, as if they did not exist. */
+ * 2, .... All other cubes are blocks that were kept from an earlier iso value or call, and whose
+ * larger cubes are inactive now. These blocks become void: they count as if they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {

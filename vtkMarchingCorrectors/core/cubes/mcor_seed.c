@@ -23,8 +23,9 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Requests bricks whose states are certain, but different from the side of a `fresh` node beside
- * them. bricks.found: whether there were any. */
+/* Requests bricks that are certainly on one side of the iso value, but beside a node on the other
+ * side. Looks at nodes of bricks with bits in `fresh` only. bricks.found: whether any were
+ * requested. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -59,8 +60,8 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 
 /* Tests regions. Requests the bricks that stay uncertain, whose cells are the seeds, and lists
  * their regions. Places the requested bricks, and all bricks that are known from earlier iso
- * values. Finds states of the uncertain bricks, and evaluates most of these bricks. Skips this in a
- * plane, where bounds cost more than a brick's few nodes. */
+ * values. Finds states of the uncertain bricks, and evaluates most of these bricks; in a plane,
+ * skips this last step, because bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -130,8 +131,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Places the bricks, evaluates their nodes, and finds which cells may be used, and which are
- * plain. */
+/* Places the bricks, evaluates their nodes, and finds which cells may be used, and which are plain
+ * (no finer brick touches them). */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -32,8 +32,8 @@ static mcor_status mcor_evaluate_samples(
   return MCOR_OK;
 }
 
-/* Decides which ambiguous faces between plain cells are joined, then in which plain cells two loops
- * make a tunnel. */
+/* Decides which ambiguous faces between plain cells (no finer brick touches them) are joined, then
+ * in which plain cells two loops make a tunnel. */
 mcor_status mcor_resolve_topology(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;

@@ -4,9 +4,9 @@
 #define mcor_tree_h
 
 /* Adaptive cubes: the leaves that the lattice is divided into. A brick of level L is 4^3 cells,
- * each 2^L cubes long. Leaves are the largest bricks that only particles with h >= 2^L x the
- * smallest h reach; further bricks are split until leaves that touch differ by one level at most.
- * The leaves depend on the particles alone. */
+ * each 2^L cubes long. It may be a leaf if every particle that reaches it has h >= 2^L times the
+ * smallest h. Leaves are as large as this allows; then more bricks are split until leaves that
+ * touch differ by one level at most. The leaves depend on the particles alone. */
 
 #include "mcor_internal.h"
 
@@ -17,9 +17,9 @@
 
 /* mcor_tree_brick.c. Returns the number of bits that are set. */
 int mcor_bit_count(uint64_t bits);
-/* Adds bricks to a set: the mask `bricks` of the cluster whose first brick has this key. Returns
- * false if memory ran out, or, before the sets take much memory, if the leaves would become too
- * many. */
+/* Adds bricks to a set. key: of the first brick of a cluster of 4^3 bricks; bricks: the mask of the
+ * cluster's bricks to add. Returns false if memory ran out. Also returns false, before the sets
+ * take much memory, if the leaves would become too many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 /* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
@@ -98,8 +98,8 @@ void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 
-/* Bits of a brick's key in keys of points or triangles; the other bits are an edge or a cell of the
- * brick. */
+/* How many bits a brick's key takes in the key of a point or triangle. The other bits tell the edge
+ * or the cell of the brick. */
 #define MCOR_TREE_KEY_BITS 55
 
 /* Finds which bricks the particles of all ranks split; with one level, none. */

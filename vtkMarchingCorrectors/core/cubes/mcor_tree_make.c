@@ -2,8 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: makes the leaves, which are the parts of split bricks (mcor_tree_split.c) that
- * are not split themselves. All ranks know all split bricks, but make leaves only in their box.
- * Leaves are bits of blocks: the parts of a cluster's bricks form a block of the level below. */
+ * are not split themselves. All ranks know all split bricks, but make leaves only in their box. A
+ * block has a bit for each of its bricks that is a leaf: the parts of the bricks of one cluster
+ * form a block of the level below. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"

@@ -216,8 +216,8 @@ static mcor_status mcor_split_by_particles(
 
 /* ---- Bricks above split ones ---- */
 
-/* Splits, level by level, the higher bricks that touch a split brick: its parent, and the bricks
- * beyond those sides of the parent at which it lies. */
+/* Splits, level by level, the bricks of the next higher level that touch a split brick: the split
+ * brick's parent, and the parent's neighbours that touch the split brick. */
 static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
 {
   for (int level = 1; level <= tree->top; ++level)

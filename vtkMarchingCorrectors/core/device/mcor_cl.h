@@ -56,8 +56,8 @@ typedef enum mcor_program
   MCOR_PROGRAM_TRIM,
   MCOR_PROGRAM_SHAPE, /* boundary eigenvalue, curvature, values at points of caps */
   MCOR_PROGRAM_RARE,  /* seeds of pairs, nodes in two dimensions */
-  /* For mcor_probe, mcor_derive and mcor_widen; the same for all fields and, in a GPU's form, with
-   * and without solids. */
+  /* For mcor_probe, mcor_derive and mcor_widen. The same for all fields and, in the form for GPUs,
+   * with and without solids. */
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
@@ -172,9 +172,10 @@ typedef enum mcor_load
 /* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
  * names, or else the default. place, count: see mcor_create_shared_context. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Called before each call. Does nothing if the user named a device. Else opens the best device that
- * can run the build, if the open device cannot run it, or is itself a replacement. Fails if no
- * device can run it. release: frees everything on the old device first. */
+/* Called before each call. Does nothing if the user named a device. Otherwise, if the open device
+ * cannot run the build, or replaces a device that could not run an earlier build, opens the best
+ * device that can run this build. Fails if no device can run it. release: frees everything on the
+ * old device first. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
@@ -209,7 +210,8 @@ mcor_status mcor_read(
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
-/* One of several buffers that are mapped together; *data must be NULL before the call. */
+/* A buffer for mcor_map_all, which maps several. *data must be NULL before mcor_map_all is
+ * called. */
 typedef struct mcor_mapping
 {
   const mcor_buffer* buffer;

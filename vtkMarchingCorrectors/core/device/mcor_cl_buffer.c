@@ -72,8 +72,8 @@ void mcor_drop_locked(mcor_context* context)
   }
 }
 
-/* Returns how many bytes may be held, kept buffers included: an eighth more than this call, or
- * the last one, has needed. */
+/* Returns how many bytes may be held, kept buffers included: an eighth more than this call or the
+ * last one has needed, whichever needed more, but no more than the memory limit. */
 static int64_t mcor_most_held(const mcor_cl* cl)
 {
   const int64_t used = cl->used_peak > cl->used_before ? cl->used_peak : cl->used_before;

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-/* A program that waits for a thread, is under way, or is done. */
+/* A program to build ahead. It waits for a thread, is being built, or is done. */
 typedef struct mcor_build_job
 {
   cl_program program; /* NULL: it is not built ahead, or the run has taken it */
@@ -37,7 +37,7 @@ static const mcor_program mcor_build_order[] = { MCOR_PROGRAM_GRID, MCOR_PROGRAM
   MCOR_PROGRAM_TRIM, MCOR_PROGRAM_ATTRIBUTES };
 #define MCOR_BUILT_AHEAD (sizeof mcor_build_order / sizeof *mcor_build_order)
 
-/* Builds a job; the lock is held before and after it. */
+/* Builds a job's program. The caller holds the lock, which is free while the driver compiles. */
 static void mcor_run_job(struct mcor_builder* builder, mcor_build_job* job)
 {
   job->is_begun = true;

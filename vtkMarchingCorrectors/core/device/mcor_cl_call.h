@@ -42,8 +42,9 @@ mcor_status mcor_open_profile(mcor_context* context);
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes);
-/* Counts one more command in the profile. host, device: seconds. event: NULL, or the event that
- * tells more seconds of the device when the command is done; the profile then releases it. */
+/* Counts one more command in the profile. host, device: seconds. event: NULL, or an event from
+ * which the profile reads more seconds of the device when the command is done. The profile then
+ * releases the event. */
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
   int64_t bytes, double host, double device, cl_event event);
 /* Returns the seconds between start and end of a command; -1: the driver does not tell. */

@@ -157,8 +157,8 @@ static void mcor_query_device(mcor_cl* cl)
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
   /* The kernels' form for CPUs suits CPUs with vectors. A device without vectors that claims to be
-   * a CPU works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu or
-   * gpu, is for tests. */
+   * a CPU gets the form for GPUs, in which a work-item treats one point. The variable
+   * MCOR_DEVICE_FORM, cpu or gpu, is for tests. */
   const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
   const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
   clGetDeviceInfo(
@@ -167,7 +167,7 @@ static void mcor_query_device(mcor_cl* cl)
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
    * when they are launched. So it gains nothing if programs are built in parts. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
-  /* A CPU that works as a GPU counts as a device with memory of its own, so that tests reach the
+  /* A CPU with the form for GPUs counts as a device with memory of its own, so that tests reach the
    * code for such devices, too. */
   cl->is_apart = !cl->is_cpu && (!unified || claims_cpu);
   cl->has_fp64 = fp64 != 0;
@@ -176,8 +176,8 @@ static void mcor_query_device(mcor_cl* cl)
 }
 
 /* Distributes `count` processes over the devices that are like the chosen one. Returns the device
- * of process *place. *place and *count become this process's number, and the number of processes,
- * on this device. */
+ * of process *place. *count becomes the number of processes on this device, and *place the number
+ * of this process among them. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
   int like[MCOR_DEVICE_LIMIT], n = 0;
@@ -236,7 +236,7 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
                                 : build->precision == MCOR_FLOAT32 || tried.has_fp64;
 }
 
-/* The build of mcor_set_default_options. */
+/* The build that a call with the default options needs. */
 static const mcor_build mcor_usual_build = { 0 };
 
 /* Returns the best of the devices that can do a build: the built-in one, which starts at once, then

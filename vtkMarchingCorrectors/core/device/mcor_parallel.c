@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Threads, which wait from one loop to the next. The built-in device's threads serve the loops of the
- * host, too. With any other device, threads live for one call; without a context, for one loop. */
+/* Runs loops in threads, which sleep between two loops. The built-in device's threads serve the
+ * loops of the host, too. With any other device, threads live for one call; without a context, for
+ * one loop. */
 
 #include "mcor_cl_call.h"
 

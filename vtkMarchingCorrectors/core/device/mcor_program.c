@@ -85,8 +85,8 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
             number = set & MCOR_PARTS_LATTICE ? 0
     : set & MCOR_PARTS_FIELD                  ? 1
                                               : 2;
-  /* Programs that do not depend on the field are compiled as for a free surface; in a GPU's form,
-   * probes do not depend on solids either. */
+  /* Programs that do not depend on the field are compiled as for a free surface. In the form for
+   * GPUs, which has one lane, probes do not depend on solids either. */
   const int without_field =
     1 << MCOR_PROGRAM_ATTRIBUTES | 1 << MCOR_PROGRAM_DENSITY | MCOR_PARTS_PROBE;
   const mcor_field field = set & without_field ? MCOR_WEIGHT_SUM : build->field;

@@ -36,7 +36,7 @@ mcor_function mcor_system_opencl(void);
 
 /* Compiles a function of long loops twice, the second time for processors with AVX2, if the loader
  * can choose: this saves about half of the instructions. The bits are the same, as every operation
- * is rounded by itself. Sanitizers are not ready when the loader chooses. */
+ * is rounded by itself. Not with sanitizers, which are not ready when the loader chooses. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&       \
   !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define MCOR_VECTOR_LOOPS __attribute__((target_clones("avx2", "default")))

@@ -12,8 +12,8 @@
 #include <math.h>
 
 /* Search cells per support radius. The paper's cells are as large as the support. Smaller cells fit
- * the round reach of a query better, but a query reads more rows: with 2 cells per support it took
- * as long, with 3 longer. */
+ * the round reach of a query better, but a query reads more rows: a run with 2 cells per support
+ * took as long as with 1, and with 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
 /* The most cells of a level along an axis, so that keys of all levels stay below 2^62. A level that

@@ -3,8 +3,9 @@
 
 #include "mcor_internal.h"
 
-/* With more elements than this, launches take so long that a run may be cancelled before each of
- * them, so each waits for the one before. With fewer, waiting would take longer than the work. */
+/* With more elements than this, launches take long. Each then waits for the one before, so that a
+ * run may be cancelled between them. With fewer elements, waiting would take longer than the
+ * work. */
 #define MCOR_LONG_WALK (1 << 20)
 
 static mcor_load mcor_walk(int count)

@@ -797,7 +797,7 @@ extern "C"
     uint8_t* valid; /* [count], 1 where the weight sum is above 1e-30 and not below
                      * options.node_threshold */
     /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard
-     * mean), and its gradient. 0 where not valid. */
+     * mean), and the gradient of this field. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
                                     * without MCOR_OUT_GRADIENTS */
@@ -856,12 +856,12 @@ extern "C"
   /* Finds where lines cross the free surface, that is, where the weight sum equals the level, which
    * is the iso value (above 0; 0.5 if there is none). There is fluid where the sum is at least the
    * level. Solids count in the sum, unless they are ignored, and the fluid ends where the solids'
-   * share exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line is sampled
-   * at a quarter of the smallest (scaled) smoothing length, or more finely where neighbouring
-   * samples show that an extremum may cross the level; then crossings are solved for. lines:
-   * [count]. The options of mcor_probe apply, except field; iso_values and wall_share apply, too.
-   * Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM, level_limit 0 and
-   * MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; each rank gets all
+   * share of the sum exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line
+   * is sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
+   * neighbouring samples show that an extremum may cross the level; then crossings are solved for.
+   * lines: [count]. The options of mcor_probe apply, except field; iso_values and wall_share apply,
+   * too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM, level_limit
+   * 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; each rank gets all
    * readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);

@@ -129,7 +129,8 @@ extern "C"
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */
-    /* The array of each role; for quantities, only if the input has them. */
+    /* The index of each role's array. For the first four roles, -1 if the input does not use the
+     * array. */
     int which[MCOR_ROLE_COUNT];
     mcor_array views[MCOR_ROLE_COUNT]; /* each role's array as the core reads it, or its value; all
                                         * quantities, even unused ones; for FLUID only a name */

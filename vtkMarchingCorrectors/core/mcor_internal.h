@@ -136,7 +136,7 @@ static inline double mcor_real_of(const mcor_context* context, double value)
  * cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
 /* The most cubes along an axis for a lattice that is cut to a box or to points; particles with long
- * supports may lie far outside of it. Fixed point then resolves 2^-7 cubes. */
+ * supports may lie far outside of such a lattice. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
 /* Keys have bits for this many nodes along an axis, and for this many cells in all; see
  * MCOR_RING_CELL. */
@@ -329,8 +329,9 @@ void mcor_release_nodes(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
-/* Finds the cells that growth from pairs reaches (bricks.cells), and evaluates all of their nodes.
- * bricks.seeds: the cells that pairs mark. */
+/* Finds the cells that pairs mark (bricks.seeds), and the cells that are reached from marked cells
+ * through crossed faces (bricks.cells, with the marked ones). Evaluates all nodes of these
+ * cells. */
 mcor_status mcor_find_reached(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
@@ -386,7 +387,8 @@ typedef struct mcor_surface_array
 } mcor_surface_array;
 void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
-/* Makes room for `count` elements of `width` bytes behind `old` ones; *array may be NULL. */
+/* Makes room for `count` elements of `width` bytes behind the first `old` elements; *array may be
+ * NULL. */
 mcor_status mcor_grow(
   mcor_context* context, void** array, int64_t old, int64_t count, size_t width);
 /* Makes room for more points in all arrays that the caller wants. */

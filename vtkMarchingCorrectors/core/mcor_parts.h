@@ -17,7 +17,7 @@ extern "C"
 #pragma GCC visibility push(default)
 #endif
 
-  /* One component of an attribute, over fluid particles. */
+  /* Facts about one component of an attribute, from all fluid particles. */
   typedef struct mcor_global_component
   {
     double largest;     /* greatest absolute value; 0 if it does not vary */
@@ -34,7 +34,7 @@ extern "C"
     double at; /* the constant coordinate */
   } mcor_plane;
 
-  /* Measures over all particles. Lengths in L; h: the unscaled smoothing length. */
+  /* What is measured over all particles. Lengths have unit L; h: the unscaled smoothing length. */
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;

@@ -74,7 +74,7 @@ void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor
 {
   const mcor_input* last = &context->kept.input;
   const bool particles = mcor_same_particles(input, last);
-  /* Compares globals without their components, because nothing that is kept depends on them. */
+  /* Compares globals without their components: nothing that is kept depends on the components. */
   const mcor_globals none = { 0 };
   const mcor_globals *a = &context->kept.globals, *b = options->globals ? options->globals : &none;
   const mcor_measure *m = &a->measured, *n = &b->measured;

@@ -12,7 +12,8 @@
 #define MCOR_TYPE(type) cl_##type
 #endif
 
-/* Search grid: padding of arrays of particles, the number of elements of the widest vector load. */
+/* Search grid: this number of elements follows the particles in arrays, because vector loads may
+ * read beyond the last particle. It is the width of the widest vector load. */
 #define MCOR_PADDING 16
 
 typedef struct mcor_level

@@ -165,7 +165,8 @@ typedef struct mcor_tree
   const mcor_lattice* lattice;
   int top;       /* highest level of leaves; bricks go one level higher */
   bool is_plane; /* all bricks are in the lowest layer */
-  /* The first period, in bricks of each level; 0: none along this axis. */
+  /* The length of the period and the coordinate where the first period begins, in bricks of each
+   * level; length 0: no period along this axis. */
   int period[MCOR_TREE_LEVEL_LIMIT + 2][3], period_first[MCOR_TREE_LEVEL_LIMIT + 2][3];
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   int leaf_count;
@@ -193,8 +194,9 @@ typedef struct mcor_adaptive
 typedef struct mcor_pairs
 {
   /* Masks of cells: a ulong for each brick of all blocks, by the brick's number. marked: cells
-   * between the particles of pairs. reached: the marked cells, and where growth has come from them.
-   * grown: reached cells from which growth has gone on. */
+   * between the particles of pairs. reached: the marked cells, and all cells that growth through
+   * crossed faces has reached from them. grown: the reached cells from which growth has gone on
+   * already. */
   mcor_buffer marked, reached, grown;
   mcor_buffer domain; /* ulong, by slot: cells where growth may go */
   mcor_buffer found;  /* int: what a kernel found in any brick */
@@ -239,7 +241,7 @@ typedef struct mcor_trim_data
                                  * them */
 } mcor_trim_data;
 
-/* Buffers of a sort, as large as the particles; mcor_unique uses flags and order. */
+/* Buffers for sorting. mcor_unique and mcor_list_runs use flags, mcor_unique uses order. */
 typedef struct mcor_sort_data
 {
   mcor_buffer keys, values, histogram, order, flags;

@@ -81,8 +81,8 @@ static inline int mcor_level_ring(int ring)
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
 
-/* Extraction. Keeps the marched bricks' cells that are in the box or its ring; beyond the ring, the
- * device lacks particles or has images of them. */
+/* Extraction. Of the marched bricks' cells, keeps those in the box or its ring. Beyond the ring,
+ * the device lacks particles, or has periodic images of particles. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that
  * are also in `within`. */

@@ -153,8 +153,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 #define MCOR_NORMAL_STEP (1 << 18)
 
 /* Makes normals from triangles: at all points in a preview, or if the caller wants this; else only
- * where the gradient vanishes. Each triangle counts by its area, as its cross product does. Runs on
- * one thread: the order in which a point's triangles are added must not change. */
+ * where the gradient vanishes. A triangle adds the cross product of two of its edges, so it counts
+ * by its area. Runs on one thread: the order in which a point's triangles are added must not
+ * change. */
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;

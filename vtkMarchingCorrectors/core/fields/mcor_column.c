@@ -9,10 +9,10 @@
 
 #include <stdlib.h>
 
-/* How many cells the table has from the centre to the end of the support: for pixels not much
- * smaller than h, then for pixels that are much smaller. Errors fall at least with the third power
- * of a cell's size: at h = 3 pixels they are about 1e-8 of the greatest value, at h = 50 pixels
- * below 1e-6. */
+/* How many cells the table has from the centre to the end of the support. The fine table serves if
+ * pixels are smaller than MCOR_SMALL_PIXEL times h. Errors fall at least with the third power of a
+ * cell's size: at h = 3 pixels they are about 1e-8 of the greatest value, at h = 50 pixels below
+ * 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
@@ -88,7 +88,8 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
   return sum;
 }
 
-/* Returns the column density at (x, y), in any unit, because mcor_fill_nodes scales the table. */
+/* Returns the column density at (x, y). The unit is arbitrary, because mcor_fill_nodes normalizes
+ * the table. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
   if (job->is_tensor)
@@ -184,8 +185,8 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Writes the nodes of the table: adds up the columns' sums along x, then divides all numbers by the
- * integral over the whole kernel. */
+/* Writes the nodes of the table. Integrates along x the sums along y that mcor_column_slice wrote,
+ * then divides all numbers by the integral over the whole kernel. */
 static void mcor_fill_nodes(const mcor_column_job* job)
 {
   mcor_column* column = job->column;

@@ -2,9 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
- * where the weight sum is at least the level. A piece in fluid is integrated by two rules, from the
- * same samples. A piece across the level is cut along straight lines, as a whole and in parts. If
- * the two results differ, the piece is halved. */
+ * where the weight sum is at least the level. Each piece of a section is integrated in two ways. A
+ * piece in fluid: by two quadrature rules, from the same samples. A piece that the level crosses:
+ * once cut along one straight line, once divided into parts that are cut in this way. If the two
+ * results differ, the piece is halved. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
@@ -19,8 +20,9 @@
  * doubles can tell the corners of cells apart. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
-/* A piece's accuracy is relative to its greatest speed and density. Both count as at least this
- * share of the greatest speed and density of all particles, which decide how means are rounded. */
+/* A piece's accuracy is relative to its greatest speed and density. Each counts as at least this
+ * share of the greatest value of all particles, because this value decides how means are
+ * rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
 /* A sum may become this many times area times the greatest speed and density. Weights below 0, as
  * M'4 has, make sums a little larger than that product. */
@@ -33,8 +35,8 @@
 /* The most halvings of a cell, and of a piece that the level may cross between its samples. */
 #define MCOR_FLUX_DEPTH 24
 #define MCOR_FLUX_UNCLEAR_DEPTH 12
-/* Weights bend by about 4 / h^2. So a weight between samples may differ from the nearest sample by
- * this number times (longest side / h)^2. */
+/* The second derivative of a weight is about 4 / h^2. So the weight between two samples may differ
+ * from the weight at the nearest sample by this number times (longest side / h)^2. */
 #define MCOR_FLUX_BEND 0.125
 
 static const mcor_flux_form mcor_flux_forms[2] = {
@@ -180,7 +182,8 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
-  /* For each set of corners in fluid, as bits: the corner that is alone on its side. */
+  /* Index: one bit per corner that is in fluid. Entry: the corner that is alone on its side of the
+   * level. */
   static const int lone_corner[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
   const int corners = job->form->corners;
   const double level = job->base.level;
@@ -216,8 +219,8 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   return is_cut;
 }
 
-/* Integrates a piece by the simpler and the better rule; weight, value: of its samples. Returns
- * whether the level cuts the piece. */
+/* Integrates a piece in two ways: adds the simpler result to sum[0], the better one to sum[1].
+ * weight, value: at the piece's samples. Returns whether the level cuts the piece. */
 static bool mcor_integrate_piece(const mcor_flux_job* job, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[2][MCOR_FLUX_SUMS])
 {
@@ -341,8 +344,8 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 
 /* ---- the call ---- */
 
-/* Sets the floors of speed and density, and the units in which sums are whole numbers, from the
- * ranges of velocity and density. */
+/* Sets, from the ranges of velocity and density, the least speed and density for the accuracy of
+ * pieces, and the unit of each sum, which is a whole number of units. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->base.context;

@@ -4,7 +4,8 @@
 #define mcor_flux_h
 
 /* Flow through sections. A section is a list of pieces: triangles; in two dimensions, lines. Pieces
- * are halved until they are cells, and cells until two ways to integrate them agree. */
+ * are halved until no side is longer than MCOR_FLUX_CELL smoothing lengths; such pieces are called
+ * cells. Cells are halved until two ways to integrate them agree. */
 
 #include "mcor_level.h"
 
@@ -59,8 +60,8 @@ typedef struct mcor_flux_job
   mcor_flux_section* found;          /* [section_count] */
   MCOR_LIST(mcor_flux_piece) pieces; /* the pieces of all sections */
   bool is_counting;                  /* the first pass, which only counts cells */
-  /* In this pass: the next of the sections' pieces; parts of pieces that come before it; how many
-   * cells there were so far; the area of the pieces that are done. */
+  /* In this pass: index of the next one of `pieces`; halves of earlier pieces, which are treated
+   * first; how many cells there were so far; the area of the pieces that are done. */
   int64_t next;
   MCOR_LIST(mcor_flux_piece) parts;
   double cells, area_done;

@@ -191,9 +191,9 @@ static mcor_status mcor_add_disc(
   return MCOR_OK;
 }
 
-/* Appends the pieces of a section with the number of points that its shape has. *has_size becomes
- * false if a section other than lines has no area; in two dimensions, an area outside of the plane
- * counts. */
+/* Appends the pieces of a section, whose number of points is checked already. *has_size becomes
+ * false if the section has no area; a section of lines needs none. In two dimensions, area outside
+ * of the plane counts, too. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];

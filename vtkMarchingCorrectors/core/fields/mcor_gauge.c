@@ -4,10 +4,11 @@
 /* Gauges: where lines cross the free surface. All lines go through each step together, so the device
  * has many points at a time.
  *
- * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel,
- * so it is almost a parabola over that distance. A parabola through three samples goes beyond
- * the middle one by at most an eighth of their differences. If the middle sample is nearer to the
- * level than four times this, the part is looked at more finely.
+ * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel, so
+ * it is almost a parabola over that distance. If the middle one of three samples is an extremum,
+ * the parabola through them goes beyond it by at most an eighth of the samples' differences. To be
+ * safe, four times as much is assumed: if this may reach the level, this part of the line is
+ * sampled more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles
@@ -104,7 +105,8 @@ static double mcor_gauge_length(const mcor_gauge_line* line)
   return sqrt(mcor_dot(way, way));
 }
 
-/* Checks a line, and turns it into the plane z = 0, if the particles lie in a plane. */
+/* Checks a line, and copies it to job->lines. If the particles lie in a plane, turns the copy into
+ * the plane z = 0. */
 static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->base.context;
@@ -238,8 +240,9 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
   return MCOR_OK;
 }
 
-/* Whether the weight sum may pass the level and come back next to sample i. Sample i must be nearer
- * to the level than its neighbours, and on the same side of the level. */
+/* Returns whether the weight sum may cross the level twice near sample i. This can only be if
+ * sample i is nearer to the level than its neighbours, and all of them are on one side of the
+ * level. */
 static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
@@ -261,8 +264,8 @@ static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
-/* Appends the parts of a row with a crossing, and, if suspects is not NULL, the parts with an
- * extremum to look at. */
+/* Appends the parts of a row with a crossing to job->changed. If suspects is not NULL, appends to
+ * it the parts with an extremum that may be beyond the level. */
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects)
 {
@@ -321,8 +324,8 @@ static mcor_status mcor_look_closer(
   return MCOR_OK;
 }
 
-/* Evaluates entries [first, last) of the job's samples, and appends crossings and facts to its
- * records. */
+/* Evaluates rows [first, last) of job->samples. Appends to job->records the crossings, which lines
+ * particles reach, and which lines end in fluid. */
 static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64_t last)
 {
   job->changed.count = job->suspects.count = job->inner.count = 0;

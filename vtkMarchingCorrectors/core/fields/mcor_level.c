@@ -48,8 +48,8 @@ bool mcor_owns_point(const mcor_level_job* job, const double point[3])
 }
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
- * fluid's own sum F is below its share of T. The lowered sum is the lesser of T and level + (F -
- * share T) / (1 - share), which equals the level where F is exactly its share of T. Far from
+ * fluid's own sum F is below share times T. The lowered sum is the lesser of T and level + (F -
+ * share T) / (1 - share). The second number equals the level where F is exactly share T. Far from
  * solids, F equals T, and the lowered sum is F. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
@@ -87,7 +87,7 @@ mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
     context->box.points[2 * a + 1] = has_box ? job->box[2 * a + 1] + margin : job->around.most[a];
   }
   context->box.has_points = true;
-  /* Other calls may reuse the search grid, unless it is cut to these points. */
+  /* The search grid is cut to these points, unless other calls may reuse the grid. */
   context->box.of_points = has_box || input->particles_version == 0 || context->run.far;
   MCOR_TRY(mcor_prepare(context, input, options));
   if (context->grid.count == 0)

@@ -3,8 +3,8 @@
 #ifndef mcor_level_h
 #define mcor_level_h
 
-/* What gauges and fluxes share: a call that measures where fluid is, from weight sums at points. There
- * is fluid where the weight sum is at least a level. */
+/* Functions for gauges and fluxes. Both find from weight sums at points where fluid is: there is
+ * fluid where the weight sum is at least a level. */
 
 #include "mcor_probe.h"
 

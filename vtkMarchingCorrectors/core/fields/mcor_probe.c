@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points on the device at a time. In a smaller batch of unordered points, fewer points are near each
- * other. */
+/* Points on the device at a time. Points near each other are evaluated together; a smaller batch of
+ * unordered points would have fewer of them. */
 #define MCOR_PROBE_BATCH (1 << 18)
 
 /* Fluid weight below which a mean has no digits; MCOR_LEAST_SUM in mcor_attribute.cl. */
@@ -32,8 +32,8 @@ bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
   return context->box.of_points = true;
 }
 
-/* Reads positions of points [first, first + count) of the batch, from the lattice's origin, in
- * edges. */
+/* Reads positions of points [first, first + count) of the batch, from the lattice's origin. The
+ * unit is an edge of the lattice. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
@@ -49,15 +49,15 @@ static void mcor_read_points(
     {
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
-    /* MCOR_QUADRATIC's gradient is 0 exactly at a particle, but not nearby, so points are rounded
-     * as particles are. */
+    /* The gradient of MCOR_QUADRATIC is 0 exactly at a particle, but not nearby. So points are
+     * rounded as particles are: a point at a particle stays at it. */
     for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    /* A period includes both of its sides. Along a period, points are rounded, too, so that points
-     * a period apart have the same position. A point on a side that is not in the box is moved to
-     * the other side. */
+    /* Points on both sides of the period lie in the period. Along a period, points are rounded,
+     * too, so that points a period apart get the same position. If a point is on a side that is not
+     * in the box, it moves to the other side of the period. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {
@@ -173,8 +173,8 @@ static void mcor_put_component(
                   to * mcor_components(&run->input->attributes[attribute]) + component->component;
   const double shift = component->shift, unscale = 1 / component->scale;
   const double sum = mcor_get_real(context, run->view.sums, at), mean = sum / weight;
-  /* Rounding must not take a mean out of the range of its values. With M'4, which is partly
-   * negative, a mean may lie out of the range anyway. */
+  /* A mean that rounding took out of the range of the particles' values is moved to the end of the
+   * range. Means with M'4, which is partly negative, may lie out of the range and stay there. */
   const bool is_between = !run->is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;

@@ -39,17 +39,17 @@ mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch,
 /* Evaluates the attributes on the device at points [first, last). */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
-/* Allocates zeros: [attribute_count] -> [count][components][numbers], NULL for attributes that are
- * not finite. Free them with mcor_free_arrays, even after a failure. */
+/* Makes an array of zeros, [count][components][numbers], for each attribute; NULL for attributes
+ * that are not finite. Free them with mcor_free_arrays, even after a failure. */
 mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
   const int64_t* not_finite, int64_t count, int numbers, double*** arrays);
 void mcor_free_arrays(double** arrays, int count);
 /* Ends a call without a surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
-/* mcor_widen.c. Makes *volume, [count], unit L^3: the volumes that were computed, from the search
- * grid's weights; 1 for a particle that is not on the device, or not in the box. The caller frees
- * it, even after a failure. */
+/* mcor_widen.c. Makes *volume, [count], unit L^3: the computed volumes, which are found from the
+ * search grid's weights. Particles that are not on the device or not in the box get 1. The caller
+ * frees *volume, even after a failure. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume);
 
 #endif

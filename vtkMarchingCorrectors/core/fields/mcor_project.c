@@ -74,8 +74,8 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Finds the ranges that particles reach along the axes of the image (along the last axis, the range
- * of their positions) and along x, y, z; and the range of h. */
+/* Finds six ranges that particles reach: along both axes of the image, along the line of sight
+ * (only the particles' positions), and along x, y, z. The seventh range is that of scaled h. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -109,8 +109,8 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Finds the sides of the image. It shows the box or the period, seen along the line of sight, or
- * else all that particles reach. *is_empty: whether nothing gives the image an extent. */
+/* Finds the sides of the image. The image shows the box or the period, seen along the line of
+ * sight; without them, all that particles reach. *is_empty: the image has no extent. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {
   mcor_context* context = job->context;

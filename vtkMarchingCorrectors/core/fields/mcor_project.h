@@ -10,12 +10,12 @@
 
 /* ---- mcor_column.c ----
  *
- * Columns of an SPH kernel, seen along a line of sight: the share of the kernel that projects onto
- * a rectangle. Lengths are in h. */
+ * An SPH kernel, integrated along the line of sight: which share of the kernel projects onto a
+ * rectangle. Lengths are in h. */
 
-/* E(x, y): the share of the kernel that projects onto the rectangle from a corner of the table, or
- * the centre, to (x, y). A rectangle's share is the mixed difference of E at its corners, so the
- * shares of rectangles side by side add up to 1, except for rounding. */
+/* E(x, y): the share of the kernel that projects onto the rectangle from the table's lower corner,
+ * or from the centre if is_odd, to (x, y). A rectangle's share is the mixed difference of E at its
+ * corners, so the shares of rectangles side by side add up to 1, except for rounding. */
 typedef struct mcor_column
 {
   bool is_radial;  /* the kernel depends on the distance alone, as all but tensor kernels do */
@@ -26,8 +26,8 @@ typedef struct mcor_column
   double* nodes;   /* [cells + 1][cells + 1][4], y first: E, dE/dx, dE/dy, d2E/dxdy, in cells */
 } mcor_column;
 
-/* The side of a rectangle: a cubic Hermite interpolant's cell, and weights of the value and the
- * slope at both ends of the cell. */
+/* Where a side of a rectangle lies in the table: the cell, and the weights with which cubic Hermite
+ * interpolation takes the value and the slope at both ends of the cell. */
 typedef struct mcor_column_side
 {
   int cell;
@@ -69,10 +69,10 @@ typedef struct mcor_project_job
   double h_scale;
   mcor_column column;
   int channels; /* 2 for a mean, else 1 */
-  /* [channel], coarse and fine: 3/2 of a power of 2. Adding a unit to a number, and subtracting it
-   * again, rounds the number. */
+  /* [channel][coarse, fine]: 3/2 of a power of 2. Adding a unit to a number and subtracting it
+   * again rounds the number: first to the coarse unit, then the rest to the fine unit. */
   double unit[2][2];
-  double* sums;           /* [channels][2][pixels]: of rounded numbers; of their rounded rests */
+  double* sums;           /* [channels][2][pixels]: of the rounded numbers; of the rounded rests */
   int64_t first;          /* first of the particles of this step */
   int bands;              /* number of bands of rows of the image */
   pthread_mutex_t* locks; /* [bands]; NULL in the first pass */
@@ -95,9 +95,9 @@ static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
     (!job->view->counted || job->view->counted[i]);
 }
 
-/* mcor_column.c. Makes the table. In two dimensions, takes the kernel itself, not an integral along
- * the line of sight. least_pixel: the shorter side of a pixel / the greatest h. The caller frees
- * the nodes, even after a failure. */
+/* mcor_column.c. Makes the table. In two dimensions, the table holds integrals of the kernel
+ * itself, not of its integral along the line of sight. least_pixel: the shorter side of a pixel /
+ * the greatest h. The caller frees column->nodes, even after a failure. */
 mcor_status mcor_make_column(
   const mcor_project_job* project, double least_pixel, mcor_column* column);
 

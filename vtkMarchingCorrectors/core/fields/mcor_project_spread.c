@@ -2,9 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Spreads particles over an image, on the host, in double precision. The contribution of a particle
- * to a pixel is rounded to a multiple of a number that is the same for all, and the rest to a
- * multiple of a second one. Sums are therefore exact: they have the same bits in any order, for any
- * number of threads and ranks. Threads share the image; each locks a band of rows at a time. */
+ * to a pixel is rounded to a multiple of one number. The rest is rounded to a multiple of a second
+ * number. Both numbers are the same for all particles. So the sums are exact: they have the same
+ * bits in any order, for any number of threads and ranks. Threads share the image; each locks a
+ * band of rows at a time. */
 
 #include "mcor_project.h"
 
@@ -19,8 +20,9 @@
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Reads the amounts of particles, see mcor_splat, but not divided by an area. For the density, V A
- * is the mass. If the weight is the masses' array, V B is the mass. */
+/* Reads mcor_splat.amount of particles, not yet divided by an area: V A or, for a mean, V B A and V
+ * B. If the image shows the density and masses are given, V A is the mass. If the weight B is the
+ * array of masses, V B is the mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {
@@ -57,9 +59,10 @@ static void mcor_read_amounts(
 
 /* ---- particles in the image ---- */
 
-/* Finds the periodic images of a particle that matter, [first, last] along each axis: images in the
- * box and, across a line of sight along x, y or z, images beside the box that reach into it. Moves
- * the particle into the first period of the box. Returns whether there are such images. */
+/* Finds the periodic images of a particle that matter, [first, last] along each axis. These are the
+ * images in the box. If the line of sight is along x, y or z, images that reach into the box across
+ * the line of sight matter, too. Moves x into the first period of the box. Returns whether any
+ * image matters. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {
@@ -107,9 +110,9 @@ static bool mcor_make_splat(
 
 /* ---- spreading ---- */
 
-/* Adds a particle to a row of pixels. A pixel's share is at least `lowest`. below, above: E at the
- * row's lower and upper corners. coarse, fine: the sums of rounded numbers and of their rounded
- * rests. */
+/* Adds a particle to a row of pixels. A pixel's share is at least `lowest`. below, above: the
+ * kernel's integral E (mcor_project.h) at the lower and the upper corners of the row's pixels. Each
+ * number is split: its rounded part is added to coarse, and the rest, rounded too, to fine. */
 static void mcor_add_pixels(int count, double amount, double lowest, const double* restrict below,
   const double* restrict above, const double unit[2], double* restrict coarse,
   double* restrict fine)
@@ -242,7 +245,8 @@ static double mcor_rounding_unit(double number)
   return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
 }
 
-/* Counts images, and chooses units that make the sums over all images exact. */
+/* Counts the particles' periodic images, and sets job->unit so that sums over all of them are
+ * exact. */
 static mcor_status mcor_count_splats(mcor_project_job* job)
 {
   mcor_context* context = job->context;

@@ -35,8 +35,9 @@
  * sides. */
 #define MCOR_WIDEN_MARGIN 0.1
 
-/* Numbers of neighbours, weighted by nearness: below the first a length is not widened, from the
- * second on it is fully widened. A thread has 2 in space, a sheet 6; in the plane a line has 2. */
+/* Numbers of neighbours, weighted by nearness. With fewer than the first number, a particle's
+ * length is not widened; from the second number on, it is fully widened. In a thread of particles
+ * each has 2 neighbours, in a sheet 6; in two dimensions, in a line 2. */
 #define MCOR_CROWD_FROM 2.2
 #define MCOR_CROWD_TO 4.5
 #define MCOR_CROWD_IN_PLANE 0.31 /* in the plane both numbers are multiplied by this */
@@ -51,7 +52,8 @@ typedef struct mcor_widen_run
   double widest, iso;
   mcor_buffer sizes, factor, limited, wanted, list, outside;
   mcor_point_batch batch;
-  /* Whether a sorted particle is in the box and no periodic image; NULL: all are. */
+  /* For each sorted particle: whether it is in the box and is no periodic image. NULL: yes for
+   * all. */
   cl_int* originals;
   void *order, *weight, *inv_h; /* views */
   void *factors, *is_outside; /* views; NULL if only volumes are wanted */
@@ -67,7 +69,8 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
 }
 
 /* Finds the factors of the sorted particles, and which particles are outside of the surface with
- * these factors. `limited` first holds the least sums, then the factors. */
+ * these factors. run->limited first holds `least`, the weight sum that each particle needs, then
+ * the factors. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
@@ -107,8 +110,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-/* Writes factors to the particles' places in the input; volumes too, from the weights, if they
- * were computed. */
+/* Writes the factors in the input's order. If volumes were computed, writes the volumes, too, which
+ * follow from the weights. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_widen_run* run = data;
@@ -141,7 +144,7 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Delivers the factors, if they are wanted, and the volumes. */
+/* Copies the factors, if they are wanted, and the volumes from the device to run->out. */
 static mcor_status mcor_deliver_factors(
   mcor_context* context, const mcor_input* input, mcor_widen_run* run)
 {
@@ -172,7 +175,7 @@ static mcor_status mcor_deliver_factors(
   return mcor_unmap_all(context, views, count, status);
 }
 
-/* Returns as many ones; NULL: memory ran out. */
+/* Returns an array of `count` ones; NULL: memory ran out. */
 static double* mcor_make_ones(int64_t count)
 {
   double* ones = malloc((size_t)(count > 0 ? count : 0) * sizeof *ones + 1);
@@ -214,8 +217,8 @@ static mcor_status mcor_widen_particles(
   return mcor_finish_field(context);
 }
 
-/* Finds the factors of all particles. A box without globals only tells which particles are too far
- * away to matter, see mcor_leave_out_far. */
+/* Finds the factors of all particles. If there are no globals, the box does not limit this call: it
+ * only tells which particles are too far away to matter, see mcor_leave_out_far. */
 static mcor_status mcor_run_widen(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {

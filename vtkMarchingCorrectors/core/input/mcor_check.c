@@ -87,7 +87,8 @@ static mcor_status mcor_check_number(
     *words ? ", or the number, from -1 down, of one of these: " : "", words);
 }
 
-/* Enumerations are unsigned if no value is negative. */
+/* Compilers may make an enumeration unsigned if none of its values is negative. The cast to int
+ * turns an illegal number below 0 back into a negative one. */
 #define MCOR_NUMBER(value)                                                                         \
   _Generic((value), unsigned : (double)(int)(value), default : (double)(value))
 

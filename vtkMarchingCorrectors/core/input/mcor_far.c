@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are so far away that the virtual grid around all of them would be too long. A call
- * with them fails where the grid is measured, and runs once more without some of them. With a box,
- * or with a probe's points, it leaves out all particles that do not reach these; otherwise the ones
- * that are farthest away, if they are few. The choice depends on the particles of all ranks
- * together, so ranks agree. */
+/* Leaves out particles if the virtual grid around all particles would be too long. A call then
+ * fails where the grid is measured, and runs once more without some particles. With a box or a
+ * probe's points, the second run leaves out all particles that do not reach the box or the points.
+ * Otherwise it leaves out the particles that are farthest away, if they are few. The choice depends
+ * on the particles of all ranks together, so ranks agree. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -14,18 +14,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Far particles are left out if they are at most one in MCOR_FAR_SHARE, or at most MCOR_FAR_FEW, and
- * fewer than half of all. */
+/* Far particles are left out only if they are fewer than half of all particles, and also at most
+ * one in MCOR_FAR_SHARE or at most MCOR_FAR_FEW. */
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
-/* How far, in cubes, a support may end from a probe's points and still be kept. */
+/* A particle is kept if its support ends at most this many cubes away from a probe's points. */
 #define MCOR_POINTS_SLACK 0.5
 /* How many cubes of the grid lie around a region. */
 #define MCOR_REGION_MARGIN 16
 
-/* Sums: particles in use; particles that become absent; fluid that stays. `first` is the first
- * absent one. Range 0 ends at the greatest reach, slack included, of the particles that stay. */
+/* Indices of the sums that mcor_far_slice finds: particles in use; particles that become absent;
+ * fluid particles that stay. It also finds in `first` the first particle that becomes absent, and
+ * as the end of range 0 the greatest reach, slack included, of the particles that stay. */
 enum
 {
   MCOR_USED,
@@ -93,8 +94,8 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Keeps all particles that reach the box or the points, and the particles that are needed there for
- * volumes, pairs and nearest particles. */
+/* Marks as absent all particles that do not reach the box or the points, but keeps those near
+ * enough to be needed for volumes, pairs and nearest particles. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;
@@ -105,8 +106,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
       options, mcor_needs_density(job->input), context->run.widest, job->all.most[0], job->margin);
     return mcor_mark_far(context, job);
   }
-  /* No fluid reaches the region. A run needs some, so the fluid at the first sample's place
-   * stays. */
+  /* No fluid reaches the region. A run needs at least one fluid particle, so the fluid at the place
+   * of the first sample stays. */
   for (int64_t i = 0; i < job->input->count; ++i)
   {
     bool same = !(job->input->solid && job->input->solid[i]);
@@ -119,8 +120,9 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   return MCOR_OK;
 }
 
-/* Leaves out particles beyond a region that reaches `half` from the middle of a sample of the fluid
- * along each axis. Fails if there are none, or too many; the error sentence is set already. */
+/* Leaves out particles beyond a region. The region reaches `half` to either side of the median of
+ * sampled fluid, along each axis. Fails if there is no such particle, or too many; the error
+ * sentence is set already. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, double half)
 {
   const mcor_sample_list* samples = &context->samples[0];
@@ -145,7 +147,7 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  /* The place comes from the rank whose first far particle has the least number. */
+  /* far->place comes from the rank whose first far particle has the least number. */
   MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &far->first, 1));
   bool is_mine = own == far->first;
   for (int a = 0; a < 3; ++a)

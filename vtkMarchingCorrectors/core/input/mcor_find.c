@@ -265,8 +265,9 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
     : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), mcor_called(f, words, name), has));
 }
 
-/* Makes the array that is given for a role, else the array that was found before, the role's view.
- * words: what the array is for. Returns whether there is such an array. */
+/* Sets the view of a role: to the array that the caller names for the role or, without a name, to
+ * the array that was found before. words: what the array is for. Returns whether there is an
+ * array. */
 static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, int components)
 {
   const char* name = mcor_given_name(f, role);
@@ -279,7 +280,7 @@ static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, in
   return *which >= 0;
 }
 
-/* Says that there is no smoothing length, and which one may be right. */
+/* Returns the message that there is no smoothing length. The message suggests one. */
 static mcor_message mcor_no_length(mcor_finder* f)
 {
   const int64_t count = f->positions->tuples;
@@ -341,10 +342,11 @@ enum
   MCOR_MASS_AND_DENSITY = MCOR_THE_MASS | MCOR_THE_DENSITY
 };
 
-/* Returns which of volume, mass and density make the volumes; 0: none, so volumes are
- * request->particle_volume or computed. What is given by hand replaces only the same quantity, so
- * known volumes stay, unless mass and density are both given, or volumes are to be computed. known:
- * all that is given or found. */
+/* Returns from which quantities (bits MCOR_THE_VOLUME and others) volumes come: from volumes, from
+ * mass and density, or from masses alone, with computed densities. 0: from none of them; then
+ * volumes are request->particle_volume, or computed. given: what the caller names or sets; known:
+ * what is given or found. Volumes that are found stay in use, unless the caller gives both mass and
+ * density, or wants computed volumes. */
 static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
 {
   const bool has_both = (known & MCOR_MASS_AND_DENSITY) == MCOR_MASS_AND_DENSITY,
@@ -356,8 +358,8 @@ static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given,
                                                                             : known & MCOR_THE_MASS;
 }
 
-/* Says what is given by hand but not used; volumes: the name of the array of volumes that is
- * used, or NULL. */
+/* Returns a message about what the caller gives in vain. volumes: the name of the array of volumes
+ * that is used, or NULL. */
 static mcor_message mcor_describe_unused(
   const mcor_request* request, unsigned given, unsigned used, const char* volumes)
 {
@@ -413,7 +415,8 @@ static void mcor_find_sizes(mcor_finder* f)
     used == 0 && !r->compute_volumes ? r->particle_volume : input->volume.constant;
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
-  /* Flow and columns use masses and densities beside volumes; the sum Density uses masses. */
+  /* Flow, and the column density (a column without a given array), use masses and densities besides
+   * volumes. The scalar MCOR_SUMMED uses masses. */
   const bool uses_all = (r->wants & MCOR_WANT_FLOW) != 0 || is_density;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
   if (!(r->wants & MCOR_WANT_LIST))
@@ -475,8 +478,8 @@ static void mcor_keep_scalar(mcor_finder* f, mcor_array view, bool is_column, bo
   }
 }
 
-/* Finds the scalar to contour; or the attribute whose derivatives are wanted; or the scalar of a
- * projection, if it has one. */
+/* Finds the array that the call is about: the scalar to contour, the scalar of a projection (which
+ * may have none), or the attribute whose derivatives are wanted. */
 static void mcor_find_scalar(mcor_finder* f, bool contours)
 {
   const char *name = mcor_given_name(f, MCOR_ROLE_SCALAR),
@@ -549,7 +552,8 @@ static int mcor_find_velocity(mcor_finder* f)
   return index < 0 ? mcor_find_named(f->arrays, f->count, MCOR_VELOCITY, 2, count) : index;
 }
 
-/* Makes velocity and density attributes. The density is an array, one value, or mass / volume. */
+/* Adds the velocity and the density to the attributes. The density is an array or one value, else
+ * mass / volume. */
 static void mcor_find_flow(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -617,7 +621,8 @@ static void mcor_name_scalar(mcor_finder* f)
   f->lacks_memory = f->lacks_memory || !full;
 }
 
-/* Ghost marks are left out, because they would hide triangles. */
+/* Returns whether the surface gets an array of the particles. Ghost marks are left out, because
+ * they would hide triangles. */
 static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
 {
   return a->name && *a->name && strcmp(a->name, "vtkGhostType") != 0 &&
@@ -626,8 +631,9 @@ static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
     !(f->request->has_iso_values && strcmp(a->name, f->found->iso_value_name) == 0);
 }
 
-/* Of the arrays that the surface is to have, floats and doubles become attributes. The others, which
- * cannot be interpolated, are listed for the nearest particle's value. */
+/* Of the arrays that the surface gets, floats and doubles become attributes. The others cannot be
+ * interpolated: they are listed in found->nearest, and each point gets the nearest particle's
+ * value. */
 static void mcor_find_attributes(mcor_finder* f)
 {
   for (int i = 0; i <= (mcor_join_velocity(f) < 0 ? f->count - 1 : f->count); ++i)

@@ -38,7 +38,7 @@ typedef struct mcor_kind
   int64_t count;
 } mcor_kind;
 
-/* Room for one kind more than allowed, which tells that there are too many. */
+/* Room for one value more than allowed: a full list tells that there are too many values. */
 #define MCOR_KINDS (MCOR_PARTICLE_TYPES + 1)
 
 /* NaN is above all numbers. */
@@ -47,7 +47,8 @@ static bool mcor_is_below(double a, double b)
   return a < b || (isnan(b) && !isnan(a));
 }
 
-/* Adds a kind, in the order of values. Returns the number of kinds; MCOR_KINDS: too many. */
+/* Adds a value and its count to a list in ascending order. Returns the length of the list;
+ * MCOR_KINDS: there are too many values. */
 static int mcor_add_kind(mcor_kind* kinds, int count, mcor_kind kind)
 {
   int at = 0;
@@ -90,8 +91,8 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   return count < MCOR_KINDS ? count : 0;
 }
 
-/* Finds the value of fluid particles among the values of an array. Returns whether they clearly
- * tell it. */
+/* Finds which value of an array marks fluid particles. Returns false if the array's name and values
+ * leave doubt. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
   bool whole = count > 0;
@@ -129,8 +130,9 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
   return message;
 }
 
-/* Finds the array with the most usual name that clearly tells which particles are fluid; without
- * one, names an array that seems to tell it but is not used. */
+/* Finds an array that tells without doubt which particles are fluid; among several, the one with
+ * the most usual name. If there is none, found->unused_type names an array that seems to tell
+ * it. */
 static void mcor_look_for_fluid(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -183,7 +185,8 @@ void mcor_find_fluid(mcor_finder* f)
   }
 }
 
-/* Whether Within and Only let a particle count. of: the array of each range of Only. */
+/* Returns whether a particle lies in the box request->within and passes the ranges request->only.
+ * of: the index of the array of each range. */
 static bool mcor_counts(const mcor_finder* f, const int* of, int64_t particle)
 {
   const mcor_only* only = f->request->only;
@@ -214,7 +217,8 @@ static char* mcor_describe_choice(const mcor_finder* f)
   double b[6];
   for (int side = 0; side < 6; ++side)
   {
-    /* Six zeros mean that no box is chosen, so a box's side at 0 may be given as a tiny number. */
+    /* Six zeros mean "no box", so the request may hold a denormal number where a side of the box is
+     * 0. The message shows 0. */
     b[side] = fpclassify(request->within[side]) == FP_SUBNORMAL ? 0 : request->within[side];
   }
   char* text = has

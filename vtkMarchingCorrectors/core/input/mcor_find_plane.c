@@ -16,10 +16,10 @@ bool mcor_has_positions(const mcor_input* input)
     (unsigned)input->positions.type <= MCOR_FLOAT64;
 }
 
-/* Finds the ranges of the particles along x, y, z: first of the fluid, then of the solids that play
- * a part. An axis is measured only until two values of the fluid differ: the fluid is then not flat
- * along this axis, and its exact extent does not matter. If positions cannot be read,
- * mcor_check_input says later what is wrong. */
+/* Finds the ranges of the particles along x, y, z: ranges 0 to 2 are the fluid's, 3 to 5 those of
+ * solids that are not ignored. An axis is measured only until two values of the fluid differ: the
+ * fluid is then not flat along this axis, and its exact extent does not matter. If positions cannot
+ * be read, mcor_check_input says later what is wrong. */
 static mcor_findings mcor_find_spread(const mcor_input* input)
 {
   mcor_findings spread = mcor_no_findings();
@@ -48,8 +48,9 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
   return spread;
 }
 
-/* Fails. If all fluid shares a plane, names the plane of the solids or, if they share none, the
- * first solid off the fluid's plane. Returns MCOR_OK if a position is not finite. */
+/* Fails. If all fluid lies in a plane, the message names the plane of the solids or, if the solids
+ * do not lie in one plane, the first solid off the fluid's plane. Returns MCOR_OK if a fluid
+ * position is not finite. */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {

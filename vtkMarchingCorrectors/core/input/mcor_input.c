@@ -270,8 +270,8 @@ int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const 
   return -1;
 }
 
-/* Returns the exponent of the power of 2 just above all components of particle i; 0 if they are 0
- * or not finite. */
+/* Returns the exponent of the least power of 2 above the absolute values of all components of
+ * particle i; 0 if all components are 0, or one is infinite. */
 static int mcor_exponent_of(const mcor_array* array, int64_t i)
 {
   double largest = 0;
@@ -287,7 +287,8 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
-/* In sums of squares between these limits, no square has overflowed or vanished. */
+/* If a sum of squares lies between these limits, no square overflowed, and only squares that do not
+ * matter vanished. */
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 

@@ -67,7 +67,7 @@ static inline int mcor_chunk_of(int64_t rest)
   return rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
 }
 
-/* Return the least, the greatest of two numbers; a if b is NaN. */
+/* Return the smaller or the greater of two numbers; a if b is NaN. */
 static inline double mcor_least(double a, double b)
 {
   return b < a ? b : a;
@@ -150,8 +150,8 @@ static inline double mcor_largest_of(double low, double high)
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If too
- * many would be absent, fails with the sentence about the lattice. */
+/* mcor_far.c. Marks far particles as absent, in far->solid, so that the lattice, which was too long
+ * before, fits. If too many would be absent, fails with the sentence about the lattice. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
@@ -166,8 +166,8 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
  * beyond the measured bounds. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
-/* Finds the bounds of a lattice that is cut. low, high: the bounds of the positions of all
- * particles in use. */
+/* Finds the bounds of a lattice that surrounds only a region, see mcor_far. low, high: the bounds
+ * of the positions of all particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
 /* If one smoothing length differs greatly from all others, names its particle in the sentence about
@@ -188,8 +188,8 @@ mcor_status mcor_measure_components(
 
 /* Finds a value near the median of the scalar of fluid particles, whose range is known already. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
-/* mcor_neighbour_sums.c. Returns w(q), without the norm; for a tensor kernel, the factor of one
- * axis. */
+/* mcor_neighbour_sums.c. Returns the SPH kernel at distance q (in h), without the norm; for a
+ * tensor kernel, the factor of one axis. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
 /* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
@@ -211,7 +211,7 @@ mcor_status mcor_estimate_smoothing_length(
 /* Computes the cube root of a number above 0, with the same bits on every machine, unlike cbrt
  * and pow of C libraries. */
 double mcor_cube_root(double value);
-/* Sorts `count` numbers and returns their median; 0 without any. */
+/* Sorts `count` numbers and returns their median; 0 if count is 0. */
 double mcor_median_of(double* values, int count);
 
 /* Reads smoothing lengths, unscaled, unit L. */
@@ -229,7 +229,8 @@ static inline bool mcor_needs_density(const mcor_input* input)
     !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
 }
 
-/* Reads the volumes of at most MCOR_CHUNK particles; where they are computed, the masses, or 1. */
+/* Reads the volumes of at most MCOR_CHUNK particles. If volumes are to be computed, reads the
+ * masses instead or, without masses, writes 1. */
 void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out);
 
 /* mcor_find_plane.c. Whether there are positions that can be read. */

@@ -14,16 +14,16 @@
 
 /* ---- Neighbours: how many a fluid particle has, and how near the nearest one is ---- */
 
-/* A few watched particles suffice to notice wrong smoothing lengths. A watch sees all positions
- * while they are measured, and at its end sets the measure's neighbours, spacing, filled and
- * h_median. If the watched particles lie in a tilted plane, the watch also finds whether all other
- * particles lie in this plane. */
+/* While all positions are measured, the neighbours of a few fluid particles are counted. These
+ * watched particles suffice to notice wrong smoothing lengths. mcor_end_watch sets the measure's
+ * neighbours, spacing, filled and h_median. If the watched particles lie in a tilted plane, it also
+ * finds whether all other particles lie in this plane. */
 
 #define MCOR_WATCH_CELLS 64
 typedef struct mcor_watch
 {
-  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
-   * None reaches the outermost intervals. */
+  /* Each axis is divided into intervals. reached: for each interval, which watched particles may
+   * reach it, bit s for particle s. The two outermost intervals are reached by none. */
   double low[3], per_length[3];
   uint32_t reached[3][MCOR_WATCH_CELLS];
   int count;
@@ -32,8 +32,8 @@ typedef struct mcor_watch
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
   double normal[3];                          /* of the watched particles' plane; 0: none */
-  /* Distances along the normal from the first watched particle: the greatest, and the greatest with
-   * the sign reversed. */
+  /* The greatest distances of particles from the plane: on the side of the normal, on the other
+   * side. */
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
 
@@ -47,13 +47,14 @@ static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 
 /* ---- A plane that is tilted in space ---- */
 
-/* In smoothing lengths: the greatest extent along the normal for which the particles lie in a
- * plane, and the least extent within it. */
+/* In smoothing lengths: particles count as lying in a plane if their extent along the normal is
+ * below MCOR_THIN, and their extents within the plane are above MCOR_BROAD. */
 #define MCOR_THIN 0.1
 #define MCOR_BROAD 8
 
-/* Finds the normal of the plane through the first watched particle, the one farthest from it,
- * and the one farthest from the line between these. */
+/* Sets the normal of the plane in which all watched particles lie; it stays 0 if they lie in none.
+ * The plane goes through the first particle, the particle farthest from the first, and the particle
+ * farthest from the line between these two. */
 static void mcor_find_normal(mcor_watch* watch)
 {
   double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
@@ -89,7 +90,8 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-/* Watches the positions of a chunk. low, high: their bounds. */
+/* Adds the particles of a chunk to the counts and distances of the watched particles. low, high:
+ * the bounds of the chunk's positions. */
 static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
@@ -142,7 +144,8 @@ static void mcor_watch_positions(
   }
 }
 
-/* Takes the medians over the watched particles. */
+/* Joins the slices and ranks, and sets the measure's medians over the watched particles. If all
+ * particles lie in the watched particles' plane, sets the measure's plane_normal. */
 static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 {
   mcor_measure* m = &context->measure;
@@ -250,8 +253,9 @@ enum
 /* The most that one particle's widening factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures the places of a chunk's fluid, or of its solids; low, high: their bounds. If all kernels
- * are equally long, only the extreme places count, because rounding keeps the order of numbers. */
+/* Adds to `r` the ranges of a chunk's fluid or solids. low, high: the bounds of the chunk's
+ * positions. If all kernels are equally long, these bounds give the exact reach, because rounding
+ * keeps the order of numbers. */
 static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach,
   const double low[3], const double high[3], mcor_findings* r)
 {
@@ -286,8 +290,8 @@ static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double rea
   }
 }
 
-/* Moves the solids out of a chunk, and drops absent particles. `solid`: the marks of the chunk's
- * particles, or NULL. */
+/* Moves the solids of a chunk to `solids`, and drops absent particles. solid: the marks of the
+ * chunk's particles, or NULL. */
 static void mcor_part_chunk(const uint8_t* solid, mcor_places* chunk, mcor_places* solids)
 {
   const int count = chunk->count;

@@ -20,8 +20,8 @@
 /* A value nearer to an end of the range than this share of it counts as at the end. */
 #define MCOR_NEAR_END 0.01
 
-/* If the greatest value is more than this times the lowest, low values are what rounding has left
- * of 0. */
+/* If high values are more than this times the low ones, and the median is at an end of the range,
+ * the low values count as zeros that rounding has changed. */
 #define MCOR_MANY_DECADES 1e6
 
 typedef struct mcor_bin_job
@@ -153,7 +153,7 @@ static bool mcor_choose_iso(
     found[0] = fmin(found[0], job->least[0][b]);
     found[1] = fmax(found[1], -job->minus[0][b]);
   }
-  /* Narrows bins until each holds one value: the values 2 % and 5 % from each end, and the median. */
+  /* Finds five values by narrowing bins: the values 2 % and 5 % from either end, and the median. */
   const int64_t numbers[5] = { count / 50, count - 1 - count / 50, count / 20,
     count - 1 - count / 20, (count - 1) / 2 };
   for (int i = 0; i < 5; ++i)

@@ -24,7 +24,7 @@ uint64_t mcor_hash_position(const double x[3])
   return hash;
 }
 
-/* Orders particles at one place by their other values. */
+/* Orders samples by hash. Samples at one place are ordered by smoothing length, then by volume. */
 static bool mcor_comes_before(const mcor_sample* a, const mcor_sample* b)
 {
   return a->hash != b->hash ? a->hash < b->hash
@@ -138,8 +138,8 @@ mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, 
 
 #define MCOR_SAMPLE_NEIGHBOURS 32
 
-/* Squared, scaled distances from a sample to itself and its 32 nearest others (or all there
- * are), ascending. */
+/* Squared distances, ascending, from a sample to itself and to the 32 nearest particles (or to all,
+ * if there are fewer). The distances are multiplied by mcor_spacing.scale. */
 typedef struct mcor_neighbours
 {
   int sample, count;

@@ -125,8 +125,8 @@ static int mcor_find_values(
   return -1;
 }
 
-/* The first four arrays may give a period, and are tried in this order; the last belongs to `box`.
- * values: how many values an array has. */
+/* The first four arrays may give a period, and are tried in this order. The last array tells which
+ * axes of `box` are periodic. values: how many values an array has. */
 static const struct
 {
   const char* name;
@@ -138,7 +138,7 @@ int mcor_find_period(const mcor_field_data* arrays, int count, double period[6],
 {
   int unused;
   which = which ? which : &unused;
-  /* SPH-EXA's types of the sides of `box`; 0: open, 1: periodic, 2: fixed */
+  /* SPH-EXA's types of the axes of `box`; 0: open, 1: periodic, 2: fixed */
   const int type = mcor_find_values(arrays, count, "boundarytype", 3);
   for (int u = 0; u < 4; ++u)
   {

@@ -449,8 +449,8 @@ extern "C"
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     /* Medians over a sample of the fluid particles: smoothing length; number of particles within
      * the unscaled support radius, including the particle itself and solids; distance of the
-     * nearest other particle (0: none); share of the support that these particles fill if all are
-     * as large as the particle itself (0 if volumes are computed). */
+     * nearest other particle (0: none); share of the support that the particles in it fill if all
+     * are as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
     /* Fluid particles that are inside by mcor_widen's weight sum with their own smoothing lengths,

@@ -79,8 +79,8 @@ typedef struct mcor_bunches
   cl_int* triangles;      /* [triangle_count][3] */
   mcor_bunch_vertex* of;  /* [vertex_count] */
   int32_t*
-    before; /* [triangle_count][3]: from a corner to a corner of the triangle that comes before
-                    * it in its bunch's list of triangles, or -1 */
+    before; /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the
+                    * bunch to a corner of the list's previous triangle; -1: there is none */
   mcor_point* points; /* [point_room], of which point_count are the mesh's vertices */
   size_t point_room;
   int point_count;

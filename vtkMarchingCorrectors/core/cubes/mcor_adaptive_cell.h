@@ -6,22 +6,22 @@
 /* Marching Cubes in a cell with finer cells around it. This file is both included by the C core and
  * compiled as OpenCL C, after mcor_shared.h.
  *
- * A cell has 3 x 3 x 3 positions, half of its edge apart: number x + 3 y + 9 z. Its corners are
- * nodes. If a finer cell touches an edge, the edge is split into two halves, and its middle is a
- * node, too. If the cells across a face are finer, the face is split: its middle is a node, and its
- * four edges are split as well. Bits of `split` say which middles are nodes, bits of `above` which
- * nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node; the vertex of
- * an edge that is not split has the slot of the lower half.
+ * A cell has 3 x 3 x 3 positions, half a cell edge apart; their numbers are x + 3 y + 9 z. Its
+ * corners are nodes. If a finer cell touches an edge, the edge is split into two halves, and its
+ * middle is a node, too. If the cells across a face are finer, the face is split: its middle is a
+ * node, and its four edges are split as well. Bits of `split` say which middles are nodes, bits of
+ * `above` which nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node;
+ * the vertex of an edge that is not split has the slot of the lower half.
  *
  * A split face consists of four quarters, the sub-faces. On a sub-face, and on the ring of 4 to 8
- * nodes around a face that is not split, one segment cuts off each run of nodes above, as in the
- * case table; both cells at the face find the same segments. Segments form loops. A loop is cut
- * into triangles such that no diagonal has both ends in one sub-face, in one whole face or on one
- * edge of the cell, because another cell could have the same diagonal. A trial of all cases showed
- * that this is always possible, except for loops that lie in one whole face; no other cell can have
- * their diagonals. test_core_cell.c tests cells side by side. The triangles with the shortest
- * diagonals are chosen, with vertices taken in the middle of their edges; a diagonal that lies in a
- * face counts as long.
+ * nodes around a face that is not split, one segment cuts off each run of nodes above the iso
+ * value, as in the case table; both cells at the face find the same segments. Segments form loops.
+ * A loop is cut into triangles such that no diagonal has both ends in one sub-face, in one whole
+ * face or on one edge of the cell, because another cell could have the same diagonal. A trial of
+ * all cases showed that this is always possible, except for loops that lie in one whole face; no
+ * other cell can have their diagonals. test_core_cell.c tests cells side by side. The triangles
+ * with the shortest diagonals are chosen, with vertices taken in the middle of their edges; a
+ * diagonal that lies in a face counts as long.
  *
  * A loop of two vertices has no triangles: its two segments are the same line. */
 
@@ -45,8 +45,9 @@ typedef struct mcor_adaptive_links
   MCOR_TYPE(uchar) next[MCOR_ADAPTIVE_SLOTS];
 } mcor_adaptive_links;
 
-/* A loop. facets: the parts of the cell's surface that each vertex lies in. Bits 4 f .. 4 f + 3
- * are the sub-faces of face f, all four if it is whole; bit 24 + f is the face. */
+/* A loop. facets: the parts of the cell's surface that each vertex lies in. Bits 4 f to 4 f + 3 are
+ * the four sub-faces of face f (if the face is not split, all four bits are set); bit 24 + f is the
+ * face. */
 typedef struct mcor_adaptive_loop
 {
   int length;

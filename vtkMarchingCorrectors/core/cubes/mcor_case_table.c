@@ -160,7 +160,8 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   }
 }
 
-/* A strip of triangles between two loops. A step from side (a, b), either along the first loop or
+/* A strip of triangles between two loops. Each triangle has sides (a, b), from vertex a of the
+ * first loop to vertex b of the second. A step from such a side, either along the first loop or
  * back along the second, adds a triangle. */
 typedef struct mcor_strip
 {

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Nodes of the virtual grid: their values, and on which side of the iso value they are. In two
- * dimensions, the nodes above the plane get the sides of the nodes in the plane. */
+ * dimensions, each node above the plane gets the side of the node below it in the plane. */
 
 #include "mcor_adaptive.h"
 
@@ -12,8 +12,9 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count, lanes = context->cl.lanes;
   const mcor_space* space = &context->space;
-  /* One work-item evaluates a brick if particles are gathered for many lanes, else a node. In a
-   * plane, a brick has 16 nodes, and one work-item evaluates as many nodes as it has lanes. */
+  /* A work-item evaluates a brick if it has several lanes, which share the gathered particles, else
+   * a node. In a plane, a brick has 16 nodes, and a work-item evaluates as many nodes as it has
+   * lanes. */
   const int items = space->flat || lanes == 1 ? space->brick_nodes / lanes : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),

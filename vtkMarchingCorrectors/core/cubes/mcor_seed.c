@@ -12,8 +12,8 @@
 
 /* Returns the greatest relative rounding error of a Shepard mean of values that are all on one side
  * of the iso value. If n particles reach a point, the errors of the mean's two sums are at most (n
- * + 3) and (n + 1) unit roundoffs of their absolute terms, and the quotient adds one. Particles of
- * 27 cells of each level may reach a point. */
+ * + 3) and (n + 1) unit roundoffs of the sum of the terms' absolute values, and the quotient adds
+ * one. At most the particles of 27 cells of each level reach a point. */
 double mcor_side_margin(const mcor_context* context)
 {
   const mcor_grid* grid = &context->grid;
@@ -99,8 +99,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  /* If particles are gathered for many lanes, one work-item treats a region, and evaluates its
-   * bricks; else one work-item treats a brick. */
+  /* If a work-item has several lanes, which share the gathered particles, it treats a region, and
+   * evaluates the region's bricks; else it treats a brick. */
   return context->space.flat
     ? MCOR_OK
     : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1, first, end,

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Arrays in OpenCL buffers of the caller. The host checks and measures particles, so it maps the
- * buffers by queues in the buffers' own contexts. It copies arrays that have other bytes between
- * values, or do not begin at a multiple of their numbers' size. */
+ * buffers by queues in the buffers' own contexts. It copies an array if other bytes lie between the
+ * values, or if the array does not begin at a multiple of its numbers' size. */
 
 #include "mcor_cl_memory.h"
 #include "mcor_cl_call.h"

@@ -142,8 +142,8 @@ mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, 
     }
   }
   const mcor_status status = mcor_pool_work(pool, context);
-  /* Closes the loop. It is done when the calling thread finds no more work and all threads that
-   * joined are back; a thread that wakes later finds it closed. */
+  /* Closes the loop. The loop is done when the calling thread finds no more work and all threads
+   * that joined are back. A thread that wakes later finds the loop closed. */
   if (shared)
   {
     pthread_mutex_lock(&pool->lock);

@@ -27,8 +27,8 @@ void mcor_use_large_pages(void* memory, size_t bytes);
 
 /* A function of any type. */
 typedef void (*mcor_function)(void);
-/* Whether drivers can start: they start a thread for each of the machine's processors, and map
- * their libraries. PoCL ends the process if it cannot do this. */
+/* Whether drivers can start. A driver starts a thread for each of the machine's processors, and
+ * maps its libraries; PoCL ends the process if it cannot do this. */
 bool mcor_system_bears_drivers(void);
 /* Returns clGetPlatformIDs of the system's OpenCL loader; NULL: there is none. The loader stays
  * open, as drivers do not survive being closed. */

@@ -43,9 +43,9 @@ static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell,
   level->cells[axis] = ((int)((last - side) / period) + 2) * cells + 1;
 }
 
-/* Makes a level of the search grid for each factor of 2 between support radii that occurs, and
- * renumbers the particles' levels, staging->level. Returns the number of search cells of all
- * levels. */
+/* Makes the levels of the search grid, each for support radii that differ by up to a factor of 2;
+ * levels without particles are left out. Renumbers the particles' levels, staging->level,
+ * accordingly. Returns the number of search cells of all levels. */
 static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
@@ -101,9 +101,9 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-/* Orders the particles of each cell, then moves particles to where `order` says, one array after
- * the other, so that each array may take the memory of the one before. An array whose elements are
- * all the same is in order already. */
+/* Orders the particles of each cell. Then moves the particles' arrays, one after the other, into
+ * the order `order`, so that each array may take the memory of the array before. An array whose
+ * elements are all the same is in order already. */
 static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
